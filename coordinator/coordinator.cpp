@@ -1,0 +1,454 @@
+#include "coordinator/coordinator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/assert.hpp"
+
+namespace hybridtest {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Arm and stop are sent again until they are obeyed.
+constexpr Duration kControlRepeat = milliseconds{250};
+
+/// Stands in the record for the times of an exchange that never came to its end.
+constexpr double kUnanswered = std::numeric_limits<double>::quiet_NaN();
+
+[[nodiscard]] bool obeys(LifecycleState state, LifecycleState wanted) noexcept {
+  if (wanted == LifecycleState::armed) return state == LifecycleState::armed || state == LifecycleState::running;
+  if (wanted == LifecycleState::finished) {
+    return state == LifecycleState::finished || state == LifecycleState::refused || state == LifecycleState::lost;
+  }
+  return state == wanted;
+}
+
+}  // namespace
+
+Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
+                         CoordinatorPorts ports, CoordinatorRecord record)
+    : settings_{std::move(settings)},
+      integrator_{std::move(integrator)},
+      presence_{presence},
+      ports_{ports},
+      record_{record},
+      ledger_{settings_.substructures.size()},
+      commands_(settings_.substructures.size()),
+      restoring_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())},
+      applied_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())} {
+  HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSubstructures);
+  HYBRIDTEST_ASSERT(std::cmp_equal(settings_.ground_acceleration_m_per_s2.size(), settings_.last_step + 1));
+  HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
+  row_.resize(4 + 4 * static_cast<std::size_t>(restoring_force_n_.size()));
+}
+
+Instant Coordinator::advance(Instant now) noexcept {
+  if (!std::exchange(began_, true)) phase_began_ = now;
+  const Instant presence_wake = presence_.advance(now);
+  take_control_messages(now);
+  if (requested_stop_ != StopReason::none) begin_stop(now, std::exchange(requested_stop_, StopReason::none));
+  if (presence_.is_duplicate() && phase_ != Phase::done && phase_ != Phase::stopping) {
+    report(now, Severity::fault, EventCode::second_coordinator);
+    reason_ = StopReason::refused;
+    presence_.set_state(LifecycleState::refused);
+    phase_ = Phase::done;
+  }
+
+  if (phase_ == Phase::settling) settle(now);
+  if (phase_ == Phase::assembling) assemble(now);
+  if (phase_ == Phase::arming) arm(now);
+  if (phase_ == Phase::running) run(now);
+  if (phase_ == Phase::stopping) stop(now);
+  presence_.set_last_step(completed_steps_ - 1);
+  if (phase_ == Phase::done) static_cast<void>(presence_.advance(now));  // the last word goes out
+  return next_wake(now, presence_wake);
+}
+
+CoordinatorReport Coordinator::report() const noexcept {
+  return {presence_.state(), reason_, completed_steps_, running_time_};
+}
+
+void Coordinator::take_control_messages(Instant now) noexcept {
+  TestControl message;
+  while (ports_.control_in.take(message)) {
+    if (message.sender == presence_.identity().incarnation || message.sender_role != Role::operator_tool) continue;
+    switch (message.verb) {
+      case ControlVerb::stop: begin_stop(now, StopReason::interrupted); break;
+      case ControlVerb::emergency_stop:
+        report(now, Severity::fault, EventCode::emergency_stop);
+        begin_stop(now, StopReason::interlock);
+        break;
+      case ControlVerb::pause:
+        if (!std::exchange(is_paused_, true)) report(now, Severity::information, EventCode::test_paused);
+        break;
+      case ControlVerb::resume:
+        if (std::exchange(is_paused_, false)) report(now, Severity::information, EventCode::test_resumed);
+        step_due_ = std::max(step_due_, now);
+        break;
+      case ControlVerb::arm:
+      case ControlVerb::start: break;  // the coordinator's own to give
+    }
+  }
+}
+
+void Coordinator::settle(Instant now) noexcept {
+  if (now - phase_began_ < settings_.settle) return;
+  TestAnnouncement announcement;
+  announcement.test_name = settings_.test_name;
+  announcement.coordinator = presence_.identity().incarnation;
+  announcement.scenario_digest = presence_.identity().scenario_digest;
+  announcement.mode = settings_.mode;
+  announcement.step_s = settings_.step_s;
+  announcement.duration_s = settings_.duration_s;
+  announcement.time_scale = settings_.time_scale;
+  announcement.substructure_count = static_cast<std::uint16_t>(settings_.substructures.size());
+  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+    const auto& substructure = settings_.substructures[i];
+    announcement.substructures[i] = {substructure.id, substructure.role,
+                                     static_cast<std::uint8_t>(substructure.interface.size())};
+  }
+  ports_.announcements.send(announcement);
+  presence_.set_state(LifecycleState::ready);
+  phase_ = Phase::assembling;
+  phase_began_ = now;
+}
+
+void Coordinator::assemble(Instant now) noexcept {
+  for (const auto& substructure : settings_.substructures) {
+    const Peer* peer = presence_.find(substructure.id);
+    if (peer == nullptr || peer->status.state != LifecycleState::refused) continue;
+    report(now, Severity::fault, EventCode::digest_mismatch, substructure.id);
+    begin_stop(now, StopReason::refused);
+    return;
+  }
+  if (everyone_is(LifecycleState::ready)) {
+    for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+      ledger_.bind(static_cast<SubstructureIndex>(i),
+                   presence_.find(settings_.substructures[i].id)->status.incarnation);
+    }
+    phase_ = Phase::arming;
+    phase_began_ = now;
+    control_repeat_due_ = now;
+  } else if (now - phase_began_ >= settings_.discovery_timeout) {
+    report_missing(now, LifecycleState::ready);
+    begin_stop(now, StopReason::not_assembled);
+  }
+}
+
+void Coordinator::arm(Instant now) noexcept {
+  watch_participants(now);
+  if (phase_ != Phase::arming) return;
+  if (everyone_is(LifecycleState::armed)) {
+    report(now, Severity::information, EventCode::test_armed);
+    start(now);
+    return;
+  }
+  if (now - phase_began_ >= settings_.arm_timeout) {
+    report_missing(now, LifecycleState::armed);
+    begin_stop(now, StopReason::not_assembled);
+    return;
+  }
+  if (now >= control_repeat_due_) {
+    control(ControlVerb::arm);
+    control_repeat_due_ = now + kControlRepeat;
+  }
+}
+
+void Coordinator::start(Instant now) noexcept {
+  control(ControlVerb::start);
+  presence_.set_state(LifecycleState::running);
+  report(now, Severity::information, EventCode::test_started);
+  phase_ = Phase::running;
+  phase_began_ = now;
+  started_ = now;
+  step_due_ = now;
+  open_step(now);
+}
+
+void Coordinator::run(Instant now) noexcept {
+  watch_participants(now);
+  ForceMeasurement measurement;
+  while (phase_ == Phase::running) {
+    if (!step_is_sent_) {
+      if (is_paused_ || now < step_due_) return;
+      for (std::size_t i = 0; i < commands_.size(); ++i) send_command(static_cast<SubstructureIndex>(i), now);
+      step_is_sent_ = true;
+      ledger_.open(ledger_.step(), now);
+      for (std::size_t i = 0; i < commands_.size(); ++i) ledger_.count_attempt(static_cast<SubstructureIndex>(i));
+      repeat_due_ = now + settings_.repeat_after;
+      // What the step before left behind is written while the others work on this one.
+      if (completed_steps_ > 0) record_step(now);
+    }
+    while (!ledger_.is_complete() && ports_.measurements.take(measurement)) {
+      static_cast<void>(ledger_.enter(measurement, now));
+    }
+    if (!ledger_.is_complete()) {
+      repeat_unanswered(now);
+      return;
+    }
+    complete_step(now);
+  }
+}
+
+void Coordinator::watch_participants(Instant now) noexcept {
+  for (const auto& substructure : settings_.substructures) {
+    const Peer* peer = presence_.find(substructure.id);
+    const bool is_lost = peer == nullptr || peer->status.state == LifecycleState::lost ||
+                         peer->status.state == LifecycleState::refused ||
+                         peer->status.state == LifecycleState::finished;
+    if (is_lost) {
+      report(now, Severity::fault, EventCode::participant_lost, substructure.id);
+      presence_.raise(FaultFlags::participant_lost);
+      begin_stop(now, StopReason::participant_lost);
+      return;
+    }
+    constexpr FaultFlags kRecording = FaultFlags::records_dropped | FaultFlags::recording_failed;
+    const bool has_recording_fault = any(peer->status.faults & kRecording);
+    const bool has_other_fault = (peer->status.faults & kRecording) != peer->status.faults;
+    if (has_other_fault || peer->status.state == LifecycleState::stopping) {
+      begin_stop(now, has_other_fault ? StopReason::interlock : StopReason::interrupted);
+      return;
+    }
+    if (has_recording_fault && settings_.stop_on_recording_failure) {
+      begin_stop(now, StopReason::recording_failed);
+      return;
+    }
+  }
+}
+
+void Coordinator::open_step(Instant now) noexcept {
+  const MotionState& current = integrator_->current();
+  const Step step = completed_steps_;
+  ledger_.open(step, now);
+  step_is_sent_ = false;
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    DisplacementCommand& command = commands_[i];
+    const auto& substructure = settings_.substructures[i];
+    // The points before are final now: velocity and acceleration in equilibrium.
+    if (step > 0) fill_point(substructure, step - 1, integrator_->completed(), command.points[0]);
+    std::move_backward(command.points.begin(), command.points.end() - 1, command.points.end());
+    fill_point(substructure, step, current, command.points[0]);
+    command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
+    command.substructure = static_cast<SubstructureIndex>(i);
+    command.coordinator = presence_.identity().incarnation;
+    command.attempt = 0;
+  }
+}
+
+void Coordinator::send_command(SubstructureIndex substructure, Instant now) noexcept {
+  commands_[substructure].send_time = now.time_since_epoch();
+  ports_.commands.send(commands_[substructure]);
+}
+
+void Coordinator::repeat_unanswered(Instant now) noexcept {
+  if (now < repeat_due_) return;
+  repeat_due_ = now + settings_.repeat_after;
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto index = static_cast<SubstructureIndex>(i);
+    if (ledger_.has_answered(index)) continue;
+    ++commands_[i].attempt;
+    ledger_.count_attempt(index);
+    send_command(index, now);
+    if (commands_[i].attempt == 1) {
+      report(now, Severity::warning, EventCode::command_repeated, settings_.substructures[i].id, {1.0, 0.0});
+    }
+  }
+}
+
+void Coordinator::complete_step(Instant now) noexcept {
+  restoring_force_n_.setZero();
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto& interface = settings_.substructures[i].interface;
+    const InterfaceVector& force_n = ledger_.answer(static_cast<SubstructureIndex>(i)).force_n;
+    if (std::cmp_not_equal(force_n.size(), interface.size()) || !force_n.allFinite()) {
+      report(now, Severity::fault, EventCode::measurement_not_finite, settings_.substructures[i].id);
+      presence_.raise(FaultFlags::not_finite);
+      begin_stop(now, StopReason::not_finite);
+      return;
+    }
+    for (std::size_t k = 0; k < interface.size(); ++k) {
+      const double force = force_n[static_cast<Eigen::Index>(k)];
+      restoring_force_n_[interface[k].dof] += force;
+      if (interface[k].relative_to != InterfaceDof::kGround) restoring_force_n_[interface[k].relative_to] -= force;
+    }
+  }
+  record_exchanges();
+  const Step step = ledger_.step();
+  const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
+  applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
+  integrator_->advance(restoring_force_n_, applied_force_n_);
+  ++completed_steps_;
+  if (step == settings_.last_step) {
+    record_step(now);
+    report(now, Severity::information, EventCode::test_completed);
+    begin_stop(now, StopReason::completed);
+    return;
+  }
+  if (!integrator_->current().displacement_m.allFinite()) {
+    presence_.raise(FaultFlags::not_finite);
+    record_step(now);
+    begin_stop(now, StopReason::not_finite);
+    return;
+  }
+  if (settings_.mode == CouplingMode::paced) {
+    // One step ahead of its own time and never faster; what was lost is not made up for.
+    step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
+    if (step == 0) step_due_ = now;
+  }
+  open_step(now);
+}
+
+void Coordinator::record_step(Instant now) noexcept {
+  const MotionState& completed = integrator_->completed();
+  const auto step = completed_steps_ - 1;
+  std::size_t next = 0;
+  row_[next++] = static_cast<double>(step);
+  row_[next++] = static_cast<double>(step) * settings_.step_s;
+  row_[next++] = to_seconds(now - started_);
+  row_[next++] = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
+  for (Eigen::Index dof = 0; dof < restoring_force_n_.size(); ++dof) {
+    row_[next++] = completed.displacement_m[dof];
+    row_[next++] = completed.velocity_m_per_s[dof];
+    row_[next++] = completed.acceleration_m_per_s2[dof];
+    row_[next++] = restoring_force_n_[dof];
+  }
+  record_.steps.append(row_);
+}
+
+void Coordinator::record_exchanges() noexcept {
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto index = static_cast<SubstructureIndex>(i);
+    std::array<double, 6> row{static_cast<double>(ledger_.step()),
+                              static_cast<double>(i),
+                              kUnanswered,
+                              static_cast<double>(ledger_.attempts(index)),
+                              0.0,
+                              kUnanswered};
+    if (ledger_.has_answered(index)) {
+      const ForceMeasurement& answer = ledger_.answer(index);
+      row[2] = to_seconds(ledger_.round_trip(index)) * 1e6;
+      row[4] = static_cast<double>(static_cast<std::uint32_t>(answer.flags));
+      row[5] = to_seconds(answer.send_time - answer.receive_time) * 1e6;
+    }
+    record_.exchanges.append(row);
+  }
+}
+
+void Coordinator::begin_stop(Instant now, StopReason reason) noexcept {
+  if (phase_ == Phase::stopping || phase_ == Phase::done) return;
+  reason_ = reason;
+  if (phase_ == Phase::running) {
+    running_time_ = now - started_;
+    if (completed_steps_ > 0 && !step_is_sent_) record_step(now);
+    if (step_is_sent_ && !ledger_.is_complete()) record_exchanges();
+  }
+  report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, {},
+         {static_cast<double>(reason), 0.0});
+  presence_.set_state(LifecycleState::stopping);
+  phase_ = Phase::stopping;
+  phase_began_ = now;
+  control_repeat_due_ = now;
+}
+
+void Coordinator::stop(Instant now) noexcept {
+  if (now >= control_repeat_due_) {
+    control(ControlVerb::stop, reason_);
+    control_repeat_due_ = now + kControlRepeat;
+  }
+  if (!everyone_is(LifecycleState::finished) && now - phase_began_ < settings_.stop_timeout) return;
+  presence_.set_state(LifecycleState::finished);
+  phase_ = Phase::done;
+}
+
+void Coordinator::report_missing(Instant now, LifecycleState wanted) noexcept {
+  for (const auto& substructure : settings_.substructures) {
+    const Peer* peer = presence_.find(substructure.id);
+    if (peer != nullptr && obeys(peer->status.state, wanted)) continue;
+    report(now, Severity::fault, EventCode::participant_missing, substructure.id);
+  }
+}
+
+bool Coordinator::everyone_is(LifecycleState wanted) const noexcept {
+  return std::ranges::all_of(settings_.substructures, [&](const CoupledSubstructure& substructure) {
+    const Peer* peer = presence_.find(substructure.id);
+    // Nobody waits for the farewell of one that never came.
+    if (peer == nullptr) return wanted == LifecycleState::finished;
+    return obeys(peer->status.state, wanted);
+  });
+}
+
+Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcept {
+  switch (phase_) {
+    case Phase::settling: return std::min(presence_wake, phase_began_ + settings_.settle);
+    case Phase::assembling: return std::min(presence_wake, phase_began_ + settings_.discovery_timeout);
+    case Phase::arming: return std::min(presence_wake, control_repeat_due_);
+    case Phase::running: {
+      if (is_paused_) return presence_wake;
+      return std::min(presence_wake, step_is_sent_ ? repeat_due_ : std::max(step_due_, now));
+    }
+    case Phase::stopping: return std::min({presence_wake, control_repeat_due_, phase_began_ + settings_.stop_timeout});
+    case Phase::done: return kNever;
+  }
+  return kNever;
+}
+
+void Coordinator::report(Instant now, Severity severity, EventCode code, const ParticipantId& subject,
+                         std::array<double, 2> values) noexcept {
+  const Step step = completed_steps_ - 1;
+  presence_.report(now, severity, code, subject, values, step,
+                   step == kNoStep ? 0.0 : static_cast<double>(step) * settings_.step_s);
+}
+
+void Coordinator::control(ControlVerb verb, StopReason reason) noexcept {
+  TestControl message;
+  message.verb = verb;
+  message.sender = presence_.identity().incarnation;
+  message.sender_role = Role::coordinator;
+  message.reason = reason;
+  ports_.control_out.send(message);
+}
+
+void Coordinator::fill_point(const CoupledSubstructure& substructure, Step step, const MotionState& motion,
+                             CommandPoint& point) const noexcept {
+  const auto size = static_cast<Eigen::Index>(substructure.interface.size());
+  point.step = step;
+  point.model_time_s = static_cast<double>(step) * settings_.step_s;
+  const auto interface_values = [&](const Eigen::VectorXd& structure, InterfaceVector& values) {
+    values.resize(size);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const InterfaceDof& dof = substructure.interface[static_cast<std::size_t>(k)];
+      values[k] = structure[dof.dof];
+      if (dof.relative_to != InterfaceDof::kGround) values[k] -= structure[dof.relative_to];
+    }
+  };
+  interface_values(motion.displacement_m, point.displacement_m);
+  interface_values(motion.velocity_m_per_s, point.velocity_m_per_s);
+  interface_values(motion.acceleration_m_per_s2, point.acceleration_m_per_s2);
+}
+
+TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs) {
+  TableLayout layout{
+      "steps", {{"step", ""}, {"model_time_s", "s"}, {"wall_time_s", "s"}, {"ground_acceleration_m_per_s2", "m/s2"}}};
+  for (const std::string& dof : dofs) {
+    layout.columns.push_back({"displacement_" + dof + "_m", "m"});
+    layout.columns.push_back({"velocity_" + dof + "_m_per_s", "m/s"});
+    layout.columns.push_back({"acceleration_" + dof + "_m_per_s2", "m/s2"});
+    layout.columns.push_back({"restoring_force_" + dof + "_n", "N"});
+  }
+  return layout;
+}
+
+TableLayout Coordinator::exchanges_layout() {
+  return {"exchanges",
+          {{"step", ""},
+           {"substructure", ""},
+           {"round_trip_us", "us"},
+           {"attempts", ""},
+           {"flags", ""},
+           {"turnaround_us", "us"}}};
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "coordinator/integrator.hpp"
+#include "coordinator/step_ledger.hpp"
+#include "core/messages.hpp"
+#include "core/node.hpp"
+#include "core/ports.hpp"
+#include "core/presence.hpp"
+#include "core/records.hpp"
+
+namespace hybridtest {
+
+/// One interface degree of freedom: a structure degree of freedom, absolute (against the
+/// ground) or against another one.
+struct InterfaceDof {
+  static constexpr int kGround = -1;
+  int dof = 0;
+  int relative_to = kGround;
+};
+
+/// A substructure as the coordinator sees it.
+struct CoupledSubstructure {
+  ParticipantId id;
+  Role role = Role::numerical_substructure;
+  std::vector<InterfaceDof> interface;
+};
+
+struct CoordinatorSettings {
+  FixedText<64> test_name;
+  CouplingMode mode = CouplingMode::lockstep;
+  double step_s = 0.0;
+  double duration_s = 0.0;
+  double time_scale = 1.0;  // paced: wall time over model time
+  Step last_step = 0;       // steps 0 .. last_step are taken
+  std::vector<CoupledSubstructure> substructures;
+  /// Load on each structure degree of freedom per unit of ground acceleration: -M iota [kg].
+  Eigen::VectorXd load_per_ground_acceleration_kg;
+  /// At each step 0 .. last_step [m/s2].
+  std::vector<double> ground_acceleration_m_per_s2;
+  bool stop_on_recording_failure = false;            // of any participant
+  Duration settle = std::chrono::milliseconds{300};  // listen for an older coordinator first
+  Duration discovery_timeout = std::chrono::seconds{30};
+  Duration arm_timeout = std::chrono::seconds{10};
+  Duration stop_timeout = std::chrono::seconds{10};        // for the others to come to rest
+  Duration repeat_after = std::chrono::milliseconds{200};  // an unanswered command is sent again
+};
+
+struct CoordinatorPorts {
+  Outbox<TestAnnouncement>& announcements;
+  Inbox<TestControl>& control_in;
+  Outbox<TestControl>& control_out;
+  Inbox<ForceMeasurement>& measurements;
+  Outbox<DisplacementCommand>& commands;
+};
+
+/// Tables of `coordinator.h5`.
+struct CoordinatorRecord {
+  RowSink& steps;
+  RowSink& exchanges;
+};
+
+/// How the test stands, for progress and for the verdict.
+struct CoordinatorReport {
+  LifecycleState state = LifecycleState::joining;
+  StopReason reason = StopReason::none;
+  Step completed_steps = 0;  // counts step 0
+  Duration running_time{};   // from start to the end of stepping
+};
+
+/// The integration coordinator: gathers the participants, arms and starts them, and steps the
+/// structure through the ground motion, one command out and one force back per substructure
+/// and step, until the end or until something is wrong.
+class Coordinator final : public Node {
+ public:
+  Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
+              CoordinatorPorts ports, CoordinatorRecord record);
+
+  [[nodiscard]] Instant advance(Instant now) noexcept override;
+
+  /// Ends the test safely, as Ctrl-C does; takes effect at the next advance().
+  void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
+
+  [[nodiscard]] bool is_done() const noexcept { return phase_ == Phase::done; }
+  [[nodiscard]] CoordinatorReport report() const noexcept;
+
+  [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);
+  [[nodiscard]] static TableLayout exchanges_layout();
+
+ private:
+  enum class Phase : std::uint8_t { settling, assembling, arming, running, stopping, done };
+
+  void take_control_messages(Instant now) noexcept;
+  void settle(Instant now) noexcept;
+  void assemble(Instant now) noexcept;
+  void arm(Instant now) noexcept;
+  void start(Instant now) noexcept;
+  void run(Instant now) noexcept;
+  void stop(Instant now) noexcept;
+
+  void watch_participants(Instant now) noexcept;
+  void open_step(Instant now) noexcept;
+  void send_command(SubstructureIndex substructure, Instant now) noexcept;
+  void repeat_unanswered(Instant now) noexcept;
+  void complete_step(Instant now) noexcept;
+  void record_step(Instant now) noexcept;
+  void record_exchanges() noexcept;
+  void begin_stop(Instant now, StopReason reason) noexcept;
+  void report_missing(Instant now, LifecycleState wanted) noexcept;
+  [[nodiscard]] bool everyone_is(LifecycleState state) const noexcept;
+  [[nodiscard]] Instant next_wake(Instant now, Instant presence_wake) const noexcept;
+  void report(Instant now, Severity severity, EventCode code, const ParticipantId& subject = {},
+              std::array<double, 2> values = {}) noexcept;
+  void control(ControlVerb verb, StopReason reason = StopReason::none) noexcept;
+  void fill_point(const CoupledSubstructure& substructure, Step step, const MotionState& motion,
+                  CommandPoint& point) const noexcept;
+
+  CoordinatorSettings settings_;
+  std::unique_ptr<Integrator> integrator_;
+  Presence& presence_;
+  CoordinatorPorts ports_;
+  CoordinatorRecord record_;
+
+  Phase phase_ = Phase::settling;
+  Instant phase_began_{};
+  bool began_ = false;
+  StepLedger ledger_;
+  std::vector<DisplacementCommand> commands_;  // newest per substructure, with its history
+  Instant repeat_due_ = kNever;
+  Instant step_due_{};  // paced: the open step's own time; commands do not go out earlier
+  bool step_is_sent_ = false;
+  bool is_paused_ = false;
+  StopReason requested_stop_ = StopReason::none;
+  StopReason reason_ = StopReason::none;
+  Step completed_steps_ = 0;
+  Instant started_{};
+  Duration running_time_{};
+  Instant control_repeat_due_{};
+  Eigen::VectorXd restoring_force_n_;
+  Eigen::VectorXd applied_force_n_;
+  std::vector<double> row_;
+};
+
+}  // namespace hybridtest

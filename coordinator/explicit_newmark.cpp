@@ -1,0 +1,52 @@
+#include "coordinator/explicit_newmark.hpp"
+
+#include "core/assert.hpp"
+
+namespace hybridtest {
+namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+SparseMatrix effective_mass(const LinearStructure& structure, double step_s) {
+  SparseMatrix result = structure.mass_kg + structure.damping_n_s_per_m * (0.5 * step_s);
+  result.makeCompressed();
+  return result;
+}
+
+}  // namespace
+
+ExplicitNewmark::ExplicitNewmark(const LinearStructure& structure, double step_s, const InitialMotion& initial)
+    : step_s_{step_s},
+      mass_{require_integrable(structure, step_s).mass_kg, "mass"},
+      effective_mass_{effective_mass(structure, step_s), "effective mass (M + dt/2 C)"},
+      damping_{structure.damping_n_s_per_m},
+      acceleration_{Eigen::VectorXd::Zero(structure.size())},
+      current_{starting_state(initial, structure.size())},
+      completed_{current_} {
+  half_step_velocity_ = current_.velocity_m_per_s;
+}
+
+void ExplicitNewmark::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
+                              const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept {
+  HYBRIDTEST_ASSERT(restoring_force_n.size() == acceleration_.size() && applied_force_n.size() == acceleration_.size());
+  acceleration_ = applied_force_n - restoring_force_n;
+  acceleration_.noalias() -= damping_ * half_step_velocity_;
+  if (has_started_) {
+    effective_mass_.solve_in_place(acceleration_);
+  } else {
+    mass_.solve_in_place(acceleration_);
+  }
+
+  completed_.displacement_m = current_.displacement_m;
+  completed_.velocity_m_per_s = half_step_velocity_;
+  if (has_started_) completed_.velocity_m_per_s += (0.5 * step_s_) * acceleration_;
+  completed_.acceleration_m_per_s2 = acceleration_;
+  has_started_ = true;
+
+  half_step_velocity_ = completed_.velocity_m_per_s + (0.5 * step_s_) * acceleration_;
+  current_.displacement_m += step_s_ * half_step_velocity_;
+  current_.velocity_m_per_s = completed_.velocity_m_per_s + step_s_ * acceleration_;
+  current_.acceleration_m_per_s2 = acceleration_;
+}
+
+}  // namespace hybridtest

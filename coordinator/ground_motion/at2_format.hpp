@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/ground_motion/motion_text.hpp"
+#include "coordinator/ground_motion/read_ground_motion.hpp"
+
+namespace hybridtest {
+
+/// Whether a file is PEER AT2: by the end of its name or by NPTS among its first lines.
+[[nodiscard]] bool is_at2(const std::vector<motion_text::Line>& lines, const std::string& name);
+
+/// @throws ConfigError as read_ground_motion().
+[[nodiscard]] GroundMotion parse_at2(const std::vector<motion_text::Line>& lines, const std::string& name,
+                                     const GroundMotionOptions& options);
+
+}  // namespace hybridtest

@@ -1,0 +1,67 @@
+#include "coordinator/ground_motion/read_ground_motion.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "coordinator/ground_motion/at2_format.hpp"
+#include "coordinator/ground_motion/column_format.hpp"
+#include "coordinator/ground_motion/motion_text.hpp"
+
+namespace hybridtest {
+namespace {
+
+void check_options(const GroundMotionOptions& options, const std::string& name) {
+  if (!std::isfinite(options.scale)) motion_text::refuse(name, 0, "the scale is not a finite number");
+  if (options.dt_s && !(std::isfinite(*options.dt_s) && *options.dt_s > 0.0)) {
+    motion_text::refuse(name, 0, "the step given with the file is not positive, expected seconds such as 0.005");
+  }
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) motion_text::refuse(name, 0, "is a folder, expected a ground motion");
+  errno = 0;
+  std::ifstream stream{file, std::ios::binary};
+  if (!stream) {
+    motion_text::refuse(name, 0, "cannot be opened: " + std::generic_category().message(errno == 0 ? EIO : errno));
+  }
+  std::string text;
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kMaxGroundMotionBytes) {
+      motion_text::refuse(name, 0, "is larger than " + std::to_string(kMaxGroundMotionBytes >> 20U) + " MiB");
+    }
+  }
+  if (stream.bad()) motion_text::refuse(name, 0, "cannot be read to its end");
+  return text;
+}
+
+}  // namespace
+
+GroundMotion parse_ground_motion(std::string_view text, const std::string& name, const GroundMotionOptions& options) {
+  check_options(options, name);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const auto lines = motion_text::split_lines(text);
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    motion_text::refuse(name, 1,
+                        "the file is empty, expected a ground motion: PEER AT2, two columns (time, acceleration) or "
+                        "one (acceleration)");
+  }
+  GroundMotion motion = is_at2(lines, name) ? parse_at2(lines, name, options) : parse_columns(lines, name, options);
+  if (motion.peak_m_per_s2() > kMaxGroundAcceleration_m_per_s2) {
+    motion_text::refuse(name, 0, "the largest acceleration after scaling is above 1e6 m/s2; check unit and scale");
+  }
+  return motion;
+}
+
+GroundMotion read_ground_motion(const std::filesystem::path& file, const GroundMotionOptions& options) {
+  return parse_ground_motion(read_file(file), file.string(), options);
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "coordinator/vibration_modes.hpp"
+
+namespace hybridtest {
+
+/// What an explicit integrator's step may be.
+struct StepStability {
+  double highest_frequency_rad_per_s = 0.0;
+  double step_s_max = 0.0;  // infinite for a structure without stiffness
+};
+
+/// Central differences and explicit Newmark are stable while omega dt <= 2, that is
+/// dt <= T_n/pi of the highest mode, whatever damping they treat implicitly (Belytschko and
+/// Hughes, Computational Methods for Transient Analysis, 1983, chapter 2).
+///
+/// The limit is that of the initial stiffness: laws that stiffen later on, and forces of a
+/// specimen's own mass or damper, lower it.
+[[nodiscard]] StepStability step_stability(const VibrationModes& modes) noexcept;
+
+/// @throws ConfigError when `step_s` is above the limit, with the highest frequency, the limit
+///         and the step.
+void require_stable_step(const VibrationModes& modes, double step_s);
+
+}  // namespace hybridtest

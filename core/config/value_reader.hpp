@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/config/node.hpp"
+#include "core/config/section.hpp"
+#include "core/config/section_state.hpp"
+
+namespace hybridtest::config {
+
+/// `a number greater than 0`, for messages.
+[[nodiscard]] std::string expected_number(const Range& range);
+/// `an integer from 1 to 4`.
+[[nodiscard]] std::string expected_integer(std::int64_t low, std::int64_t high);
+
+[[nodiscard]] bool contains(const Range& range, double value) noexcept;
+/// Some small value inside the range, to go on with after an error.
+[[nodiscard]] double usable(const Range& range) noexcept;
+[[nodiscard]] std::int64_t usable(std::int64_t low, std::int64_t high) noexcept;
+
+/// Reads single values of one section's tree and reports what does not fit. Refused nodes read
+/// as nothing without a further report.
+class ValueReader {
+ public:
+  explicit ValueReader(SectionState& section) : section_{section} {}
+
+  [[nodiscard]] std::optional<double> number(const Node& node, std::string_view path, const Range& range);
+  [[nodiscard]] std::optional<std::int64_t> integer(const Node& node, std::string_view path, std::int64_t low,
+                                                    std::int64_t high);
+  [[nodiscard]] std::optional<bool> boolean(const Node& node, std::string_view path);
+  /// @param expected   for messages, such as "a name".
+  [[nodiscard]] std::optional<std::string> text(const Node& node, std::string_view path, std::string_view expected);
+  /// A node of that kind, or a report and false.
+  [[nodiscard]] bool is(Node::Kind kind, const Node& node, std::string_view path, std::string_view expected);
+
+  /// `expected …, found …`, then the advice.
+  void report_mismatch(const Node& node, std::string_view path, std::string_view expected,
+                       std::string_view advice = {});
+
+ private:
+  SectionState& section_;
+};
+
+}  // namespace hybridtest::config

@@ -1,0 +1,69 @@
+#include "core/faults.hpp"
+
+namespace hybridtest {
+
+std::string_view name(FaultFlags single_flag) noexcept {
+  switch (single_flag) {
+    case FaultFlags::none: return "none";
+    case FaultFlags::displacement_limit: return "displacement_limit";
+    case FaultFlags::velocity_limit: return "velocity_limit";
+    case FaultFlags::force_limit: return "force_limit";
+    case FaultFlags::tracking_error: return "tracking_error";
+    case FaultFlags::command_age: return "command_age";
+    case FaultFlags::energy_error: return "energy_error";
+    case FaultFlags::not_finite: return "not_finite";
+    case FaultFlags::rig_fault: return "rig_fault";
+    case FaultFlags::records_dropped: return "records_dropped";
+    case FaultFlags::recording_failed: return "recording_failed";
+    case FaultFlags::coordinator_lost: return "coordinator_lost";
+    case FaultFlags::emergency_stop: return "emergency_stop";
+    case FaultFlags::participant_lost: return "participant_lost";
+  }
+  return "several";
+}
+
+std::string_view name(StopReason reason) noexcept {
+  switch (reason) {
+    case StopReason::none: return "none";
+    case StopReason::completed: return "completed";
+    case StopReason::interrupted: return "interrupted";
+    case StopReason::interlock: return "interlock";
+    case StopReason::participant_lost: return "participant_lost";
+    case StopReason::coordinator_lost: return "coordinator_lost";
+    case StopReason::not_finite: return "not_finite";
+    case StopReason::not_assembled: return "not_assembled";
+    case StopReason::refused: return "refused";
+    case StopReason::recording_failed: return "recording_failed";
+  }
+  return "unknown";
+}
+
+std::string_view name(EventCode code) noexcept {
+  switch (code) {
+    case EventCode::none: return "none";
+    case EventCode::participant_joined: return "participant_joined";
+    case EventCode::participant_ready: return "participant_ready";
+    case EventCode::participant_lost: return "participant_lost";
+    case EventCode::participant_missing: return "participant_missing";
+    case EventCode::digest_mismatch: return "digest_mismatch";
+    case EventCode::duplicate_id: return "duplicate_id";
+    case EventCode::second_coordinator: return "second_coordinator";
+    case EventCode::test_armed: return "test_armed";
+    case EventCode::test_started: return "test_started";
+    case EventCode::test_completed: return "test_completed";
+    case EventCode::test_stopped: return "test_stopped";
+    case EventCode::interlock_tripped: return "interlock_tripped";
+    case EventCode::command_overdue: return "command_overdue";
+    case EventCode::coordinator_lost: return "coordinator_lost";
+    case EventCode::command_repeated: return "command_repeated";
+    case EventCode::measurement_not_finite: return "measurement_not_finite";
+    case EventCode::recording_failed: return "recording_failed";
+    case EventCode::records_dropped: return "records_dropped";
+    case EventCode::test_paused: return "test_paused";
+    case EventCode::test_resumed: return "test_resumed";
+    case EventCode::emergency_stop: return "emergency_stop";
+  }
+  return "unknown";
+}
+
+}  // namespace hybridtest

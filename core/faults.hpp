@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace hybridtest {
+
+/// Bit set operators for the flag enums below.
+#define HYBRIDTEST_FLAG_OPERATORS(Flags)                                                      \
+  [[nodiscard]] constexpr Flags operator|(Flags a, Flags b) noexcept {                        \
+    return static_cast<Flags>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); \
+  }                                                                                           \
+  [[nodiscard]] constexpr Flags operator&(Flags a, Flags b) noexcept {                        \
+    return static_cast<Flags>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b)); \
+  }                                                                                           \
+  constexpr Flags& operator|=(Flags& a, Flags b) noexcept { return a = a | b; }               \
+  [[nodiscard]] constexpr bool any(Flags flags) noexcept { return static_cast<std::uint32_t>(flags) != 0; }
+
+/// What is wrong with a participant, latched until it leaves.
+enum class FaultFlags : std::uint32_t {
+  none = 0,
+  displacement_limit = 1U << 0U,
+  velocity_limit = 1U << 1U,
+  force_limit = 1U << 2U,
+  tracking_error = 1U << 3U,
+  command_age = 1U << 4U,   // no command for too long
+  energy_error = 1U << 5U,  // hybrid simulation error monitor
+  not_finite = 1U << 6U,    // NaN or infinity in a command or a measurement
+  rig_fault = 1U << 7U,
+  records_dropped = 1U << 8U,   // the recording has holes
+  recording_failed = 1U << 9U,  // disk full or file error
+  coordinator_lost = 1U << 10U,
+  emergency_stop = 1U << 11U,
+  participant_lost = 1U << 12U,
+};
+HYBRIDTEST_FLAG_OPERATORS(FaultFlags)
+
+/// How a measurement came about.
+enum class MeasurementFlags : std::uint32_t {
+  none = 0,
+  extrapolated = 1U << 0U,  // the target was not known when motion towards it began
+  held = 1U << 1U,          // the actuator waited at the last target
+  saturated = 1U << 2U,     // a limit clipped the command
+  late = 1U << 3U,          // the target came after its own time
+  repeated = 1U << 4U,      // answered from the cache to a repeated command
+};
+HYBRIDTEST_FLAG_OPERATORS(MeasurementFlags)
+
+/// Why a test ended.
+enum class StopReason : std::uint8_t {
+  none,
+  completed,
+  interrupted,  // Ctrl-C or a stop command
+  interlock,    // a site's limit or fault
+  participant_lost,
+  coordinator_lost,
+  not_finite,     // the integrator met NaN or infinity
+  not_assembled,  // a participant did not appear or did not arm
+  refused,        // scenario digest or identity
+  recording_failed,
+};
+
+enum class EventCode : std::uint16_t {
+  none,
+  participant_joined,
+  participant_ready,
+  participant_lost,     // subject: who
+  participant_missing,  // subject: who
+  digest_mismatch,      // subject: the coordinator's or participant's id
+  duplicate_id,         // subject: the id
+  second_coordinator,
+  test_armed,
+  test_started,
+  test_completed,
+  test_stopped,       // values[0]: StopReason
+  interlock_tripped,  // subject: the FaultFlags' name; values: observed, limit
+  command_overdue,    // values: age [s], limit [s]
+  coordinator_lost,
+  command_repeated,  // values[0]: attempt
+  measurement_not_finite,
+  recording_failed,
+  records_dropped,  // values[0]: count
+  test_paused,
+  test_resumed,
+  emergency_stop,
+};
+
+[[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;
+[[nodiscard]] std::string_view name(StopReason reason) noexcept;
+[[nodiscard]] std::string_view name(EventCode code) noexcept;
+
+}  // namespace hybridtest

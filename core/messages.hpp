@@ -1,0 +1,187 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/faults.hpp"
+#include "core/fixed_text.hpp"
+#include "core/interface_vector.hpp"
+#include "core/time.hpp"
+
+/// The vocabulary of a hybrid test, independent of how it travels. `idl/hybridtest.idl` states
+/// the same on the wire; `transport/fast_dds/wire_mapping.hpp` maps the two onto each other.
+///
+/// Displacement, force and their derivatives are in the substructure's interface coordinates:
+/// displacement positive along the structure's degree of freedom (against `relative_to`), the
+/// restoring force positive when it resists a positive displacement.
+namespace hybridtest {
+
+inline constexpr int kMaxSubstructures = 32;
+/// Newest point and the ones before it that travel with each command.
+inline constexpr int kCommandPoints = 4;
+inline constexpr int kMaxSignalSamples = 32;
+
+using ParticipantId = FixedText<48>;
+using ScenarioDigest = std::array<std::uint8_t, 32>;  // SHA-256 of the effective scenario
+
+/// Drawn anew by each process at start; tells two processes with one id apart.
+using Incarnation = std::uint64_t;
+
+/// Position of a substructure in the scenario's list; the key of commands and measurements.
+using SubstructureIndex = std::uint16_t;
+
+/// Step 0 is the initial state at model time 0.
+using Step = std::int64_t;
+inline constexpr Step kNoStep = -1;
+
+enum class Role : std::uint8_t { coordinator, numerical_substructure, experimental_site, operator_tool };
+
+enum class CouplingMode : std::uint8_t { lockstep, paced };
+
+/// Life of a participant. `lost` is never sent: the transport reports it for a participant
+/// whose liveliness lease ran out.
+enum class LifecycleState : std::uint8_t {
+  joining,  // looking for the test; nothing is checked yet
+  ready,    // scenario agreed, rig connected; nothing can move
+  armed,    // rig armed; motion possible
+  running,
+  stopping,  // bringing the rig to rest
+  finished,  // at rest, records closed, about to leave
+  refused,   // will not take part: see the event
+  lost,
+};
+
+struct SubstructureAnnouncement {
+  ParticipantId id;
+  Role role = Role::numerical_substructure;
+  std::uint8_t interface_dofs = 0;
+  bool operator==(const SubstructureAnnouncement&) const = default;
+};
+
+/// Coordinator to all, transient local: the test that is about to run.
+struct TestAnnouncement {
+  FixedText<64> test_name;
+  Incarnation coordinator = 0;
+  ScenarioDigest scenario_digest{};
+  CouplingMode mode = CouplingMode::lockstep;
+  double step_s = 0.0;      // [s] model time
+  double duration_s = 0.0;  // [s] model time
+  double time_scale = 1.0;  // [-] wall time over model time, paced mode
+  std::uint16_t substructure_count = 0;
+  std::array<SubstructureAnnouncement, kMaxSubstructures> substructures{};
+  bool operator==(const TestAnnouncement&) const = default;
+};
+
+/// Everyone to all, keyed by participant, transient local; repeated as a heartbeat.
+struct ParticipantStatus {
+  ParticipantId id;
+  Role role = Role::operator_tool;
+  Incarnation incarnation = 0;
+  LifecycleState state = LifecycleState::joining;
+  ScenarioDigest scenario_digest{};
+  Step last_step = kNoStep;  // last step answered or, for the coordinator, completed
+  FaultFlags faults = FaultFlags::none;
+  Duration clock{};  // [ns] sender's clock at sending; it starts with the process, so this is its age
+  bool operator==(const ParticipantStatus&) const = default;
+};
+
+/// The structure's motion at one step, in interface coordinates.
+struct CommandPoint {
+  Step step = kNoStep;
+  double model_time_s = 0.0;              // [s]
+  InterfaceVector displacement_m;         // [m]
+  InterfaceVector velocity_m_per_s;       // [m/s] integrator's own; predicted on the newest point
+  InterfaceVector acceleration_m_per_s2;  // [m/s2] likewise
+  bool operator==(const CommandPoint&) const = default;
+};
+
+/// Coordinator to one substructure, keyed by its index.
+struct DisplacementCommand {
+  SubstructureIndex substructure = 0;
+  Incarnation coordinator = 0;
+  std::uint8_t point_count = 0;                       // 1 to kCommandPoints
+  std::array<CommandPoint, kCommandPoints> points{};  // newest first; consecutive steps
+  std::uint16_t attempt = 0;                          // 0 when first sent, counts repeats
+  Duration send_time{};                               // [ns] coordinator's clock
+
+  [[nodiscard]] const CommandPoint& newest() const noexcept { return points[0]; }
+  /// Whether there is a point and each has a value per degree of freedom in every quantity.
+  [[nodiscard]] bool fits(Eigen::Index dofs) const noexcept;
+  bool operator==(const DisplacementCommand&) const = default;
+};
+
+inline bool DisplacementCommand::fits(Eigen::Index dofs) const noexcept {
+  if (point_count == 0 || point_count > kCommandPoints) return false;
+  for (int i = 0; i < point_count; ++i) {
+    const CommandPoint& point = points[static_cast<std::size_t>(i)];
+    if (point.displacement_m.size() != dofs || point.velocity_m_per_s.size() != dofs ||
+        point.acceleration_m_per_s2.size() != dofs) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A substructure to the coordinator, keyed by its index.
+struct ForceMeasurement {
+  SubstructureIndex substructure = 0;
+  Incarnation sender = 0;
+  Step step = kNoStep;
+  double model_time_s = 0.0;                // [s] of the step answered
+  InterfaceVector imposed_displacement_m;   // [m] what was asked of the actuators or the model
+  InterfaceVector measured_displacement_m;  // [m]
+  InterfaceVector force_n;                  // [N] restoring force
+  MeasurementFlags flags = MeasurementFlags::none;
+  Duration receive_time{};       // [ns] sender's clock, command received
+  Duration send_time{};          // [ns] sender's clock
+  Duration command_send_time{};  // [ns] echo of the command's send_time, coordinator's clock
+  bool operator==(const ForceMeasurement&) const = default;
+};
+
+enum class ControlVerb : std::uint8_t { arm, start, pause, resume, stop, emergency_stop };
+
+/// Operator tools and the coordinator to all.
+struct TestControl {
+  ControlVerb verb = ControlVerb::stop;
+  Incarnation sender = 0;
+  Role sender_role = Role::operator_tool;
+  StopReason reason = StopReason::none;  // with stop and emergency_stop
+  bool operator==(const TestControl&) const = default;
+};
+
+enum class Severity : std::uint8_t { information, warning, fault };
+
+/// What happened, for people and for the record. The text is made from the code by
+/// describe(), so that a control loop can raise events without formatting.
+struct Event {
+  ParticipantId source;
+  Incarnation incarnation = 0;
+  Severity severity = Severity::information;
+  EventCode code = EventCode::none;
+  Step step = kNoStep;
+  double model_time_s = 0.0;       // [s]
+  ParticipantId subject;           // who or what it is about; may be empty
+  std::array<double, 2> values{};  // meaning and unit by code, see describe()
+  Duration clock{};                // [ns] sender's clock
+  bool operator==(const Event&) const = default;
+};
+
+/// One decimated control-rate sample of a site's first interface degree of freedom.
+struct SignalSample {
+  double model_time_s = 0.0;             // [s]
+  double target_displacement_m = 0.0;    // [m]
+  double command_displacement_m = 0.0;   // [m]
+  double measured_displacement_m = 0.0;  // [m]
+  double force_n = 0.0;                  // [N]
+  bool operator==(const SignalSample&) const = default;
+};
+
+/// Site to live views; best effort, never on the critical path.
+struct SignalBlock {
+  SubstructureIndex substructure = 0;
+  std::uint8_t sample_count = 0;
+  std::array<SignalSample, kMaxSignalSamples> samples{};
+  bool operator==(const SignalBlock&) const = default;
+};
+
+}  // namespace hybridtest

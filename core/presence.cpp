@@ -1,0 +1,131 @@
+#include "core/presence.hpp"
+
+#include <algorithm>
+
+namespace hybridtest {
+namespace {
+
+[[nodiscard]] bool has_left(LifecycleState state) noexcept {
+  return state == LifecycleState::finished || state == LifecycleState::refused || state == LifecycleState::lost;
+}
+
+[[nodiscard]] bool may_still_leave(LifecycleState state) noexcept {
+  return state == LifecycleState::joining || state == LifecycleState::ready;
+}
+
+}  // namespace
+
+Presence::Presence(const Identity& identity, Duration lease, Inbox<ParticipantStatus>& inbox,
+                   Outbox<ParticipantStatus>& outbox, Outbox<Event>& events) noexcept
+    : identity_{identity}, lease_{lease}, inbox_{inbox}, outbox_{outbox}, events_{events} {
+  own_.id = identity.id;
+  own_.role = identity.role;
+  own_.incarnation = identity.incarnation;
+  own_.scenario_digest = identity.scenario_digest;
+}
+
+Instant Presence::advance(Instant now) noexcept {
+  ParticipantStatus status;
+  while (inbox_.take(status)) learn(status, now);
+
+  Instant next_lease = kNever;
+  for (Peer& peer : std::span{peers_}.first(peer_count_)) {
+    if (has_left(peer.status.state)) continue;
+    if (now - peer.last_seen >= lease_) {
+      peer.status.state = LifecycleState::lost;
+    } else {
+      next_lease = std::min(next_lease, peer.last_seen + lease_);
+    }
+  }
+
+  if (status_changed_ || now >= next_heartbeat_) {
+    own_.clock = now.time_since_epoch();
+    outbox_.send(own_);
+    status_changed_ = false;
+    next_heartbeat_ = now + lease_ / 4;
+  }
+  return std::min(next_lease, next_heartbeat_);
+}
+
+void Presence::set_state(LifecycleState state) noexcept {
+  if (state == own_.state || has_left(own_.state)) return;
+  own_.state = state;
+  status_changed_ = true;
+}
+
+void Presence::raise(FaultFlags faults) noexcept {
+  if ((own_.faults | faults) == own_.faults) return;
+  own_.faults |= faults;
+  status_changed_ = true;
+}
+
+const Peer* Presence::find(const ParticipantId& id) const noexcept {
+  const auto known = std::span{peers_}.first(peer_count_);
+  const auto found =
+      std::ranges::find(known, id, [](const Peer& peer) -> const ParticipantId& { return peer.status.id; });
+  return found == known.end() ? nullptr : &*found;
+}
+
+bool Presence::is_alive(Incarnation incarnation) const noexcept {
+  return std::ranges::any_of(std::span{peers_}.first(peer_count_), [incarnation](const Peer& peer) {
+    return peer.status.incarnation == incarnation && !has_left(peer.status.state);
+  });
+}
+
+void Presence::report(Instant now, Severity severity, EventCode code, const ParticipantId& subject,
+                      std::array<double, 2> values, Step step, double model_time_s) noexcept {
+  Event event;
+  event.source = identity_.id;
+  event.incarnation = identity_.incarnation;
+  event.severity = severity;
+  event.code = code;
+  event.step = step;
+  event.model_time_s = model_time_s;
+  event.subject = subject;
+  event.values = values;
+  event.clock = now.time_since_epoch();
+  events_.send(event);
+}
+
+void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
+  if (status.incarnation == identity_.incarnation) return;
+  if (status.id == identity_.id) {
+    judge_duplicate(status, now);
+    return;
+  }
+  const auto known = std::span{peers_}.first(peer_count_);
+  auto place =
+      std::ranges::find(known, status.id, [](const Peer& peer) -> const ParticipantId& { return peer.status.id; });
+  if (place == known.end()) {
+    if (peer_count_ == peers_.size()) return;
+    peers_[peer_count_++] = Peer{status, now};
+    return;
+  }
+  const bool is_other_process = place->status.incarnation != status.incarnation;
+  if (is_other_process) {
+    // The one known stays until it has left: a younger one with its id must not take its place,
+    // and the report that a stranger was lost says nothing of it.
+    if (!has_left(place->status.state) || has_left(status.state)) return;
+  } else if (has_left(place->status.state) && place->status.state != LifecycleState::lost) {
+    return;  // a late or repeated status of one that has said goodbye
+  }
+  // A transport reports a loss with what it remembers; a step once answered stays answered.
+  const Step last_step = is_other_process ? status.last_step : std::max(place->status.last_step, status.last_step);
+  *place = Peer{status, now};
+  place->status.last_step = last_step;
+}
+
+void Presence::judge_duplicate(const ParticipantStatus& other, Instant now) noexcept {
+  if (has_left(other.state)) return;
+  const Duration own_age = now.time_since_epoch();
+  const bool other_is_older =
+      other.clock > own_age || (other.clock == own_age && other.incarnation < identity_.incarnation);
+  // Once armed nobody leaves for a newcomer's sake; only the newcomer can still go.
+  if (may_still_leave(own_.state) && (other_is_older || !may_still_leave(other.state))) is_duplicate_ = true;
+  if (!duplicate_reported_) {
+    duplicate_reported_ = true;
+    report(now, Severity::warning, EventCode::duplicate_id, identity_.id);
+  }
+}
+
+}  // namespace hybridtest

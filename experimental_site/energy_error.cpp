@@ -1,0 +1,39 @@
+#include "experimental_site/energy_error.hpp"
+
+#include <algorithm>
+
+#include "core/config/error.hpp"
+
+namespace hybridtest {
+
+EnergyErrorMonitor::EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double least_displacement_m)
+    : initial_stiffness_n_per_m_{std::move(initial_stiffness_n_per_m)} {
+  const InterfaceVector least = InterfaceVector::Constant(initial_stiffness_n_per_m_.rows(), least_displacement_m);
+  least_strain_energy_j_ = 0.5 * least.cwiseAbs2().dot(initial_stiffness_n_per_m_.diagonal().cwiseAbs());
+  if (!(least_strain_energy_j_ > 0.0)) {
+    throw ConfigError("initial_stiffness_n_per_m: the diagonal must not be all zero; it scales the energy error");
+  }
+  reset();
+}
+
+void EnergyErrorMonitor::reset() noexcept {
+  energy_error_j_ = 0.0;
+  strain_energy_j_ = least_strain_energy_j_;
+  has_sample_ = false;
+}
+
+void EnergyErrorMonitor::sample(const InterfaceVector& target_m, const InterfaceVector& measured_m,
+                                const InterfaceVector& force_n) noexcept {
+  const InterfaceVector error_m = target_m - measured_m;
+  if (has_sample_) energy_error_j_ += 0.5 * (force_n + force_n_).dot(error_m - error_m_);
+  has_sample_ = true;
+  error_m_ = error_m;
+  force_n_ = force_n;
+  double strain_energy_j = 0.0;
+  for (Eigen::Index row = 0; row < target_m.size(); ++row) {
+    strain_energy_j += 0.5 * target_m[row] * initial_stiffness_n_per_m_.row(row).dot(target_m);
+  }
+  strain_energy_j_ = std::max(strain_energy_j_, strain_energy_j);
+}
+
+}  // namespace hybridtest

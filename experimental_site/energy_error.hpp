@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/interface_vector.hpp"
+
+namespace hybridtest {
+
+/// Hybrid simulation error monitor (Mosqueda, Stojadinovic and Mahin, 2007), as a site can
+/// compute it alone: the energy that tracking errors add to the structure,
+///
+///   E = integral of f d(x_target) - integral of f d(x_measured)   [J], trapezoidal,
+///
+/// negative where the structure gets energy that the specimen did not give. Normalised by the
+/// largest strain energy of the initial stiffness under the targets so far, 1/2 x^T K0 x, but
+/// not less than that of `least_displacement_m` at every degree of freedom, so that noise at
+/// rest is no error.
+class EnergyErrorMonitor {
+ public:
+  EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double least_displacement_m);
+
+  void reset() noexcept;
+  void sample(const InterfaceVector& target_m, const InterfaceVector& measured_m,
+              const InterfaceVector& force_n) noexcept;
+
+  [[nodiscard]] double energy_error_j() const noexcept { return energy_error_j_; }
+  [[nodiscard]] double ratio() const noexcept { return energy_error_j_ / strain_energy_j_; }
+
+ private:
+  InterfaceMatrix initial_stiffness_n_per_m_;
+  double least_strain_energy_j_;
+  double strain_energy_j_;
+  double energy_error_j_ = 0.0;
+  bool has_sample_ = false;
+  InterfaceVector error_m_;
+  InterfaceVector force_n_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,3 @@
+#include "launch/participant_process.hpp"
+
+int main(int argc, char** argv) { return hybridtest::participant_main(argc, argv, hybridtest::Role::experimental_site); }

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/interface_vector.hpp"
+
+namespace hybridtest {
+
+/// What the control loop asks of the actuators at one control sample.
+struct ActuatorCommand {
+  std::int64_t sample = 0;         // counts control periods since arming
+  double time_s = 0.0;             // [s] since arming
+  InterfaceVector displacement_m;  // [m] one per actuator
+};
+
+/// What the rig measured at the same sample.
+struct RigFeedback {
+  InterfaceVector displacement_m;  // [m] as the transducers read
+  InterfaceVector force_n;         // [N] as the load cells read
+};
+
+enum class RigStatus : std::uint8_t { healthy, fault };
+
+/// A transfer system with its specimen and sensors, real or simulated.
+///
+/// Life cycle: constructed -> connect() -> arm() -> exchange() once per control period ->
+/// stop_motion(). Nothing moves before arm() and after stop_motion().
+class Rig {
+ public:
+  virtual ~Rig() = default;
+
+  /// May throw; nothing moves.
+  virtual void connect() = 0;
+  /// May throw; motion possible afterwards.
+  virtual void arm() = 0;
+  /// Sends the command and returns the newest measurement; bounded time, no allocation.
+  /// @param feedback   vectors sized one per actuator by the caller.
+  [[nodiscard]] virtual RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept = 0;
+  /// Any thread, any state, idempotent.
+  virtual void stop_motion() noexcept = 0;
+};
+
+}  // namespace hybridtest

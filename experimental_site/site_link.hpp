@@ -1,0 +1,77 @@
+#pragma once
+
+#include "core/membership.hpp"
+#include "core/messages.hpp"
+#include "core/node.hpp"
+#include "core/ports.hpp"
+#include "core/presence.hpp"
+#include "core/records.hpp"
+#include "experimental_site/loop_messages.hpp"
+
+namespace hybridtest {
+
+struct SiteLinkPorts {
+  Inbox<DisplacementCommand>& commands;
+  Outbox<ForceMeasurement>& measurements;
+  Outbox<SignalBlock>& signal_blocks;
+  Outbox<LoopRequest>& requests;
+  Inbox<LoopReport>& reports;
+  Inbox<SignalSample>& signals;
+};
+
+/// The network side of a site, without deadlines: passes targets on to the control loop in
+/// order and each once, and the loop's measurements and faults back to the coordinator.
+class SiteLink final : public Node {
+ public:
+  SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership, SiteLinkPorts ports,
+           RowSink& steps);
+
+  [[nodiscard]] Instant advance(Instant now) noexcept override;
+
+  /// Ends the test safely from this side, as Ctrl-C does; takes effect at the next advance().
+  void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
+
+  [[nodiscard]] bool is_done() const noexcept;
+  [[nodiscard]] StopReason stop_reason() const noexcept { return stop_reason_; }
+
+  [[nodiscard]] static TableLayout steps_layout(int dofs);
+
+ private:
+  void obey(Request request) noexcept;
+  void begin_stop(StopReason reason) noexcept;
+  void ask(LoopRequest::Kind kind) noexcept;
+  void pass_on(const DisplacementCommand& command, Instant now) noexcept;
+  void heed(const LoopReport& report, Instant now) noexcept;
+  void answer(Instant now, MeasurementFlags flags) noexcept;
+  void record_step() noexcept;
+  void batch_signals() noexcept;
+
+  SubstructureIndex index_;
+  int dofs_;
+  Presence& presence_;
+  Membership membership_;
+  SiteLinkPorts ports_;
+  RowSink& steps_;
+  StopReason requested_stop_ = StopReason::none;
+  StopReason stop_reason_ = StopReason::none;
+  bool loop_is_armed_ = false;
+  Step passed_on_ = kNoStep;      // newest target given to the loop
+  Duration command_send_time_{};  // of the newest command, coordinator's clock
+  Duration receive_time_{};
+  StepMeasurement measured_;  // newest answer
+  SignalBlock block_;
+  std::vector<double> row_;
+};
+
+/// Link and loop on one thread, as lockstep and simulation run them.
+class SiteNode final : public Node {
+ public:
+  SiteNode(SiteLink& link, Node& loop) noexcept : link_{link}, loop_{loop} {}
+  [[nodiscard]] Instant advance(Instant now) noexcept override;
+
+ private:
+  SiteLink& link_;
+  Node& loop_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,129 @@
+#include "experimental_site/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hybridtest {
+namespace {
+
+/// Path times closer than this share of a step are the same: the rounding of a sum of sampling
+/// intervals, not a place on the path.
+constexpr double kSameTime = 1e-7;
+
+/// A path that runs at less than this rate counts as held.
+constexpr double kHeldBelow = 0.05;
+
+}  // namespace
+
+Trajectory::Trajectory(int dofs, double step_s, double time_scale) noexcept : step_s_{step_s}, time_scale_{time_scale} {
+  reset(InterfaceVector::Zero(dofs));
+}
+
+void Trajectory::reset(const InterfaceVector& displacement_m) noexcept {
+  const InterfaceVector zero = InterfaceVector::Zero(displacement_m.size());
+  is_running_ = false;
+  has_target_ = false;
+  path_time_s_ = 0.0;
+  rate_ = 1.0;
+  interval_begin_s_ = 0.0;
+  slope_m_per_s_ = zero;
+  segment_begin_s_ = 0.0;
+  begin_displacement_m_ = displacement_m;
+  begin_velocity_m_per_s_ = zero;
+  begin_acceleration_m_per_s2_ = zero;
+  end_velocity_m_per_s_ = zero;
+  end_acceleration_m_per_s2_ = zero;
+  flags_ = MeasurementFlags::none;
+  point_ = {displacement_m, zero, zero, 0.0, false, false};
+}
+
+void Trajectory::set_target(const CommandPoint& target) noexcept {
+  is_first_target_ = !is_running_;
+  if (is_first_target_) {
+    is_running_ = true;
+    path_time_s_ = target.model_time_s * time_scale_;
+    interval_begin_s_ = path_time_s_ - step_s_;
+  }
+  target_ = target;
+  has_target_ = true;
+  end_velocity_m_per_s_ = target.velocity_m_per_s / time_scale_;
+  end_acceleration_m_per_s2_ = target.acceleration_m_per_s2 / (time_scale_ * time_scale_);
+
+  if (!is_first_target_) path_time_s_ = std::min(path_time_s_, interval_begin_s_ + kSlowDownAt * step_s_);
+  segment_begin_s_ = path_time_s_;
+  begin_displacement_m_ = point_.displacement_m;
+  begin_velocity_m_per_s_ = slope_m_per_s_;
+}
+
+bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
+  if (!is_running_) return false;
+  const double before_s = path_time_s_;
+  const double target_time_s = interval_begin_s_ + step_s_;
+  if (!std::exchange(is_first_target_, false)) {
+    choose_rate(interval_s);
+    path_time_s_ += rate_ * interval_s;
+  }
+  if (has_target_ && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_) path_time_s_ = target_time_s;
+  if (!has_target_ || path_time_s_ < target_time_s) {
+    evaluate();
+    return false;
+  }
+  reached.target = target_;
+  reached.fraction = path_time_s_ > before_s ? (target_time_s - before_s) / (path_time_s_ - before_s) : 1.0;
+  reached.flags = std::exchange(flags_, MeasurementFlags::none);
+  leave_target();
+  evaluate();
+  return true;
+}
+
+void Trajectory::choose_rate(double interval_s) noexcept {
+  if (has_target_) {
+    rate_ = std::min(1.0, rate_ + kRateRecovery * interval_s / step_s_);
+    return;
+  }
+  flags_ |= MeasurementFlags::extrapolated;
+  const double share = (path_time_s_ - interval_begin_s_) / step_s_;
+  if (share <= kSlowDownAt) return;
+  rate_ = std::min(rate_, std::max(0.0, (1.0 - share) / (1.0 - kSlowDownAt)));
+  flags_ |= MeasurementFlags::late;
+  if (rate_ < kHeldBelow) flags_ |= MeasurementFlags::held;
+}
+
+void Trajectory::leave_target() noexcept {
+  has_target_ = false;
+  interval_begin_s_ += step_s_;
+  segment_begin_s_ = interval_begin_s_;
+  begin_displacement_m_ = target_.displacement_m;
+  begin_velocity_m_per_s_ = end_velocity_m_per_s_;
+  begin_acceleration_m_per_s2_ = end_acceleration_m_per_s2_;
+}
+
+void Trajectory::evaluate() noexcept {
+  const double since_s = path_time_s_ - segment_begin_s_;
+  if (has_target_) {
+    // Cubic Hermite between the place reached and the target.
+    const double length_s = interval_begin_s_ + step_s_ - segment_begin_s_;
+    const double x = since_s / length_s;
+    const double at_target = x * x * (3.0 - 2.0 * x);
+    const double at_begin_slope = x * (1.0 - x) * (1.0 - x) * length_s;
+    const double at_end_slope = x * x * (x - 1.0) * length_s;
+    point_.displacement_m = (1.0 - at_target) * begin_displacement_m_ + at_target * target_.displacement_m +
+                            at_begin_slope * begin_velocity_m_per_s_ + at_end_slope * end_velocity_m_per_s_;
+    slope_m_per_s_ = (6.0 * x * (1.0 - x) / length_s) * (target_.displacement_m - begin_displacement_m_) +
+                     (1.0 - x) * (1.0 - 3.0 * x) * begin_velocity_m_per_s_ +
+                     x * (3.0 * x - 2.0) * end_velocity_m_per_s_;
+    point_.acceleration_m_per_s2 = (1.0 - x) * begin_acceleration_m_per_s2_ + x * end_acceleration_m_per_s2_;
+  } else {
+    point_.displacement_m = begin_displacement_m_ + since_s * begin_velocity_m_per_s_ +
+                            (0.5 * since_s * since_s) * begin_acceleration_m_per_s2_;
+    slope_m_per_s_ = begin_velocity_m_per_s_ + since_s * begin_acceleration_m_per_s2_;
+    point_.acceleration_m_per_s2 = begin_acceleration_m_per_s2_;
+  }
+  point_.velocity_m_per_s = rate_ * slope_m_per_s_;
+  point_.path_time_s = path_time_s_;
+  point_.is_extrapolated = !has_target_;
+  point_.is_held = any(flags_ & MeasurementFlags::held);
+}
+
+}  // namespace hybridtest

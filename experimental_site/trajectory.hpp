@@ -1,0 +1,94 @@
+#pragma once
+
+#include "core/interface_vector.hpp"
+#include "core/messages.hpp"
+
+namespace hybridtest {
+
+/// Where the actuators should be at one control sample.
+struct TrajectoryPoint {
+  InterfaceVector displacement_m;         // [m]
+  InterfaceVector velocity_m_per_s;       // [m/s] in site time
+  InterfaceVector acceleration_m_per_s2;  // [m/s2] in site time
+  double path_time_s = 0.0;               // [s] site time along the path
+  bool is_extrapolated = false;           // the next target is not known
+  bool is_held = false;                   // waiting for it, all but at rest
+};
+
+/// A target passed by the last sample, for the measurement that belongs to it.
+struct ReachedTarget {
+  CommandPoint target;
+  /// Share of the last sampling interval at which the target was passed, in (0, 1]; 1 when the
+  /// sample falls on it.
+  double fraction = 1.0;
+  MeasurementFlags flags = MeasurementFlags::none;
+};
+
+/// Event-driven predictor-corrector between coupling steps (Mosqueda, Stojadinovic and Mahin,
+/// 2005): interpolates to the next target once it is known, extrapolates while it is not,
+/// slows down when it is late and waits short of the step's end as the last resort.
+///
+/// The path is a function of path time. It is continued by a cubic through the place and
+/// velocity reached and those of the target at its time, and predicted with constant
+/// acceleration while the target is unknown. Path time runs with site time; from
+/// `kSlowDownAt` of a step without its target it runs ever more slowly and tends to the
+/// step's end. When a late target comes, path time is set back to there, so that it is reached
+/// over the same share of a step, and picks up at a bounded rate. So position and velocity are
+/// continuous whenever targets arrive.
+///
+/// Site time is model time times the time scale. Real-time safe.
+class Trajectory {
+ public:
+  static constexpr double kSlowDownAt = 0.6;    // share of the step
+  static constexpr double kRateRecovery = 2.0;  // path rate regained per step length
+
+  /// @param dofs        interface degrees of freedom.
+  /// @param step_s      coupling step in site time [s].
+  /// @param time_scale  site time over model time.
+  Trajectory(int dofs, double step_s, double time_scale) noexcept;
+
+  /// At rest at `displacement_m`, before step 0.
+  void reset(const InterfaceVector& displacement_m) noexcept;
+
+  /// The next target; steps in order, one at a time. The first one starts path time and is
+  /// taken to be where the path already stands.
+  void set_target(const CommandPoint& target) noexcept;
+
+  /// Moves on by `interval_s` of site time.
+  /// @param reached   filled when the result is true.
+  /// @return whether the target was passed; the interval is short enough that it is one at most.
+  [[nodiscard]] bool advance(double interval_s, ReachedTarget& reached) noexcept;
+
+  [[nodiscard]] const TrajectoryPoint& point() const noexcept { return point_; }
+  /// A target is known and not yet reached.
+  [[nodiscard]] bool has_target() const noexcept { return has_target_; }
+  /// Step 0 has been given; path time runs.
+  [[nodiscard]] bool is_running() const noexcept { return is_running_; }
+
+ private:
+  void choose_rate(double interval_s) noexcept;
+  void leave_target() noexcept;
+  void evaluate() noexcept;
+
+  double step_s_;
+  double time_scale_;
+  bool is_running_ = false;
+  bool has_target_ = false;
+  bool is_first_target_ = false;
+  CommandPoint target_;
+  double path_time_s_ = 0.0;
+  double rate_ = 0.0;
+  double interval_begin_s_ = 0.0;  // path time of the last target reached
+  InterfaceVector slope_m_per_s_;  // of the path in path time
+  // Start of the current piece of path; its end is the target, if there is one.
+  double segment_begin_s_ = 0.0;
+  InterfaceVector begin_displacement_m_;
+  InterfaceVector begin_velocity_m_per_s_;
+  InterfaceVector begin_acceleration_m_per_s2_;
+  InterfaceVector end_velocity_m_per_s_;
+  InterfaceVector end_acceleration_m_per_s2_;
+  MeasurementFlags flags_ = MeasurementFlags::none;
+  TrajectoryPoint point_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,43 @@
+#include "experimental_site/transfer_systems/delay_line.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "core/config/error.hpp"
+#include "mechanics/checked_parameter.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr std::int64_t kMaxIntervals = 100'000;
+
+}  // namespace
+
+DelayLine::DelayLine(Duration delay, Duration control_period) {
+  const config::Range up_to_limit{.low = 0.0, .high = static_cast<double>(kMaxIntervals) * to_seconds(control_period)};
+  static_cast<void>(checked("control_period_s", to_seconds(control_period), config::kPositive));
+  static_cast<void>(checked("delay_s", to_seconds(delay), up_to_limit));
+  whole_intervals_ = static_cast<std::size_t>(delay / control_period);
+  fraction_ = to_seconds(delay % control_period) / to_seconds(control_period);
+  samples_.assign(whole_intervals_ + 2, 0.0);
+}
+
+void DelayLine::push(double value) noexcept {
+  newest_ = newest_ + 1 == samples_.size() ? 0 : newest_ + 1;
+  samples_[newest_] = value;
+}
+
+void DelayLine::reset() noexcept { std::fill(samples_.begin(), samples_.end(), 0.0); }
+
+double DelayLine::delayed() const noexcept {
+  return (1.0 - fraction_) * ago(whole_intervals_) + fraction_ * ago(whole_intervals_ + 1);
+}
+
+double DelayLine::corner() const noexcept { return ago(whole_intervals_ + 1); }
+
+double DelayLine::ago(std::size_t intervals) const noexcept {
+  return samples_[newest_ >= intervals ? newest_ - intervals : newest_ + samples_.size() - intervals];
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace hybridtest {
+
+/// From the command displacement of one actuator to the displacement it imposes.
+///
+/// Stepped once per control sample; between samples the command is taken as a straight line,
+/// so that every transfer system tends to `ideal` as it gets faster.
+class TransferSystem {
+ public:
+  virtual ~TransferSystem() = default;
+
+  /// Actuator displacement [m] at this sample, the command displacement [m] at this sample given.
+  [[nodiscard]] virtual double step(double command_m) noexcept = 0;
+  /// At rest at zero displacement.
+  virtual void reset() noexcept = 0;
+};
+
+}  // namespace hybridtest

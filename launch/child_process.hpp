@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hybridtest {
+
+/// A participant started on this machine. Its output goes to a log file; a Ctrl-C at the
+/// terminal does not reach it; when its parent dies it is asked to stop safely.
+class ChildProcess {
+ public:
+  /// @throws std::runtime_error when it cannot be started.
+  ChildProcess(std::string id, const std::filesystem::path& program, const std::vector<std::string>& arguments,
+               const std::filesystem::path& log_file);
+
+  [[nodiscard]] const std::string& id() const noexcept { return id_; }
+  [[nodiscard]] const std::filesystem::path& log_file() const noexcept { return log_file_; }
+  /// Whether it is still there; learns its exit code when it is not.
+  [[nodiscard]] bool is_running() noexcept;
+  /// Exit code, 128 + signal when a signal ended it; nothing while it runs.
+  [[nodiscard]] std::optional<int> exit_code() const noexcept { return exit_code_; }
+  void send_signal(int signal) noexcept;
+
+ private:
+  std::string id_;
+  std::filesystem::path log_file_;
+  int process_ = -1;
+  std::optional<int> exit_code_;
+};
+
+}  // namespace hybridtest

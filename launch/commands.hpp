@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// The subcommands of `hybridtest`, one source each. Each adds itself to the command line and
+/// says what to run when it is chosen; what runs returns the exit code.
+namespace hybridtest {
+
+using CommandAction = std::function<int()>;
+
+void add_check_command(CLI::App& app, CommandAction& action);
+void add_run_command(CLI::App& app, CommandAction& action);
+void add_simulate_command(CLI::App& app, CommandAction& action);
+void add_control_commands(CLI::App& app, CommandAction& action);
+void add_export_command(CLI::App& app, CommandAction& action);
+void add_summary_command(CLI::App& app, CommandAction& action);
+
+}  // namespace hybridtest

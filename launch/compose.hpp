@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compensation/compensator.hpp"
+#include "coordinator/integrator.hpp"
+#include "coordinator/linear_structure.hpp"
+#include "core/config/section.hpp"
+#include "core/time.hpp"
+#include "experimental_site/rigs/rig.hpp"
+#include "experimental_site/transfer_systems/transfer_system.hpp"
+#include "mechanics/law.hpp"
+#include "numerical_substructure/substructure_model.hpp"
+
+/// The explicit tables of what a scenario can name: integrators, laws, models, transfer systems,
+/// specimens, compensators, rigs. Each reader checks the parameters of its section, reports what
+/// is wrong there, and returns a maker; makers are called only when nothing was wrong.
+namespace hybridtest {
+
+template <class Part>
+using Maker = std::function<std::unique_ptr<Part>()>;
+
+[[nodiscard]] Maker<Law> read_law(config::Section section);
+
+/// The model of a numerical substructure with `dofs` interface degrees of freedom.
+[[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, int dofs,
+                                                  const std::filesystem::path& directory);
+
+/// What the preflight needs to know of a rig or compensator besides how to make it.
+struct RigReading {
+  std::string type;
+  std::function<std::unique_ptr<Rig>(double control_period_s)> make;
+  double transfer_delay_s = 0.0;  // at low frequency, of a simulated rig's slowest actuator
+};
+[[nodiscard]] RigReading read_rig(config::Section section, int dofs);
+
+struct CompensatorReading {
+  std::function<std::unique_ptr<Compensator>(double control_period_s)> make;
+  double delay_s = 0.0;  // that it makes up for
+};
+[[nodiscard]] CompensatorReading read_compensator(config::Section section);
+
+/// @return the type's name, for make_integrator().
+[[nodiscard]] std::string read_integrator_type(config::Section section);
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view type, const LinearStructure& structure,
+                                                          double step_s);
+
+}  // namespace hybridtest

@@ -1,0 +1,42 @@
+#include "launch/executor.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <ctime>
+
+namespace hybridtest {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+std::atomic<Waker*> waker_to_signal{nullptr};
+
+extern "C" void request_stop(int) {
+  stop_requested.store(true);
+  if (Waker* waker = waker_to_signal.load()) waker->signal();
+}
+
+}  // namespace
+
+void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::function<bool()>& is_done,
+               const std::function<void(Instant)>& between) {
+  while (true) {
+    const Instant now = clock.now();
+    const Instant wake = node.advance(now);
+    between(now);
+    if (is_done()) return;
+    if (wake > now) static_cast<void>(waker.wait_until(clock.deadline(wake)));
+  }
+}
+
+void stop_on_signals(Waker& waker) {
+  waker_to_signal.store(&waker);
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool stop_was_requested() noexcept { return stop_requested.load(); }
+
+}  // namespace hybridtest

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "transport/fast_dds/fast_dds_settings.hpp"
+
+namespace hybridtest {
+
+/// The command line's say on how participants find each other: deployment, not part of the test.
+class NetworkOptions {
+ public:
+  void add_to(CLI::App& app);
+  [[nodiscard]] fast_dds::FastDdsSettings settings() const;
+  /// The same as arguments for a child process.
+  [[nodiscard]] std::vector<std::string> arguments() const;
+
+  void set_loopback_only(bool loopback_only) { loopback_only_ = loopback_only; }
+
+ private:
+  unsigned domain_ = 0;
+  bool loopback_only_ = false;
+  std::vector<std::string> peers_;
+  std::string discovery_server_;
+  std::filesystem::path profile_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <atomic>
+#include <fstream>
+#include <map>
+
+#include "core/config/error.hpp"
+#include "core/event_text.hpp"
+#include "launch/commands.hpp"
+#include "launch/executor.hpp"
+#include "launch/finish_run.hpp"
+#include "launch/incarnation.hpp"
+#include "launch/participant.hpp"
+#include "launch/progress.hpp"
+#include "launch/run_directory.hpp"
+#include "launch/simulation.hpp"
+#include "recording/recorder.hpp"
+
+namespace hybridtest {
+namespace {
+
+struct SimulateOptions {
+  std::filesystem::path scenario_file;
+  std::vector<std::string> overrides;
+  std::filesystem::path directory;
+  std::uint64_t seed = 0;
+  double latency_us = 50.0;
+  double jitter_us = 0.0;
+  double loss = 0.0;
+  double duplication = 0.0;
+  double reordering = 0.0;
+  std::vector<std::string> outages;
+  std::vector<std::string> kills;
+};
+
+/// `id:number` or `id:number:number`, numbers in seconds of simulated time.
+std::pair<std::string, std::vector<Duration>> id_and_times(const std::string& text, std::size_t times,
+                                                           const Scenario& scenario, const std::string& option) {
+  std::vector<std::string> parts = CLI::detail::split(text, ':');
+  const auto fail = [&](const std::string& what) { throw ConfigError{option + " " + text + ": " + what}; };
+  if (parts.size() != times + 1)
+    fail("expected ID followed by " + std::to_string(times) + " times in s, joined by ':'");
+  if (parts[0] != kCoordinatorId && scenario.find(parts[0]) == nullptr) fail("no participant '" + parts[0] + "'");
+  std::vector<Duration> durations;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    double seconds = 0.0;
+    if (!CLI::detail::lexical_cast(parts[i], seconds) || !(seconds >= 0.0) || seconds > 1e9) {
+      fail("'" + parts[i] + "' is no time in s");
+    }
+    durations.push_back(from_seconds(seconds));
+  }
+  return {parts[0], durations};
+}
+
+SimulationSettings settings_from(const SimulateOptions& options, const Scenario& scenario) {
+  SimulationSettings settings;
+  settings.seed = options.seed;
+  settings.network.latency = from_seconds(options.latency_us * 1e-6);
+  settings.network.jitter = from_seconds(options.jitter_us * 1e-6);
+  settings.network.loss = options.loss;
+  settings.network.duplication = options.duplication;
+  settings.network.reordering = options.reordering;
+  for (const std::string& text : options.outages) {
+    const auto [id, times] = id_and_times(text, 2, scenario, "--outage");
+    settings.network.outages.push_back({id, times[0], times[1]});
+  }
+  for (const std::string& text : options.kills) {
+    const auto [id, times] = id_and_times(text, 1, scenario, "--kill");
+    settings.kills.push_back({id, times[0]});
+  }
+  return settings;
+}
+
+/// The recorders of all participants, made when their first table is asked for.
+class SimulatedRecording {
+ public:
+  SimulatedRecording(const Scenario& scenario, const std::filesystem::path& directory, std::uint64_t seed)
+      : scenario_{scenario}, directory_{directory}, seed_{seed} {
+    make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario));
+    for (const SubstructureScenario& substructure : scenario.substructures) {
+      make(substructure.id, substructure.role, substructure_tables(substructure));
+    }
+  }
+
+  [[nodiscard]] RowSink& sink(const std::string& participant, std::string_view table) {
+    return recorders_.at(participant)->sink(table);
+  }
+  void keep(const Event& event) { recorders_.at(event.source.text())->events().send(event); }
+  void drain() {
+    for (auto& [id, recorder] : recorders_) {
+      if (recorder->should_drain()) recorder->drain();
+    }
+  }
+  void close(const SimulationResult& result) {
+    recorders_.at(std::string{kCoordinatorId})
+        ->sink("test")
+        .append(test_row(scenario_, result.coordinator, exit_code_for(result.coordinator.reason)));
+    for (auto& [id, recorder] : recorders_) recorder->close();
+  }
+
+ private:
+  /// More than the rows of a step that can come between two calls of drain().
+  static constexpr std::size_t kRingRows = 1U << 16U;
+
+  void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
+    if (role == Role::coordinator) tables.push_back(test_layout());
+    std::vector<RecordedTable> recorded;
+    for (const TableLayout& table : tables) recorded.push_back({table, kRingRows});
+    recorders_[id] =
+        std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, seed_), recorded);
+  }
+
+  const Scenario& scenario_;
+  std::filesystem::path directory_;
+  std::uint64_t seed_;
+  std::map<std::string, std::unique_ptr<Recorder>> recorders_;
+};
+
+void write_event(std::FILE* log, const Event& event) {
+  fmt::print(log, "{:.6f} {} {}: {}\n", to_seconds(event.clock),
+             event.severity == Severity::fault     ? "error"
+             : event.severity == Severity::warning ? "warning"
+                                                   : "info",
+             event.source.view(), describe(event));
+}
+
+int simulate_scenario(SimulateOptions options) {
+  const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
+  const SimulationSettings settings = settings_from(options, scenario);
+  if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
+  require_new_run(options.directory, kCoordinatorId);
+  prepare_run_directory(options.directory, scenario);
+  fmt::print(stderr, "{}: {} steps of {} s under simulated time, seed {}, records go to {}\n", scenario.name,
+             scenario.time.last_step, scenario.time.step_s, options.seed, options.directory.string());
+
+  SimulatedRecording recording{scenario, options.directory, options.seed};
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log{std::fopen((options.directory / "events.log").c_str(), "w"),
+                                                            std::fclose};
+  if (!log) throw ConfigError{"--out " + options.directory.string() + ": cannot write events.log"};
+  Waker waker;
+  stop_on_signals(waker);
+  const ProcessClock clock;
+  SimulationResult result;
+  {
+    Progress progress{scenario, stderr};
+    SimulationObserver observer;
+    observer.sink = [&](const std::string& participant, const TableLayout& table) -> RowSink& {
+      return recording.sink(participant, table.name);
+    };
+    observer.event = [&](const Event& event) {
+      recording.keep(event);
+      write_event(log.get(), event);
+      progress.print(event);
+    };
+    observer.progress = [&](const CoordinatorReport& report) {
+      recording.drain();
+      progress.set_completed(report.completed_steps - 1, clock.now());
+      progress.show(clock.now());
+      return stop_was_requested();
+    };
+    result = simulate(scenario, settings, observer);
+    result.coordinator.running_time = clock.now().time_since_epoch();
+  }
+  recording.close(result);
+  return finish_run(options.directory, exit_code_for(result.coordinator.reason));
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, CommandAction& action) {
+  auto options = std::make_shared<SimulateOptions>();
+  const CLI::Range probability{0.0, 0.9};
+  CLI::App* command =
+      app.add_subcommand("simulate", "Run a test in one process under simulated time and a simulated network");
+  command->add_option("FILE", options->scenario_file, "Scenario")->required();
+  command->add_option("--seed", options->seed, "Draws the network and the clocks; the same seed gives the same bytes")
+      ->required();
+  command->add_option("--out", options->directory, "Run directory")->default_str("runs/<name>_simulated_<time>");
+  command->add_option("--set", options->overrides, "Override one value, key.path=value; repeatable");
+  command->add_option("--latency-us", options->latency_us, "Time of every message on its way")
+      ->check(CLI::Range(0.0, 1e7))
+      ->capture_default_str();
+  command->add_option("--jitter-us", options->jitter_us, "Added to it, uniformly distributed up to")
+      ->check(CLI::Range(0.0, 1e7))
+      ->capture_default_str();
+  command->add_option("--loss", options->loss, "Share of messages lost")->check(probability)->capture_default_str();
+  command->add_option("--duplication", options->duplication, "Share of messages that come twice")
+      ->check(probability)
+      ->capture_default_str();
+  command->add_option("--reordering", options->reordering, "Share of messages that later ones overtake")
+      ->check(probability)
+      ->capture_default_str();
+  command->add_option("--outage", options->outages,
+                      "ID:BEGIN:END, nothing from or to this participant arrives, in s; repeatable");
+  command->add_option("--kill", options->kills, "ID:AT, this participant dies, in s; repeatable");
+  command->callback([options, &action] { action = [options] { return simulate_scenario(*options); }; });
+}
+
+}  // namespace hybridtest

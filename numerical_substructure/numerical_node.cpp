@@ -1,0 +1,118 @@
+#include "numerical_substructure/numerical_node.hpp"
+
+#include <utility>
+
+namespace hybridtest {
+
+NumericalNode::NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
+                             MembershipPorts membership, Inbox<DisplacementCommand>& commands,
+                             Outbox<ForceMeasurement>& measurements, RowSink& steps)
+    : index_{index},
+      model_{std::move(model)},
+      presence_{presence},
+      membership_{presence, membership},
+      commands_{commands},
+      measurements_{measurements},
+      steps_{steps},
+      force_n_{InterfaceVector::Zero(model_->interface_dofs())},
+      row_(2 + 2 * static_cast<std::size_t>(model_->interface_dofs())) {}
+
+Instant NumericalNode::advance(Instant now) noexcept {
+  const Instant wake = presence_.advance(now);
+  if (std::exchange(requested_stop_, StopReason::none) != StopReason::none) {
+    presence_.set_state(LifecycleState::stopping);
+    presence_.set_state(LifecycleState::finished);
+  }
+  for (Request request = membership_.next_request(now); request != Request::none;
+       request = membership_.next_request(now)) {
+    obey(request);
+    if (is_done()) break;
+  }
+  DisplacementCommand command;
+  while (commands_.take(command)) serve(command, now);
+  if (!is_done()) return wake;
+  static_cast<void>(presence_.advance(now));  // the last word goes out
+  return kNever;
+}
+
+bool NumericalNode::is_done() const noexcept {
+  return presence_.state() == LifecycleState::finished || presence_.state() == LifecycleState::refused;
+}
+
+void NumericalNode::obey(Request request) noexcept {
+  switch (request) {
+    case Request::arm:
+      model_->reset();
+      presence_.set_state(LifecycleState::armed);
+      break;
+    case Request::start: presence_.set_state(LifecycleState::running); break;
+    case Request::stop:
+    case Request::emergency_stop: presence_.set_state(LifecycleState::finished); break;
+    case Request::pause:
+    case Request::resume:
+    case Request::none: break;  // a model that is not asked stands still by itself
+  }
+}
+
+void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexcept {
+  if (command.coordinator != membership_.coordinator()) return;
+  // A command can overtake the start message; it says the same.
+  if (presence_.state() == LifecycleState::armed) presence_.set_state(LifecycleState::running);
+  if (presence_.state() != LifecycleState::running) return;
+  if (!command.fits(force_n_.size())) return;
+
+  const Step newest = command.newest().step;
+  if (newest < last_point_.step) return;
+  if (newest == last_point_.step) {
+    answer(command, now, MeasurementFlags::repeated);
+    return;
+  }
+  for (int i = command.point_count - 1; i >= 0; --i) {
+    const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
+    if (point.step == last_point_.step + 1) take_step(point);
+  }
+  if (last_point_.step == newest) answer(command, now, MeasurementFlags::none);
+}
+
+void NumericalNode::take_step(const CommandPoint& point) noexcept {
+  model_->trial(point.displacement_m, point.velocity_m_per_s, force_n_);
+  model_->commit();
+  last_point_ = point;
+  presence_.set_last_step(point.step);
+
+  std::size_t next = 0;
+  row_[next++] = static_cast<double>(point.step);
+  row_[next++] = point.model_time_s;
+  for (Eigen::Index k = 0; k < force_n_.size(); ++k) {
+    row_[next++] = point.displacement_m[k];
+    row_[next++] = force_n_[k];
+  }
+  steps_.append(row_);
+}
+
+void NumericalNode::answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept {
+  ForceMeasurement measurement;
+  measurement.substructure = index_;
+  measurement.sender = presence_.identity().incarnation;
+  measurement.step = last_point_.step;
+  measurement.model_time_s = last_point_.model_time_s;
+  measurement.imposed_displacement_m = last_point_.displacement_m;
+  measurement.measured_displacement_m = last_point_.displacement_m;
+  measurement.force_n = force_n_;
+  measurement.flags = flags;
+  measurement.receive_time = now.time_since_epoch();
+  measurement.send_time = now.time_since_epoch();
+  measurement.command_send_time = command.send_time;
+  measurements_.send(measurement);
+}
+
+TableLayout NumericalNode::steps_layout(const std::vector<std::string>& dofs) {
+  TableLayout layout{"steps", {{"step", ""}, {"model_time_s", "s"}}};
+  for (const std::string& dof : dofs) {
+    layout.columns.push_back({"displacement_" + dof + "_m", "m"});
+    layout.columns.push_back({"force_" + dof + "_n", "N"});
+  }
+  return layout;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/membership.hpp"
+#include "core/messages.hpp"
+#include "core/node.hpp"
+#include "core/ports.hpp"
+#include "core/presence.hpp"
+#include "core/records.hpp"
+#include "numerical_substructure/substructure_model.hpp"
+
+namespace hybridtest {
+
+/// Serves the restoring force of a structural model: one command in, one force out. Each step
+/// changes the model once, however often its command arrives.
+class NumericalNode final : public Node {
+ public:
+  /// @param index   position of this substructure in the scenario.
+  NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
+                MembershipPorts membership, Inbox<DisplacementCommand>& commands,
+                Outbox<ForceMeasurement>& measurements, RowSink& steps);
+
+  [[nodiscard]] Instant advance(Instant now) noexcept override;
+
+  /// Leaves the test, as Ctrl-C does; takes effect at the next advance().
+  void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
+
+  [[nodiscard]] bool is_done() const noexcept;
+  [[nodiscard]] StopReason stop_reason() const noexcept { return membership_.stop_reason(); }
+
+  /// @param dofs   names of the interface degrees of freedom.
+  [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);
+
+ private:
+  void obey(Request request) noexcept;
+  void serve(const DisplacementCommand& command, Instant now) noexcept;
+  void take_step(const CommandPoint& point) noexcept;
+  void answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept;
+
+  SubstructureIndex index_;
+  std::unique_ptr<SubstructureModel> model_;
+  Presence& presence_;
+  Membership membership_;
+  Inbox<DisplacementCommand>& commands_;
+  Outbox<ForceMeasurement>& measurements_;
+  RowSink& steps_;
+  StopReason requested_stop_ = StopReason::none;
+  CommandPoint last_point_;
+  InterfaceVector force_n_;
+  std::vector<double> row_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,39 @@
+#include "recording/hdf5/handle.hpp"
+
+#include "recording/error.hpp"
+
+namespace hybridtest::hdf5 {
+namespace {
+
+herr_t keep_first(unsigned, const H5E_error2_t* entry, void* context) {
+  auto& text = *static_cast<std::string*>(context);
+  if (text.empty() && entry->desc != nullptr) text = entry->desc;
+  return 0;
+}
+
+}  // namespace
+
+std::unique_lock<std::recursive_mutex> lock_library() {
+  static std::recursive_mutex mutex;
+  std::unique_lock lock{mutex};
+  static const bool quiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  (void)quiet;
+  return lock;
+}
+
+std::string last_error() {
+  std::string text;
+  (void)H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  return text.empty() ? "no reason given" : text;
+}
+
+hid_t checked(hid_t result, const std::string& what) {
+  if (result < 0) throw RecordingError{what + ": " + last_error()};
+  return result;
+}
+
+void check(herr_t result, const std::string& what) {
+  if (result < 0) throw RecordingError{what + ": " + last_error()};
+}
+
+}  // namespace hybridtest::hdf5

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/messages.hpp"
+
+/// What a run file holds besides its tables; shared by the writer and the reader.
+namespace hybridtest {
+
+/// The attribute `schema` of every run file.
+inline constexpr std::string_view kRunFileSchema = "hybridtest/run/1";
+inline constexpr std::string_view kRunFileExtension = ".h5";
+
+/// Who wrote the file, and of which test: the attributes of a run file.
+struct RunFileHeader {
+  std::string participant;  // `coordinator` or the substructure's id
+  Role role = Role::operator_tool;
+  std::string test_name;
+  ScenarioDigest scenario_digest{};
+  Incarnation incarnation = 0;
+  std::string start_time_utc;  // ISO 8601, handed in: nothing here reads a clock
+  std::string software_version;
+  std::vector<std::string> substructure_ids;  // in the scenario's order: index of `exchanges.substructure`
+  std::vector<std::string> structure_dofs;    // of the whole structure
+  std::vector<std::string> interface_dofs;    // of this substructure; empty for the coordinator
+  bool operator==(const RunFileHeader&) const = default;
+};
+
+/// One row of `/counters`.
+struct TableCounter {
+  std::string table;
+  std::uint64_t rows = 0;          // safely in the file at the last flush
+  std::uint64_t dropped_rows = 0;  // could not be kept; anything but 0 makes the data invalid
+  bool operator==(const TableCounter&) const = default;
+};
+
+/// `/counters` and `/state`.
+struct RunFileCounters {
+  std::vector<TableCounter> tables;  // one per table, then `events`
+  std::uint64_t flushes = 0;
+  bool closed_cleanly = false;  // false while being written and for ever after a kill
+  bool write_failed = false;    // disk full or file error
+
+  [[nodiscard]] std::uint64_t dropped_rows() const noexcept {
+    std::uint64_t sum = 0;
+    for (const TableCounter& counter : tables) sum += counter.dropped_rows;
+    return sum;
+  }
+};
+
+/// An event as recorded, with the sentence that was made of it.
+struct RecordedEvent {
+  Event event;
+  std::string text;
+};
+
+[[nodiscard]] std::string_view name(Role role) noexcept;
+/// @return operator_tool for a name that is not known.
+[[nodiscard]] Role role_from_name(std::string_view text) noexcept;
+/// 64 hexadecimal digits.
+[[nodiscard]] std::string hex(const ScenarioDigest& digest);
+/// @return all zero for a text that is not 64 hexadecimal digits.
+[[nodiscard]] ScenarioDigest digest_from_hex(std::string_view text) noexcept;
+
+}  // namespace hybridtest

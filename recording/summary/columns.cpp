@@ -1,0 +1,43 @@
+#include "recording/summary/columns.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstddef>
+
+namespace hybridtest {
+namespace {
+
+bool is_number(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+std::string dof_name(const RunFileHeader& header, std::string_view suffix) {
+  if (!suffix.empty() && !is_number(suffix.substr(1))) return std::string{suffix.substr(1)};
+  std::size_t position = 1;
+  if (!suffix.empty()) (void)std::from_chars(suffix.data() + 1, suffix.data() + suffix.size(), position);
+  if (position >= 1 && position <= header.interface_dofs.size()) return header.interface_dofs[position - 1];
+  return "dof_" + std::to_string(position);
+}
+
+}  // namespace
+
+std::vector<DofColumn> dof_columns(const RunFileReader& file, std::string_view table, std::string_view quantity,
+                                   std::string_view unit) {
+  std::vector<DofColumn> found;
+  const std::string ending = "_" + std::string{unit};
+  for (const TableLayout& layout : file.tables()) {
+    if (layout.name != table) continue;
+    for (const Column& column : layout.columns) {
+      const std::string_view name = column.name;
+      if (!name.starts_with(quantity) || !name.ends_with(ending)) continue;
+      if (name.size() < quantity.size() + ending.size()) continue;
+      const std::string_view suffix = name.substr(quantity.size(), name.size() - quantity.size() - ending.size());
+      if (!suffix.empty() && (suffix.front() != '_' || suffix.size() < 2)) continue;
+      found.push_back({dof_name(file.header(), suffix), std::string{suffix}, column.name});
+    }
+  }
+  return found;
+}
+
+}  // namespace hybridtest

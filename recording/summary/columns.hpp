@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/run_file_reader.hpp"
+
+namespace hybridtest {
+
+/// A column of a quantity that occurs once per degree of freedom.
+struct DofColumn {
+  std::string dof;     // its name; `dof_1` … where the file does not tell
+  std::string suffix;  // as it stands in the column's name: "", "_2", "_floor_1"
+  std::string name;    // the column's name
+};
+
+/// Columns `<quantity>_<unit>` and `<quantity>_<suffix>_<unit>` of a table, in order. A suffix that is
+/// a number, or missing, is the position of a degree of freedom in the header's `interface_dofs`.
+[[nodiscard]] std::vector<DofColumn> dof_columns(const RunFileReader& file, std::string_view table,
+                                                 std::string_view quantity, std::string_view unit);
+
+}  // namespace hybridtest

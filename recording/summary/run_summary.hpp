@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/exit_code.hpp"
+#include "core/faults.hpp"
+#include "core/messages.hpp"
+#include "recording/summary/percentiles.hpp"
+#include "recording/summary/tracking_error.hpp"
+
+namespace hybridtest {
+
+/// The largest magnitude a signal reached, with its sign.
+struct Peak {
+  std::string dof;
+  double value = 0.0;         // [m] or [N]
+  double model_time_s = 0.0;  // [s] when
+};
+
+/// Exchanges of the coordinator with one substructure.
+struct ExchangeSummary {
+  std::optional<Percentiles> round_trip_us;
+  std::optional<Percentiles> turnaround_us;  // the substructure's own share
+  std::uint64_t answered = 0;
+  std::uint64_t resent = 0;   // commands sent again
+  std::uint64_t bridged = 0;  // steps that went on without an answer
+  std::uint64_t lost = 0;     // the last command, when it never was answered
+  // Answers with the measurement flag of that name.
+  std::uint64_t extrapolated = 0;
+  std::uint64_t held = 0;
+  std::uint64_t saturated = 0;
+  std::uint64_t late = 0;
+  std::uint64_t repeated = 0;
+};
+
+struct EnergyError {
+  double peak_j = 0.0;  // largest magnitude, with its sign
+  double final_j = 0.0;
+};
+
+struct SubstructureSummary {
+  std::string id;
+  std::vector<Peak> peak_force_n;  // restoring force per interface degree of freedom
+  std::optional<ExchangeSummary> exchange;
+  std::vector<TrackingError> tracking;  // of a site
+  std::optional<EnergyError> energy_error;
+};
+
+struct InterlockSummary {
+  std::string participant;  // whose limit
+  std::string limit_name;   // a FaultFlags name
+  double observed = 0.0;    // SI
+  double limit = 0.0;       // SI
+  Step step = kNoStep;
+  double model_time_s = 0.0;
+};
+
+/// The state of one participant's file.
+struct ParticipantFileSummary {
+  std::string participant;
+  Role role = Role::operator_tool;
+  std::string file;                 // name in the run directory; empty when there is none
+  bool closed_cleanly = false;      // false after a kill
+  bool write_failed = false;        // disk full
+  std::uint64_t dropped_rows = 0;   // counted by the recorder
+  std::uint64_t missing_steps = 0;  // gaps in the column `step` of its table `steps`
+};
+
+/// What a test came to. SI throughout.
+struct RunSummary {
+  std::string test_name;
+  std::string scenario_digest;
+  std::string start_time_utc;
+  std::string software_version;
+
+  int exit_code = kExitInternal;
+  StopReason stop_reason = StopReason::none;  // none when the coordinator left no word
+  bool data_valid = false;
+  std::vector<std::string> data_faults;  // why not, one sentence each
+  std::vector<std::string> remarks;      // what is worth knowing and no fault
+
+  std::optional<std::int64_t> planned_steps;
+  std::int64_t completed_steps = 0;
+  double model_time_s = 0.0;  // reached
+  std::optional<double> wall_time_s;
+  std::optional<double> steps_per_second;
+
+  std::vector<Peak> peak_displacement_m;  // per structure degree of freedom
+  std::vector<SubstructureSummary> substructures;
+  std::vector<InterlockSummary> interlocks;
+  std::vector<std::string> faults;  // the other events of severity fault, one sentence each
+  std::vector<ParticipantFileSummary> participants;
+};
+
+/// The test's end in a few words, such as "ended by an interlock; data invalid".
+[[nodiscard]] std::string verdict(const RunSummary& summary);
+
+/// Reads every run file of a run directory. Columns are found by name; tables, columns and files
+/// that are unknown or absent are passed over, what follows from them is left out.
+///
+/// The data are invalid when rows were dropped, steps are missing, a file could not be written to
+/// its end or was left by a killed process, files belong to different tests, or the coordinator's
+/// file is missing or has no end. Then the exit code is 4 unless the test ended with an error code
+/// of its own, which stays.
+/// @throws RecordingError when the directory has no readable run file.
+[[nodiscard]] RunSummary summarise(const std::filesystem::path& run_directory);
+
+/// For programs: complete, SI; what is not known is null.
+void write_summary_json(const RunSummary& summary, std::ostream& stream);
+/// @throws RecordingError when the file cannot be written.
+void write_summary_json(const RunSummary& summary, const std::filesystem::path& path);
+
+/// For people: verdict first, millimetres, kilonewtons, milliseconds.
+void print_summary(const RunSummary& summary, std::ostream& stream);
+
+}  // namespace hybridtest

@@ -1,0 +1,367 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "recording/error.hpp"
+#include "recording/run_file_reader.hpp"
+#include "recording/summary/columns.hpp"
+#include "recording/summary/run_summary.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr std::string_view kSteps = "steps";
+constexpr std::string_view kControl = "control";
+constexpr std::string_view kExchanges = "exchanges";
+constexpr std::string_view kTest = "test";
+
+std::string count_of(std::uint64_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// Empty when there is no such column.
+std::vector<double> column_if_any(const RunFileReader& file, std::string_view table, std::string_view column) {
+  return file.has_column(table, column) ? file.column(table, column) : std::vector<double>{};
+}
+
+std::optional<double> last_of(const std::vector<double>& values) {
+  if (values.empty() || !std::isfinite(values.back())) return {};
+  return values.back();
+}
+
+std::optional<Peak> peak_of(std::string dof, const std::vector<double>& values, const std::vector<double>& time_s) {
+  std::optional<Peak> peak;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]) || (peak && std::abs(values[i]) <= std::abs(peak->value))) continue;
+    peak = Peak{dof, values[i], i < time_s.size() ? time_s[i] : std::numeric_limits<double>::quiet_NaN()};
+  }
+  return peak;
+}
+
+std::vector<Peak> peaks_of(const RunFileReader& file, std::string_view table, std::string_view quantity,
+                           std::string_view unit) {
+  std::vector<Peak> peaks;
+  const std::vector<double> time_s = column_if_any(file, table, "model_time_s");
+  for (const DofColumn& column : dof_columns(file, table, quantity, unit)) {
+    if (auto peak = peak_of(column.dof, file.column(table, column.name), time_s)) peaks.push_back(*peak);
+  }
+  return peaks;
+}
+
+/// Steps that ought to stand between two consecutive rows and do not.
+std::uint64_t missing_steps(const RunFileReader& file) {
+  const std::vector<double> steps = column_if_any(file, kSteps, "step");
+  double missing = 0.0;
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const double gap = steps[i] - steps[i - 1] - 1.0;
+    if (gap > 0.0) missing += gap;
+  }
+  return static_cast<std::uint64_t>(missing);
+}
+
+bool has_flag(double flags, MeasurementFlags flag) {
+  if (!(flags >= 0.0 && flags <= 4294967295.0)) return false;
+  return any(static_cast<MeasurementFlags>(static_cast<std::uint32_t>(flags)) & flag);
+}
+
+/// The table `exchanges`, read once.
+struct Exchanges {
+  std::vector<double> step, substructure, round_trip_us, turnaround_us, attempts, flags;
+
+  explicit Exchanges(const RunFileReader& file)
+      : step{column_if_any(file, kExchanges, "step")},
+        substructure{column_if_any(file, kExchanges, "substructure")},
+        round_trip_us{column_if_any(file, kExchanges, "round_trip_us")},
+        turnaround_us{column_if_any(file, kExchanges, "turnaround_us")},
+        attempts{column_if_any(file, kExchanges, "attempts")},
+        flags{column_if_any(file, kExchanges, "flags")} {}
+};
+
+void count_flags(ExchangeSummary& summary, double flags) {
+  summary.extrapolated += has_flag(flags, MeasurementFlags::extrapolated);
+  summary.held += has_flag(flags, MeasurementFlags::held);
+  summary.saturated += has_flag(flags, MeasurementFlags::saturated);
+  summary.late += has_flag(flags, MeasurementFlags::late);
+  summary.repeated += has_flag(flags, MeasurementFlags::repeated);
+}
+
+std::optional<ExchangeSummary> exchange_with(const Exchanges& all, std::size_t index, double last_step) {
+  ExchangeSummary summary;
+  std::vector<double> round_trip_us;
+  std::vector<double> turnaround_us;
+  bool any_row = false;
+  for (std::size_t i = 0; i < all.substructure.size(); ++i) {
+    if (all.substructure[i] != static_cast<double>(index)) continue;
+    any_row = true;
+    if (i < all.attempts.size() && all.attempts[i] > 1.0) {
+      summary.resent += static_cast<std::uint64_t>(all.attempts[i]) - 1;
+    }
+    const bool answered = i < all.round_trip_us.size() && std::isfinite(all.round_trip_us[i]);
+    if (!answered) {
+      const bool went_on = i < all.step.size() && all.step[i] <= last_step;
+      ++(went_on ? summary.bridged : summary.lost);
+      continue;
+    }
+    ++summary.answered;
+    round_trip_us.push_back(all.round_trip_us[i]);
+    if (i < all.turnaround_us.size()) turnaround_us.push_back(all.turnaround_us[i]);
+    if (i < all.flags.size()) count_flags(summary, all.flags[i]);
+  }
+  if (!any_row) return {};
+  summary.round_trip_us = percentiles(std::move(round_trip_us));
+  summary.turnaround_us = percentiles(std::move(turnaround_us));
+  return summary;
+}
+
+/// Target against measured displacement, from the control loop's table where there is one.
+std::vector<TrackingError> tracking_of(const RunFileReader& file) {
+  const bool control = file.row_count(kControl) > 0 && file.has_column(kControl, "time_s");
+  const std::string_view table = control ? kControl : kSteps;
+  const std::vector<double> time_s = column_if_any(file, table, control ? "time_s" : "model_time_s");
+  std::vector<TrackingError> errors;
+  for (const DofColumn& target : dof_columns(file, table, "target_displacement", "m")) {
+    const std::string measured = "measured_displacement" + target.suffix + "_m";
+    if (!file.has_column(table, measured) || time_s.empty()) continue;
+    const auto error =
+        evaluate_tracking(target.dof, time_s, file.column(table, target.name), file.column(table, measured));
+    if (error) errors.push_back(*error);
+  }
+  return errors;
+}
+
+std::optional<EnergyError> energy_error_of(const RunFileReader& file) {
+  std::vector<double> energy_j = column_if_any(file, kControl, "energy_error_j");
+  std::erase_if(energy_j, [](double value) { return !std::isfinite(value); });
+  if (energy_j.empty()) return {};
+  return EnergyError{peak_of("", energy_j, {})->value, energy_j.back()};
+}
+
+std::vector<Peak> peak_forces_of(const RunFileReader& file) {
+  for (const auto& [table, quantity] :
+       {std::pair{kControl, "measured_force"}, {kSteps, "measured_force"}, {kSteps, "force"}}) {
+    if (file.row_count(table) == 0) continue;
+    if (auto peaks = peaks_of(file, table, quantity, "n"); !peaks.empty()) return peaks;
+  }
+  return {};
+}
+
+std::string interlock_key(const Event& event) {
+  return event.source.text() + "/" + event.subject.text() + "/" + std::to_string(event.step);
+}
+
+/// Puts a summary together from the files of a run.
+class Summariser {
+ public:
+  explicit Summariser(const std::filesystem::path& run_directory) { open_files(run_directory); }
+
+  RunSummary summarise() {
+    summarise_files();
+    if (coordinator_ == nullptr) {
+      add_data_fault("the coordinator's file is missing: copy it into the run directory");
+    } else {
+      summarise_test();
+    }
+    summarise_substructures();
+    summarise_events();
+    check_ends();
+    conclude();
+    return std::move(summary_);
+  }
+
+ private:
+  void open_files(const std::filesystem::path& run_directory);
+  void summarise_files();
+  void summarise_test();
+  void summarise_substructures();
+  void summarise_events();
+  void check_ends();
+  void conclude();
+
+  void add_data_fault(std::string text) { summary_.data_faults.push_back(std::move(text)); }
+  [[nodiscard]] const RunFileReader* file_of(const std::string& participant) const {
+    const auto found = std::find_if(files_.begin(), files_.end(), [&](const RunFileReader& file) {
+      return file.header().participant == participant && file.header().role != Role::coordinator;
+    });
+    return found == files_.end() ? nullptr : &*found;
+  }
+
+  std::vector<RunFileReader> files_;
+  const RunFileReader* coordinator_ = nullptr;
+  std::optional<int> recorded_exit_code_;
+  RunSummary summary_;
+};
+
+void Summariser::open_files(const std::filesystem::path& run_directory) {
+  std::vector<std::filesystem::path> paths;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator{run_directory, error}) {
+    if (entry.path().extension() == kRunFileExtension) paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  for (const auto& path : paths) {
+    try {
+      files_.emplace_back(path);
+    } catch (const RecordingError& unreadable) {
+      add_data_fault(unreadable.what());
+    }
+  }
+  if (files_.empty()) throw RecordingError{run_directory.string() + ": no readable run file (*.h5) in this directory"};
+  for (const RunFileReader& file : files_) {
+    if (file.header().role == Role::coordinator) coordinator_ = &file;
+  }
+}
+
+void Summariser::summarise_files() {
+  const RunFileHeader& first = (coordinator_ != nullptr ? *coordinator_ : files_.front()).header();
+  summary_.test_name = first.test_name;
+  summary_.scenario_digest = hex(first.scenario_digest);
+  summary_.start_time_utc = first.start_time_utc;
+  summary_.software_version = first.software_version;
+  for (const RunFileReader& file : files_) {
+    const RunFileHeader& header = file.header();
+    const RunFileCounters& counters = file.counters();
+    const ParticipantFileSummary state{header.participant,      header.role,           file.path().filename(),
+                                       counters.closed_cleanly, counters.write_failed, counters.dropped_rows(),
+                                       missing_steps(file)};
+    if (header.test_name != first.test_name || header.scenario_digest != first.scenario_digest) {
+      add_data_fault(state.file + " belongs to another test or scenario");
+    }
+    if (state.write_failed) {
+      add_data_fault(header.participant + ": writing failed (disk full?); " + count_of(state.dropped_rows, "record") +
+                     " lost");
+    } else if (state.dropped_rows > 0) {
+      add_data_fault(header.participant + ": " + count_of(state.dropped_rows, "record") + " dropped");
+    }
+    if (!state.closed_cleanly && !state.write_failed) {
+      add_data_fault(header.participant + ": killed while recording; the file ends at its last flush");
+    }
+    if (state.missing_steps > 0) {
+      add_data_fault(header.participant + ": " + count_of(state.missing_steps, "step") + " missing between others");
+    }
+    summary_.participants.push_back(state);
+  }
+}
+
+void Summariser::summarise_test() {
+  const RunFileReader& file = *coordinator_;
+  summary_.peak_displacement_m = peaks_of(file, kSteps, "displacement", "m");
+  summary_.model_time_s = last_of(column_if_any(file, kSteps, "model_time_s")).value_or(0.0);
+
+  if (const auto reason = last_of(column_if_any(file, kTest, "stop_reason"))) {
+    summary_.stop_reason = static_cast<StopReason>(static_cast<int>(*reason));
+  } else {
+    add_data_fault("the coordinator's file does not say how the test ended");
+  }
+  if (const auto code = last_of(column_if_any(file, kTest, "exit_code"))) recorded_exit_code_ = static_cast<int>(*code);
+  if (const auto planned = last_of(column_if_any(file, kTest, "planned_steps"))) {
+    summary_.planned_steps = static_cast<std::int64_t>(*planned);
+  }
+  const double last_step = last_of(column_if_any(file, kSteps, "step")).value_or(0.0);
+  const double completed = last_of(column_if_any(file, kTest, "completed_steps")).value_or(last_step);
+  summary_.completed_steps = static_cast<std::int64_t>(completed);
+
+  const std::vector<double> wall_s = column_if_any(file, kSteps, "wall_time_s");
+  summary_.wall_time_s = last_of(column_if_any(file, kTest, "wall_time_s"));
+  if (!summary_.wall_time_s && !wall_s.empty()) summary_.wall_time_s = wall_s.back() - wall_s.front();
+  if (summary_.wall_time_s && *summary_.wall_time_s > 0.0)
+    summary_.steps_per_second = completed / *summary_.wall_time_s;
+}
+
+void Summariser::summarise_substructures() {
+  // The scenario's order where the coordinator tells it, then whoever else left a file.
+  std::vector<std::string> ids;
+  if (coordinator_ != nullptr) ids = coordinator_->header().substructure_ids;
+  for (const RunFileReader& file : files_) {
+    const std::string& id = file.header().participant;
+    if (&file != coordinator_ && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  }
+  std::optional<Exchanges> exchanges;
+  if (coordinator_ != nullptr) exchanges.emplace(*coordinator_);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    SubstructureSummary substructure;
+    substructure.id = ids[i];
+    if (exchanges) {
+      substructure.exchange = exchange_with(*exchanges, i, static_cast<double>(summary_.completed_steps));
+    }
+    if (const RunFileReader* file = file_of(ids[i])) {
+      substructure.peak_force_n = peak_forces_of(*file);
+      substructure.tracking = tracking_of(*file);
+      substructure.energy_error = energy_error_of(*file);
+    } else {
+      summary_.remarks.push_back(ids[i] + ": no file in this directory; if it ran on another host, copy its file here");
+    }
+    summary_.substructures.push_back(std::move(substructure));
+  }
+}
+
+void Summariser::summarise_events() {
+  // The same event stands in the file of its source and of whoever received it.
+  std::set<std::string> seen;
+  std::set<std::string> told;
+  for (const RunFileReader& file : files_) {
+    for (const RecordedEvent& recorded : file.events()) {
+      const Event& event = recorded.event;
+      if (event.code == EventCode::interlock_tripped) {
+        if (!seen.insert(interlock_key(event)).second) continue;
+        summary_.interlocks.push_back({event.source.text(), event.subject.text(), event.values[0], event.values[1],
+                                       event.step, event.model_time_s});
+      } else if (event.severity == Severity::fault) {
+        const std::string text = event.source.text() + ": " + recorded.text;
+        if (told.insert(text).second) summary_.faults.push_back(text);
+      }
+    }
+  }
+  std::stable_sort(summary_.interlocks.begin(), summary_.interlocks.end(),
+                   [](const auto& a, const auto& b) { return a.step < b.step; });
+}
+
+/// Whether every file reaches as far as the test did.
+void Summariser::check_ends() {
+  if (coordinator_ == nullptr) return;
+  for (const RunFileReader& file : files_) {
+    const auto last = last_of(column_if_any(file, kSteps, "step"));
+    if (!last) continue;
+    const auto missing = summary_.completed_steps - static_cast<std::int64_t>(*last);
+    // The last answer may still have been on its way to the file's owner when the test ended.
+    const std::int64_t allowed = &file == coordinator_ ? 0 : 1;
+    if (missing > allowed) {
+      add_data_fault(file.header().participant + ": the record ends " +
+                     count_of(static_cast<std::uint64_t>(missing), "step") + " before the test");
+    }
+  }
+}
+
+void Summariser::conclude() {
+  summary_.data_valid = summary_.data_faults.empty();
+  // Without the coordinator's last word nobody knows what the data are worth.
+  summary_.exit_code = recorded_exit_code_.value_or(kExitDataInvalid);
+  if (!summary_.data_valid && summary_.exit_code == kExitCompleted) summary_.exit_code = kExitDataInvalid;
+}
+
+}  // namespace
+
+std::string verdict(const RunSummary& summary) {
+  const std::string end = [&]() -> std::string {
+    switch (summary.stop_reason) {
+      case StopReason::none: return "end unknown";
+      case StopReason::completed: return "completed";
+      case StopReason::interrupted: return "stopped by the operator";
+      case StopReason::interlock: return "ended by an interlock";
+      case StopReason::participant_lost: return "ended: a participant was lost";
+      case StopReason::coordinator_lost: return "ended: the coordinator was lost";
+      case StopReason::not_finite: return "ended: a number was not finite";
+      case StopReason::not_assembled: return "never started: participants missing";
+      case StopReason::refused: return "never started: refused";
+      case StopReason::recording_failed: return "ended: recording failed";
+    }
+    return "end unknown";
+  }();
+  return summary.data_valid ? end : end + "; data invalid";
+}
+
+RunSummary summarise(const std::filesystem::path& run_directory) { return Summariser{run_directory}.summarise(); }
+
+}  // namespace hybridtest

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include "recording/summary/run_summary.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr double kKilonewtons = 1e-3;
+constexpr double kMilliseconds = 1e3;
+constexpr double kMillisecondsPerMicrosecond = 1e-3;
+constexpr double kPercent = 1e2;
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  std::array<char, 352> text{};  // the longest double in fixed notation
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+std::string fixed(const std::optional<double>& value, double scale, int decimals) {
+  return value ? fixed(*value * scale, decimals) : "-";
+}
+
+/// Rows of text under a title, first column to the left, the others to the right.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> header) : rows_{std::move(header)} {}
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+  /// Nothing without a row below the header.
+  void print(std::ostream& stream) const {
+    if (rows_.size() < 2) return;
+    std::vector<std::size_t> widths(rows_.front().size(), 0);
+    for (const auto& row : rows_) {
+      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    widths.front() = std::max(widths.front(), kFirstWidth);
+    stream << '\n';
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const std::string indent(r == 0 ? 2 : 4, ' ');
+      stream << indent << rows_[r][0] << std::string(widths[0] + 4 - indent.size() - rows_[r][0].size(), ' ');
+      for (std::size_t i = 1; i < rows_[r].size(); ++i) {
+        const std::size_t width = std::max(widths[i], kOtherWidth);
+        stream << "  " << std::string(width - rows_[r][i].size(), ' ') << rows_[r][i];
+      }
+      stream << '\n';
+    }
+  }
+
+ private:
+  static constexpr std::size_t kFirstWidth = 22;
+  static constexpr std::size_t kOtherWidth = 9;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+void print_list(const char* title, const std::vector<std::string>& lines, std::ostream& stream) {
+  if (lines.empty()) return;
+  stream << "\n  " << title << '\n';
+  for (const std::string& line : lines) stream << "    " << line << '\n';
+}
+
+void print_head(const RunSummary& summary, std::ostream& stream) {
+  std::string words = verdict(summary);
+  std::transform(words.begin(), words.end(), words.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  stream << words << "  (exit " << summary.exit_code << ")  " << summary.test_name << '\n';
+  stream << "  " << summary.completed_steps;
+  if (summary.planned_steps) stream << " of " << *summary.planned_steps;
+  stream << " steps, " << fixed(summary.model_time_s, 3) << " s of model time";
+  if (summary.wall_time_s) stream << " in " << fixed(*summary.wall_time_s, 2) << " s";
+  if (summary.steps_per_second) stream << ", " << fixed(*summary.steps_per_second, 0) << " steps/s";
+  stream << '\n';
+}
+
+/// A limit's unit for people and its factor from SI.
+std::pair<double, std::string> unit_of(const std::string& limit_name) {
+  if (limit_name == "displacement_limit" || limit_name == "tracking_error") return {kMillimetres, " mm"};
+  if (limit_name == "velocity_limit") return {kMillimetres, " mm/s"};
+  if (limit_name == "force_limit") return {kKilonewtons, " kN"};
+  if (limit_name == "command_age") return {kMilliseconds, " ms"};
+  return {1.0, ""};
+}
+
+std::string sentence(const InterlockSummary& interlock) {
+  const auto [scale, unit] = unit_of(interlock.limit_name);
+  return interlock.participant + ": " + interlock.limit_name + ", observed " + fixed(interlock.observed * scale, 3) +
+         unit + ", limit " + fixed(interlock.limit * scale, 3) + unit + ", at step " + std::to_string(interlock.step) +
+         " (" + fixed(interlock.model_time_s, 3) + " s)";
+}
+
+void print_peaks(const RunSummary& summary, std::ostream& stream) {
+  TextTable displacement{{"peak displacement", "mm", "at s"}};
+  for (const Peak& peak : summary.peak_displacement_m) {
+    displacement.add({peak.dof, fixed(peak.value * kMillimetres, 3), fixed(peak.model_time_s, 3)});
+  }
+  displacement.print(stream);
+  TextTable force{{"peak restoring force", "kN", "at s"}};
+  for (const SubstructureSummary& substructure : summary.substructures) {
+    for (const Peak& peak : substructure.peak_force_n) {
+      force.add({substructure.id + " " + peak.dof, fixed(peak.value * kKilonewtons, 3), fixed(peak.model_time_s, 3)});
+    }
+  }
+  force.print(stream);
+}
+
+void print_exchanges(const RunSummary& summary, std::ostream& stream) {
+  TextTable latency{
+      {"round trip", "p50 ms", "p99 ms", "max ms", "own ms", "resent", "bridged", "lost", "late", "held"}};
+  for (const SubstructureSummary& substructure : summary.substructures) {
+    if (!substructure.exchange) continue;
+    const ExchangeSummary& exchange = *substructure.exchange;
+    std::vector<std::string> row{substructure.id};
+    for (const double Percentiles::*value : {&Percentiles::p50, &Percentiles::p99, &Percentiles::max}) {
+      row.push_back(exchange.round_trip_us ? fixed(*exchange.round_trip_us.*value * kMillisecondsPerMicrosecond, 3)
+                                           : "-");
+    }
+    row.push_back(exchange.turnaround_us ? fixed(exchange.turnaround_us->p50 * kMillisecondsPerMicrosecond, 3) : "-");
+    for (const std::uint64_t count : {exchange.resent, exchange.bridged, exchange.lost, exchange.late, exchange.held}) {
+      row.push_back(std::to_string(count));
+    }
+    latency.add(std::move(row));
+  }
+  latency.print(stream);
+}
+
+void print_sites(const RunSummary& summary, std::ostream& stream) {
+  TextTable tracking{{"tracking error", "RMS mm", "RMS %", "peak mm", "delay ms", "amplitude"}};
+  TextTable energy{{"energy error", "peak J", "final J"}};
+  for (const SubstructureSummary& substructure : summary.substructures) {
+    for (const TrackingError& error : substructure.tracking) {
+      tracking.add({substructure.id + " " + error.dof, fixed(error.rms_m * kMillimetres, 4),
+                    fixed(error.rms_relative, kPercent, 2), fixed(error.peak_m * kMillimetres, 4),
+                    fixed(error.equivalent_delay_s, kMilliseconds, 2), fixed(error.amplitude, 1.0, 4)});
+    }
+    if (substructure.energy_error) {
+      energy.add(
+          {substructure.id, fixed(substructure.energy_error->peak_j, 3), fixed(substructure.energy_error->final_j, 3)});
+    }
+  }
+  tracking.print(stream);
+  energy.print(stream);
+}
+
+}  // namespace
+
+void print_summary(const RunSummary& summary, std::ostream& stream) {
+  print_head(summary, stream);
+  std::vector<std::string> interlocks;
+  for (const InterlockSummary& interlock : summary.interlocks) interlocks.push_back(sentence(interlock));
+  print_list("interlocks", interlocks, stream);
+  print_list("data invalid because", summary.data_faults, stream);
+  print_list("faults", summary.faults, stream);
+  print_peaks(summary, stream);
+  print_exchanges(summary, stream);
+  print_sites(summary, stream);
+  print_list("remarks", summary.remarks, stream);
+}
+
+}  // namespace hybridtest

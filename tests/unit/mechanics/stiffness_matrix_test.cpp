@@ -1,0 +1,48 @@
+#include "mechanics/stiffness_matrix.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/config/error.hpp"
+
+namespace hybridtest {
+namespace {
+
+std::string refusal(const Eigen::MatrixXd& stiffness) {
+  try {
+    static_cast<void>(checked_stiffness(stiffness));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(StiffnessMatrix, AveragesWhatTheDigitsOfAFileLeave) {
+  Eigen::MatrixXd stiffness{{2.0e6, -1.0e6}, {-1.0e6 - 1.0e-4, 1.0e6}};
+  const InterfaceMatrix checked = checked_stiffness(stiffness);
+  EXPECT_EQ(checked(0, 1), checked(1, 0));
+  EXPECT_DOUBLE_EQ(checked(0, 1), -1.0e6 - 0.5e-4);
+  EXPECT_EQ(checked(0, 0), 2.0e6);
+}
+
+TEST(StiffnessMatrix, RefusesWhatIsNotSymmetric) {
+  EXPECT_EQ(refusal(Eigen::MatrixXd{{2.0, -1.0}, {-1.5, 1.0}}),
+            "stiffness entry (2, 1) is -1.5 and entry (1, 2) is -1; expected a symmetric matrix");
+}
+
+TEST(StiffnessMatrix, RefusesOtherShapes) {
+  EXPECT_THAT(refusal(Eigen::MatrixXd(2, 3)), testing::HasSubstr("2 rows and 3 columns"));
+  EXPECT_THAT(refusal(Eigen::MatrixXd(0, 0)), testing::HasSubstr("1 to 12"));
+  EXPECT_THAT(refusal(Eigen::MatrixXd::Identity(13, 13)), testing::HasSubstr("1 to 12"));
+  EXPECT_EQ(refusal(Eigen::MatrixXd::Identity(12, 12)), "");
+}
+
+TEST(StiffnessMatrix, RefusesWhatIsNotFinite) {
+  EXPECT_THAT(refusal(Eigen::MatrixXd{{1.0, 0.0}, {0.0, std::nan("")}}), testing::HasSubstr("(2, 2)"));
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "recording/run_file_writer.hpp"
+#include "tests/unit/recording/run_file_fixture.hpp"
+
+namespace hybridtest {
+
+/// A run directory whose every figure is known: two storeys, a site that lags by 12.5 ms and a
+/// numerical substructure. The members may be changed before write().
+struct ExampleRun {
+  static constexpr int kSteps = 10'000;  // of 1 ms; rows for steps 0 to kSteps
+  static constexpr double kDelay_s = 0.0125;
+
+  int coordinator_steps = kSteps;
+  int site_steps = kSteps;
+  std::uint64_t site_dropped = 0;
+  bool site_at_rest = false;
+  bool site_skips_steps_100_to_102 = false;
+  bool with_test_row = true;
+  StopReason stop_reason = StopReason::completed;
+  int exit_code = 0;
+  std::vector<std::vector<double>> extra_exchanges;
+  std::vector<Event> site_events;
+  std::vector<Event> coordinator_events;
+
+  static double time_s(int step) { return 0.001 * step; }
+  static double target_m(double time_s) { return 0.02 * std::sin(4.0 * std::numbers::pi * time_s); }
+
+  static RunFileHeader header(const std::string& participant, Role role) {
+    RunFileHeader header = example_header();
+    header.participant = participant;
+    header.role = role;
+    header.substructure_ids = {"storey_1", "storey_2"};
+    header.interface_dofs =
+        role == Role::coordinator ? std::vector<std::string>{} : std::vector<std::string>{"floor_1"};
+    return header;
+  }
+
+  void write(const std::filesystem::path& directory) const {
+    write_coordinator(directory / "coordinator.h5");
+    write_site(directory / "storey_1.h5");
+    write_numerical(directory / "storey_2.h5");
+  }
+
+  void write_coordinator(const std::filesystem::path& path) const {
+    RunFileWriter writer{path,
+                         header("coordinator", Role::coordinator),
+                         {{"steps",
+                           {{"step", "-"},
+                            {"model_time_s", "s"},
+                            {"wall_time_s", "s"},
+                            {"displacement_floor_1_m", "m"},
+                            {"displacement_floor_2_m", "m"},
+                            {"velocity_floor_1_m_per_s", "m/s"},
+                            {"something_of_tomorrow", "-"}}},
+                          {"exchanges",
+                           {{"step", "-"},
+                            {"substructure", "-"},
+                            {"round_trip_us", "us"},
+                            {"attempts", "-"},
+                            {"flags", "-"},
+                            {"turnaround_us", "us"}}},
+                          {"test",
+                           {{"planned_steps", "-"},
+                            {"completed_steps", "-"},
+                            {"stop_reason", "-"},
+                            {"wall_time_s", "s"},
+                            {"exit_code", "-"}}},
+                          {"table_of_tomorrow", {{"value", "-"}}}}};
+    std::vector<double> steps;
+    std::vector<double> exchanges;
+    for (int i = 0; i <= coordinator_steps; ++i) {
+      // Peaks of 30 mm at step 1000 and −45 mm at step 2000.
+      const double first_m = i == 1000 ? 0.03 : 0.001;
+      const double second_m = i == 2000 ? -0.045 : 0.002;
+      steps.insert(steps.end(), {static_cast<double>(i), time_s(i), 0.5 * time_s(i), first_m, second_m, 99.0, 99.0});
+      // 1 to 100 us over and over to the site, 10 us to the other.
+      exchanges.insert(exchanges.end(),
+                       {static_cast<double>(i), 0.0, 1.0 + i % 100, i == 7 ? 3.0 : 1.0, i == 8 ? 8.0 + 2.0 : 0.0, 0.5});
+      exchanges.insert(exchanges.end(), {static_cast<double>(i), 1.0, 10.0, 1.0, 0.0, 2.0});
+    }
+    for (const auto& row : extra_exchanges) exchanges.insert(exchanges.end(), row.begin(), row.end());
+    writer.append(0, steps);
+    writer.append(1, exchanges);
+    if (with_test_row) {
+      writer.append(2, std::vector{static_cast<double>(kSteps), static_cast<double>(coordinator_steps),
+                                   static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code)});
+    }
+    writer.append_events(coordinator_events, std::vector<std::string>(coordinator_events.size(), "it happened"));
+    writer.close();
+  }
+
+  void write_site(const std::filesystem::path& path) const {
+    RunFileWriter writer{path, header("storey_1", Role::experimental_site), site_tables()};
+    append_site(writer);
+    writer.close();
+  }
+
+  static std::vector<TableLayout> site_tables() {
+    return {{"steps",
+             {{"step", "-"},
+              {"model_time_s", "s"},
+              {"target_displacement_m", "m"},
+              {"measured_displacement_m", "m"},
+              {"measured_force_n", "N"},
+              {"flags", "-"}}},
+            {"control",
+             {{"sample", "-"},
+              {"time_s", "s"},
+              {"model_time_s", "s"},
+              {"target_displacement_m", "m"},
+              {"command_displacement_m", "m"},
+              {"measured_displacement_m", "m"},
+              {"measured_force_n", "N"},
+              {"energy_error_j", "J"},
+              {"faults", "-"}}}};
+  }
+
+  void append_site(RunFileWriter& writer) const {
+    std::vector<double> steps;
+    std::vector<double> control;
+    for (int i = 0; i <= site_steps; ++i) {
+      if (!(site_skips_steps_100_to_102 && i >= 100 && i <= 102)) {
+        steps.insert(steps.end(), {static_cast<double>(i), time_s(i), 0.0, 0.0, 1.0, 0.0});
+      }
+      if (i == kSteps) continue;  // whole periods in the control table
+      const double target = site_at_rest ? 0.0 : target_m(time_s(i));
+      const double measured = site_at_rest ? 0.0 : target_m(time_s(i) - kDelay_s);
+      const double force_n = i == 3000 ? -41'000.0 : 10.0;
+      const double energy_j = i == 4000 ? -12.5 : 0.25;
+      control.insert(control.end(), {static_cast<double>(i), 100.0 + time_s(i), time_s(i), target, target, measured,
+                                     force_n, energy_j, 0.0});
+    }
+    writer.append(0, steps);
+    writer.append(1, control);
+    writer.append_events(site_events, std::vector<std::string>(site_events.size(), "it \"happened\", there"));
+    writer.set_dropped(1, site_dropped);
+    writer.flush();
+  }
+
+  void write_numerical(const std::filesystem::path& path) const {
+    RunFileWriter writer{
+        path,
+        header("storey_2", Role::numerical_substructure),
+        {{"steps", {{"step", "-"}, {"model_time_s", "s"}, {"displacement_floor_2_m", "m"}, {"force_floor_2_n", "N"}}}}};
+    std::vector<double> steps;
+    for (int i = 0; i <= coordinator_steps; ++i) {
+      steps.insert(steps.end(), {static_cast<double>(i), time_s(i), 0.0, i == 500 ? 7000.0 : 0.0});
+    }
+    writer.append(0, steps);
+    writer.close();
+  }
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,267 @@
+#include "recording/summary/run_summary.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "recording/error.hpp"
+#include "recording/run_file_reader.hpp"
+#include "tests/unit/recording/child_process.hpp"
+#include "tests/unit/recording/example_run.hpp"
+#include "tests/unit/recording/temporary_directory.hpp"
+
+namespace hybridtest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+RunSummary summary_of(const ExampleRun& run) {
+  const TemporaryDirectory directory;
+  run.write(directory.path());
+  return summarise(directory.path());
+}
+
+std::string printed(const RunSummary& summary) {
+  std::ostringstream stream;
+  print_summary(summary, stream);
+  return stream.str();
+}
+
+TEST(RunSummary, OfACompletedTestHasEveryFigure) {
+  const RunSummary summary = summary_of({});
+  EXPECT_EQ(verdict(summary), "completed");
+  EXPECT_EQ(summary.exit_code, kExitCompleted);
+  EXPECT_TRUE(summary.data_valid);
+  EXPECT_THAT(summary.data_faults, IsEmpty());
+  EXPECT_EQ(summary.completed_steps, 10'000);
+  EXPECT_EQ(summary.planned_steps, 10'000);
+  EXPECT_EQ(summary.wall_time_s, 4.0);
+  EXPECT_EQ(summary.steps_per_second, 2500.0);
+  EXPECT_DOUBLE_EQ(summary.model_time_s, 10.0);
+
+  ASSERT_EQ(summary.peak_displacement_m.size(), 2U);
+  EXPECT_EQ(summary.peak_displacement_m[0].dof, "floor_1");
+  EXPECT_EQ(summary.peak_displacement_m[0].value, 0.03);
+  EXPECT_DOUBLE_EQ(summary.peak_displacement_m[0].model_time_s, 1.0);
+  EXPECT_EQ(summary.peak_displacement_m[1].value, -0.045);
+
+  ASSERT_EQ(summary.substructures.size(), 2U);
+  const SubstructureSummary& site = summary.substructures[0];
+  const SubstructureSummary& numerical = summary.substructures[1];
+  EXPECT_EQ(site.id, "storey_1");
+  ASSERT_EQ(site.peak_force_n.size(), 1U);
+  EXPECT_EQ(site.peak_force_n[0].dof, "floor_1");
+  EXPECT_EQ(site.peak_force_n[0].value, -41'000.0);
+  EXPECT_EQ(site.energy_error->peak_j, -12.5);
+  EXPECT_EQ(site.energy_error->final_j, 0.25);
+  ASSERT_EQ(site.tracking.size(), 1U);
+  EXPECT_NEAR(site.tracking[0].equivalent_delay_s.value(), ExampleRun::kDelay_s, 5e-7);
+  EXPECT_EQ(site.tracking[0].samples, 10'000U) << "of the control table, not of the steps";
+  EXPECT_EQ(numerical.id, "storey_2");
+  ASSERT_EQ(numerical.peak_force_n.size(), 1U);
+  EXPECT_EQ(numerical.peak_force_n[0].dof, "floor_2");
+  EXPECT_EQ(numerical.peak_force_n[0].value, 7000.0);
+  EXPECT_THAT(numerical.tracking, IsEmpty());
+  EXPECT_FALSE(numerical.energy_error.has_value());
+}
+
+TEST(RunSummary, CountsExchangesPerSubstructure) {
+  ExampleRun run;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  run.extra_exchanges = {{5000.0, 0.0, nan, 4.0, 0.0, nan}, {10'001.0, 0.0, nan, 1.0, 0.0, nan}};
+  const RunSummary summary = summary_of(run);
+  const ExchangeSummary& site = summary.substructures[0].exchange.value();
+  // 1 to 100 us a hundred times over, and once more 1 us.
+  EXPECT_EQ(site.round_trip_us->p50, 50.0);
+  EXPECT_EQ(site.round_trip_us->p99, 99.0);
+  EXPECT_EQ(site.round_trip_us->max, 100.0);
+  EXPECT_EQ(site.turnaround_us->p50, 0.5);
+  EXPECT_EQ(site.answered, 10'001U);
+  EXPECT_EQ(site.resent, 2U + 3U);
+  EXPECT_EQ(site.bridged, 1U);
+  EXPECT_EQ(site.lost, 1U);
+  EXPECT_EQ(site.late, 1U);
+  EXPECT_EQ(site.held, 1U);
+  EXPECT_EQ(site.extrapolated, 0U);
+  const ExchangeSummary& numerical = summary.substructures[1].exchange.value();
+  EXPECT_EQ(numerical.round_trip_us->max, 10.0);
+  EXPECT_EQ(numerical.resent + numerical.late + numerical.held + numerical.lost, 0U);
+}
+
+TEST(RunSummary, DroppedRecordsMakeTheDataInvalid) {
+  ExampleRun run;
+  run.site_dropped = 12;
+  const RunSummary summary = summary_of(run);
+  EXPECT_EQ(verdict(summary), "completed; data invalid");
+  EXPECT_EQ(summary.exit_code, kExitDataInvalid);
+  EXPECT_THAT(summary.data_faults, ElementsAre("storey_1: 12 records dropped"));
+  EXPECT_EQ(summary.participants[1].dropped_rows, 12U);
+}
+
+TEST(RunSummary, MissingStepsMakeTheDataInvalid) {
+  ExampleRun run;
+  run.site_skips_steps_100_to_102 = true;
+  const RunSummary summary = summary_of(run);
+  EXPECT_EQ(summary.exit_code, kExitDataInvalid);
+  EXPECT_THAT(summary.data_faults, ElementsAre("storey_1: 3 steps missing between others"));
+}
+
+TEST(RunSummary, ARecordThatEndsBeforeTheTestMakesTheDataInvalid) {
+  ExampleRun run;
+  run.site_steps = ExampleRun::kSteps - 1;
+  EXPECT_TRUE(summary_of(run).data_valid) << "the very last answer may be under way";
+  run.site_steps = ExampleRun::kSteps - 2;
+  EXPECT_THAT(summary_of(run).data_faults, ElementsAre("storey_1: the record ends 2 steps before the test"));
+}
+
+TEST(RunSummary, AnInterlockIsToldOnceWithItsLimitAndKeepsItsExitCode) {
+  ExampleRun run;
+  run.stop_reason = StopReason::interlock;
+  run.exit_code = kExitEndedEarly;
+  run.site_dropped = 1;
+  run.site_events = {example_event()};
+  run.coordinator_events = {example_event()};
+  const RunSummary summary = summary_of(run);
+  EXPECT_EQ(summary.exit_code, kExitEndedEarly);
+  EXPECT_EQ(verdict(summary), "ended by an interlock; data invalid");
+  ASSERT_EQ(summary.interlocks.size(), 1U);
+  EXPECT_EQ(summary.interlocks[0].participant, "storey_1");
+  EXPECT_EQ(summary.interlocks[0].limit_name, "displacement_limit");
+  EXPECT_EQ(summary.interlocks[0].observed, 0.1234);
+  EXPECT_EQ(summary.interlocks[0].limit, 0.12);
+  EXPECT_EQ(summary.interlocks[0].step, 4711);
+  EXPECT_THAT(printed(summary), HasSubstr("storey_1: displacement_limit, observed 123.400 mm, limit 120.000 mm, at "
+                                          "step 4711 (4.711 s)"));
+}
+
+TEST(RunSummary, OtherFaultsAreToldButInformationIsNot) {
+  ExampleRun run;
+  Event lost = example_event();
+  lost.code = EventCode::participant_lost;
+  lost.source = "coordinator";
+  Event started = lost;
+  started.code = EventCode::test_started;
+  started.severity = Severity::information;
+  run.coordinator_events = {lost, started};
+  EXPECT_THAT(summary_of(run).faults, ElementsAre("coordinator: it happened"));
+}
+
+TEST(RunSummary, ASiteAtRestHasNoDelay) {
+  ExampleRun run;
+  run.site_at_rest = true;
+  const RunSummary summary = summary_of(run);
+  ASSERT_EQ(summary.substructures[0].tracking.size(), 1U);
+  EXPECT_EQ(summary.substructures[0].tracking[0].rms_m, 0.0);
+  EXPECT_FALSE(summary.substructures[0].tracking[0].rms_relative.has_value());
+  EXPECT_FALSE(summary.substructures[0].tracking[0].equivalent_delay_s.has_value());
+}
+
+TEST(RunSummary, AKilledSiteIsNamed) {
+  const TemporaryDirectory directory;
+  ExampleRun run;
+  run.stop_reason = StopReason::participant_lost;
+  run.exit_code = kExitEndedEarly;
+  run.write_coordinator(directory / "coordinator.h5");
+  run.write_numerical(directory / "storey_2.h5");
+  ChildProcess site{[&](const ChildProcess& self) {
+    RunFileWriter writer{directory / "storey_1.h5", ExampleRun::header("storey_1", Role::experimental_site),
+                         ExampleRun::site_tables()};
+    run.append_site(writer);
+    self.report(1);
+    self.await_word();
+  }};
+  ASSERT_EQ(site.hear(), 1U);
+  site.kill_now();
+  const RunSummary summary = summarise(directory.path());
+  EXPECT_THAT(summary.data_faults, ElementsAre(HasSubstr("storey_1: killed while recording")));
+  EXPECT_EQ(summary.substructures[0].peak_force_n.at(0).value, -41'000.0) << "what was flushed is used";
+  EXPECT_EQ(summary.exit_code, kExitEndedEarly);
+}
+
+TEST(RunSummary, WithoutTheCoordinatorsWordTheDataAreInvalid) {
+  ExampleRun run;
+  run.with_test_row = false;
+  const RunSummary killed = summary_of(run);
+  EXPECT_EQ(killed.exit_code, kExitDataInvalid);
+  EXPECT_EQ(verdict(killed), "end unknown; data invalid");
+  EXPECT_EQ(killed.completed_steps, 10'000) << "from the steps recorded";
+  EXPECT_FALSE(killed.planned_steps.has_value());
+  EXPECT_DOUBLE_EQ(killed.wall_time_s.value(), 5.0);
+
+  const TemporaryDirectory directory;
+  run.write_site(directory / "storey_1.h5");
+  const RunSummary alone = summarise(directory.path());
+  EXPECT_THAT(alone.data_faults, ElementsAre(HasSubstr("coordinator's file is missing")));
+  EXPECT_EQ(alone.substructures.at(0).tracking.size(), 1U);
+}
+
+TEST(RunSummary, AFileOnAnotherHostIsNoFault) {
+  const TemporaryDirectory directory;
+  ExampleRun run;
+  run.write_coordinator(directory / "coordinator.h5");
+  run.write_numerical(directory / "storey_2.h5");
+  const RunSummary summary = summarise(directory.path());
+  EXPECT_EQ(summary.exit_code, kExitCompleted);
+  EXPECT_THAT(summary.remarks, ElementsAre(HasSubstr("storey_1: no file")));
+}
+
+TEST(RunSummary, AFileOfAnotherScenarioOrNoFileAtAllIsAFault) {
+  const TemporaryDirectory directory;
+  ExampleRun{}.write(directory.path());
+  RunFileHeader stranger = ExampleRun::header("left_over", Role::experimental_site);
+  stranger.scenario_digest[0] ^= 1U;
+  RunFileWriter{directory / "left_over.h5", stranger, ExampleRun::site_tables()}.close();
+  std::ofstream{directory / "torn.h5"} << "torn";
+  const RunSummary summary = summarise(directory.path());
+  EXPECT_THAT(summary.data_faults,
+              ElementsAre(HasSubstr("torn.h5"), HasSubstr("left_over.h5 belongs to another test or scenario")));
+  const TemporaryDirectory empty;
+  EXPECT_THROW((void)summarise(empty.path()), RecordingError);
+  EXPECT_THROW((void)summarise(empty / "absent"), RecordingError);
+}
+
+TEST(RunSummary, TheJsonIsSiAndCompleteAndHasNullWhereNothingIsKnown) {
+  ExampleRun run;
+  run.site_at_rest = true;
+  run.site_events = {example_event()};
+  std::ostringstream stream;
+  write_summary_json(summary_of(run), stream);
+  const auto json = nlohmann::json::parse(stream.str());
+  EXPECT_EQ(json.at("schema"), "hybridtest/summary/1");
+  EXPECT_EQ(json.at("exit_code"), 0);
+  EXPECT_EQ(json.at("stop_reason"), "completed");
+  EXPECT_EQ(json.at("peak_displacement").at(1).at("displacement_m"), -0.045);
+  const auto& site = json.at("substructures").at(0);
+  EXPECT_EQ(site.at("peak_force").at(0).at("force_n"), -41'000.0);
+  EXPECT_EQ(site.at("exchange").at("round_trip_us").at("p99"), 99.0);
+  EXPECT_EQ(site.at("tracking").at(0).at("rms_m"), 0.0);
+  EXPECT_TRUE(site.at("tracking").at(0).at("equivalent_delay_s").is_null());
+  EXPECT_TRUE(json.at("substructures").at(1).at("energy_error").is_null());
+  EXPECT_EQ(json.at("interlocks").at(0).at("limit"), 0.12);
+  EXPECT_EQ(json.at("participants").at(1).at("role"), "experimental_site");
+}
+
+TEST(RunSummary, ThePrintedFormStartsWithTheVerdictAndUsesEngineeringUnits) {
+  const std::string text = printed(summary_of({}));
+  EXPECT_TRUE(text.starts_with("COMPLETED  (exit 0)  two_storey\n")) << text;
+  EXPECT_THAT(text, HasSubstr("10000 of 10000 steps, 10.000 s of model time in 4.00 s, 2500 steps/s"));
+  EXPECT_THAT(text, HasSubstr("-45.000      2.000"));           // mm, s
+  EXPECT_THAT(text, HasSubstr("-41.000      3.000"));           // kN, s
+  EXPECT_THAT(text, HasSubstr("0.050      0.099      0.100"));  // ms
+  EXPECT_THAT(text, HasSubstr("12.50"));                        // delay, ms
+  EXPECT_THAT(text, Not(HasSubstr("invalid")));
+  for (std::istringstream lines{text}; !lines.eof();) {
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_LE(line.size(), 140U) << line;
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,97 @@
+#pragma once
+
+// Everything that Fast DDS names or spells differently from one major version to the next, so
+// that a port to another version starts and ends here.
+
+#include <fastrtps/config.h>
+
+#if FASTRTPS_VERSION_MAJOR != 2
+#error "written for Fast DDS 2.x; give the names below their meaning in this version"
+#endif
+
+#include <fastdds/rtps/common/Locator.h>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/types/TypesBase.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+#include <atomic>
+#include <cstdint>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <mutex>
+#include <utility>
+
+#include "hybridtestPubSubTypes.h"
+
+namespace hybridtest::fast_dds {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastdds::rtps;
+
+using Locator = eprosima::fastrtps::rtps::Locator_t;
+using IpLocator = eprosima::fastrtps::rtps::IPLocator;
+using DdsDuration = eprosima::fastrtps::Duration_t;
+using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
+using DiscoveryProtocol = eprosima::fastrtps::rtps::DiscoveryProtocol_t;
+using RemoteServer = eprosima::fastdds::rtps::RemoteServerAttributes;
+using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+using InstanceHandle = eprosima::fastrtps::rtps::InstanceHandle_t;
+using DiscoveryInfo = eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+
+inline const ReturnCode kReturnOk = ReturnCode::RETCODE_OK;
+inline constexpr auto kPreallocated = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+
+[[nodiscard]] inline bool participant_left(const DiscoveryInfo& info) {
+  return info.status == DiscoveryInfo::REMOVED_PARTICIPANT || info.status == DiscoveryInfo::DROPPED_PARTICIPANT;
+}
+
+[[nodiscard]] inline GuidPrefix prefix_of(const DiscoveryInfo& info) { return info.info.m_guid.guidPrefix; }
+
+/// Prefix of the participant that an endpoint belongs to; the handle is the endpoint's GUID.
+[[nodiscard]] inline GuidPrefix prefix_of(const InstanceHandle& endpoint) {
+  return eprosima::fastrtps::rtps::iHandle2GUID(endpoint).guidPrefix;
+}
+
+/// Participants of one process talk over the network as those of several do, so that nothing
+/// depends on who shares a process with whom. Before the first participant.
+inline void turn_off_intraprocess_delivery() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+}
+
+/// A generated type made safe against what the network sends and against its own scratch memory.
+///
+/// Generated deserialize() lets exceptions other than "too short" through, which would end the
+/// process from a thread of Fast DDS; generated getKey() computes in a buffer that a writing and
+/// a receiving thread share.
+template <class Generated>
+class CheckedType final : public Generated {
+ public:
+  /// @param malformed   counts payloads that are not of this type; outlives the type.
+  explicit CheckedType(std::atomic<std::uint64_t>& malformed) : malformed_{malformed} {}
+
+  bool deserialize(Payload* payload, void* sample) override {
+    try {
+      if (Generated::deserialize(payload, sample)) return true;
+    } catch (...) {
+    }
+    malformed_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+
+  bool getKey(void* sample, InstanceHandle* handle, bool force_md5) override {
+    const std::lock_guard lock{key_mutex_};
+    return Generated::getKey(sample, handle, force_md5);
+  }
+
+ private:
+  std::atomic<std::uint64_t>& malformed_;
+  std::mutex key_mutex_;
+};
+
+}  // namespace hybridtest::fast_dds

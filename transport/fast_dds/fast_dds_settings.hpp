@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/time.hpp"
+
+namespace hybridtest::fast_dds {
+
+/// Where and how a participant meets the others: deployment, no protocol meaning.
+struct FastDdsSettings {
+  /// DDS domain, 0 to 232; it chooses the UDP ports.
+  std::uint32_t domain = 0;
+
+  /// Only this host: the loopback interface, unicast discovery on 127.0.0.1. Works without any
+  /// network and without multicast.
+  bool loopback_only = false;
+  /// Participants on this host that can find each other with loopback_only, 1 to 200, counting
+  /// all that one process made since its start. Each announcement is sent to so many ports.
+  std::uint32_t loopback_participants = 40;
+
+  /// Shared memory between processes of one host besides UDP. Off by default: it brought no
+  /// lower latency here, and segments that killed processes leave behind can keep later ones
+  /// from talking. UDP is always there as well.
+  bool shared_memory = false;
+
+  /// `host` or `host:port` of participants to ask, where multicast does not reach.
+  std::vector<std::string> initial_peers;
+  /// `host:port` of a `fastdds discovery` server with id 0, in place of multicast and peers.
+  std::optional<std::string> discovery_server;
+  /// Fast DDS XML profiles. Its participant profile named `hybridtest` takes the place of
+  /// everything above but the domain (interfaces, TCP, security).
+  std::optional<std::filesystem::path> profile_file;
+
+  /// A participant that was not heard for so long is lost; at least 0.1 s.
+  Duration lease = std::chrono::seconds{2};
+  /// A participant whose rig can move and whose statuses pause for so long is lost as well: its
+  /// process lives, its node does not. Every node repeats its status at least twice as often.
+  Duration heartbeat_deadline = std::chrono::seconds{2};
+};
+
+}  // namespace hybridtest::fast_dds

@@ -1,0 +1,113 @@
+#include "transport/fast_dds/participant.hpp"
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "transport/fast_dds/participant_qos.hpp"
+
+namespace hybridtest::fast_dds {
+namespace {
+
+std::string checked_name(std::string_view test_name) {
+  if (test_name.empty() || test_name.size() > 64 || test_name.find_first_of("*?[]/") != std::string_view::npos) {
+    throw std::invalid_argument{"test name `" + std::string{test_name} +
+                                "`: expected 1 to 64 characters without * ? [ ] /"};
+  }
+  return std::string{test_name};
+}
+
+template <class Entity>
+Entity* created(Entity* entity, const char* what) {
+  if (entity == nullptr) throw std::runtime_error{std::string{"Fast DDS could not create the "} + what};
+  return entity;
+}
+
+}  // namespace
+
+Participant::Participant(const FastDdsSettings& settings, std::string_view test_name)
+    : settings_{settings}, test_name_{checked_name(test_name)} {
+  turn_off_intraprocess_delivery();
+  const dds::DomainParticipantQos qos = participant_qos(settings_);
+  participant_ = created(dds::DomainParticipantFactory::get_instance()->create_participant(settings_.domain, qos, this,
+                                                                                           dds::StatusMask::none()),
+                         "participant; is every UDP port of the domain taken?");
+}
+
+Participant::~Participant() {
+  participant_->set_listener(nullptr);
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+std::string Participant::partition(SubstructureIndex substructure) const {
+  return test_name_ + "/" + std::to_string(substructure);
+}
+
+dds::Topic* Participant::topic(const char* name, const std::function<dds::TypeSupport()>& make_type) {
+  const std::lock_guard lock{mutex_};
+  dds::Topic*& topic = topics_[name];
+  if (topic == nullptr) {
+    const dds::TypeSupport type = make_type();
+    type.register_type(participant_);
+    topic = created(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT), "topic");
+  }
+  return topic;
+}
+
+dds::DataWriter* Participant::create_writer(dds::Topic* topic, const std::string& partition,
+                                            const dds::DataWriterQos& qos, dds::DataWriterListener* listener) {
+  const std::lock_guard lock{mutex_};
+  dds::Publisher*& publisher = publishers_[partition];
+  if (publisher == nullptr) {
+    dds::PublisherQos publisher_qos;
+    publisher_qos.partition().push_back(partition.c_str());
+    publisher = created(participant_->create_publisher(publisher_qos), "publisher");
+  }
+  return created(publisher->create_datawriter(topic, qos, listener), "writer");
+}
+
+void Participant::remove(dds::DataWriter* writer) noexcept {
+  const std::lock_guard lock{mutex_};
+  for (const auto& [partition, publisher] : publishers_) {
+    if (publisher->delete_datawriter(writer) == kReturnOk) return;
+  }
+}
+
+dds::DataReader* Participant::create_reader(dds::Topic* topic, const std::string& partition,
+                                            const dds::DataReaderQos& qos, dds::DataReaderListener* listener) {
+  const std::lock_guard lock{mutex_};
+  dds::Subscriber*& subscriber = subscribers_[partition];
+  if (subscriber == nullptr) {
+    dds::SubscriberQos subscriber_qos;
+    subscriber_qos.partition().push_back(partition.c_str());
+    subscriber = created(participant_->create_subscriber(subscriber_qos), "subscriber");
+  }
+  return created(subscriber->create_datareader(topic, qos, listener), "reader");
+}
+
+void Participant::remove(dds::DataReader* reader) noexcept {
+  const std::lock_guard lock{mutex_};
+  for (const auto& [partition, subscriber] : subscribers_) {
+    if (subscriber->delete_datareader(reader) == kReturnOk) return;
+  }
+}
+
+std::size_t Participant::on_departure(std::function<void(const GuidPrefix&)> action) {
+  const std::lock_guard lock{departure_mutex_};
+  departure_actions_.emplace(++departure_count_, std::move(action));
+  return departure_count_;
+}
+
+void Participant::forget(std::size_t departure_action) noexcept {
+  const std::lock_guard lock{departure_mutex_};
+  departure_actions_.erase(departure_action);
+}
+
+void Participant::on_participant_discovery(dds::DomainParticipant*, DiscoveryInfo&& info) {
+  if (!participant_left(info)) return;
+  const std::lock_guard lock{departure_mutex_};
+  for (const auto& [number, action] : departure_actions_) action(prefix_of(info));
+}
+
+}  // namespace hybridtest::fast_dds

@@ -1,0 +1,128 @@
+#include "transport/fast_dds/participant_qos.hpp"
+
+#include <charconv>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/topics.hpp"
+
+namespace hybridtest::fast_dds {
+namespace {
+
+constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kProfileName = "hybridtest";
+// What a discovery server started as `fastdds discovery -i 0` calls itself.
+constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
+constexpr std::uint16_t kServerPort = 11811;
+
+void check(const FastDdsSettings& settings) {
+  if (settings.domain > 232) throw std::invalid_argument{"DDS domain must be 0 to 232"};
+  if (settings.loopback_participants < 1 || settings.loopback_participants > 200) {
+    throw std::invalid_argument{"loopback_participants must be 1 to 200"};
+  }
+  if (settings.lease < std::chrono::milliseconds{100} || settings.heartbeat_deadline < std::chrono::milliseconds{100}) {
+    throw std::invalid_argument{"the lease and the heartbeat deadline must be 0.1 s or longer"};
+  }
+}
+
+// `host` or `host:port`; a port of 0 leaves the choice to Fast DDS.
+Locator to_locator(std::string_view address, std::uint16_t default_port) {
+  const std::string_view host = address.substr(0, address.find(':'));
+  std::uint16_t port = default_port;
+  if (host.size() < address.size()) {
+    const std::string_view digits = address.substr(host.size() + 1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+    if (error != std::errc{} || end != digits.data() + digits.size() || port == 0) {
+      throw std::invalid_argument{"peer `" + std::string{address} + "`: expected host or host:port, port 1 to 65535"};
+    }
+  }
+  Locator locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = port;
+  std::string numeric{host};
+  if (!IpLocator::isIPv4(numeric)) {
+    const auto addresses = IpLocator::resolveNameDNS(numeric);
+    if (addresses.first.empty()) {
+      throw std::runtime_error{"peer `" + std::string{address} + "`: host has no IPv4 address; check its name"};
+    }
+    numeric = *addresses.first.begin();
+  }
+  IpLocator::setIPv4(locator, numeric);
+  return locator;
+}
+
+void add_transports(const FastDdsSettings& settings, dds::DomainParticipantQos& qos) {
+  const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  // A full socket buffer is a lost packet, which the protocol makes up for; a blocked step is not.
+  udp->non_blocking_send = true;
+  udp->maxInitialPeersRange = settings.loopback_participants;
+  if (settings.loopback_only) udp->interfaceWhiteList.emplace_back(kLoopback);
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  if (settings.shared_memory) {
+    qos.transport().user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
+  }
+}
+
+void add_discovery(const FastDdsSettings& settings, dds::DomainParticipantQos& qos) {
+  auto& builtin = qos.wire_protocol().builtin;
+  if (settings.discovery_server) {
+    RemoteServer server;
+    server.ReadguidPrefix(kServerPrefix);
+    server.metatrafficUnicastLocatorList.push_back(to_locator(*settings.discovery_server, kServerPort));
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::CLIENT;
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+    return;
+  }
+  if (settings.loopback_only) {
+    // Own metatraffic locators keep Fast DDS from adding its multicast ones.
+    builtin.metatrafficUnicastLocatorList.push_back(to_locator(kLoopback, 0));
+    builtin.initialPeersList.push_back(to_locator(kLoopback, 0));
+  }
+  for (const std::string& peer : settings.initial_peers) builtin.initialPeersList.push_back(to_locator(peer, 0));
+  if (!settings.loopback_only && !settings.initial_peers.empty()) {
+    // A list of peers replaces multicast discovery unless multicast is one of them.
+    builtin.initialPeersList.push_back(to_locator("239.255.0.1", 0));
+  }
+}
+
+dds::DomainParticipantQos profile_qos(const std::filesystem::path& file) {
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  if (factory->load_XML_profiles_file(file.string()) != kReturnOk) {
+    throw std::runtime_error{"Fast DDS profile file `" + file.string() + "` cannot be read or is not valid"};
+  }
+  dds::DomainParticipantQos qos;
+  if (factory->get_participant_qos_from_profile(kProfileName, qos) != kReturnOk) {
+    throw std::runtime_error{"Fast DDS profile file `" + file.string() + "` has no participant profile named `" +
+                             kProfileName + "`"};
+  }
+  return qos;
+}
+
+}  // namespace
+
+dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
+  check(settings);
+  dds::DomainParticipantQos qos;
+  if (settings.profile_file) {
+    qos = profile_qos(*settings.profile_file);
+  } else {
+    add_transports(settings, qos);
+    add_discovery(settings, qos);
+  }
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.leaseDuration = to_dds(settings.lease);
+  discovery.leaseDuration_announcementperiod = to_dds(settings.lease / 4);
+  // Whoever is there answers the first announcement that reaches him at once; the repeats are
+  // for those who open their socket a little later.
+  discovery.initial_announcements.count = 10;
+  discovery.initial_announcements.period = to_dds(std::chrono::milliseconds{50});
+  qos.name("hybridtest");
+  return qos;
+}
+
+}  // namespace hybridtest::fast_dds

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+#include "transport/fast_dds/fast_dds_settings.hpp"
+
+namespace hybridtest::fast_dds {
+
+/// How the settings look to Fast DDS: transports, discovery, leases.
+/// @throws std::invalid_argument, std::runtime_error as make_fast_dds_transport().
+[[nodiscard]] eprosima::fastdds::dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings);
+
+}  // namespace hybridtest::fast_dds

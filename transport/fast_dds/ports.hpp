@@ -1,0 +1,150 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "transport/bounded_queue.hpp"
+#include "transport/fast_dds/matches.hpp"
+#include "transport/fast_dds/participant.hpp"
+#include "transport/fast_dds/peers.hpp"
+#include "transport/fast_dds/wire_mapping.hpp"
+#include "transport/transport.hpp"
+
+namespace hybridtest::fast_dds {
+
+/// One DDS writer as an Outbox. send() serialises and hands the packet to the socket in the
+/// calling thread.
+template <class Message>
+class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener {
+ public:
+  /// @param matches   told who listens; may be null.
+  DdsOutbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
+      : participant_{participant}, matches_{std::move(matches)} {
+    writer_ = participant_.create_writer<Message>(partition, this);
+  }
+  ~DdsOutbox() override {
+    participant_.remove(writer_);
+    if (matches_) matches_->clear();
+  }
+  DdsOutbox(const DdsOutbox&) = delete;
+  DdsOutbox& operator=(const DdsOutbox&) = delete;
+
+  bool send(const Message& message) noexcept override {
+    try {
+      encode(message, sample_);
+      if (writer_->write(&sample_, dds::HANDLE_NIL) == kReturnOk) return true;
+    } catch (...) {  // out of memory inside Fast DDS: as good as a full queue
+    }
+    participant_.unsent.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+
+ private:
+  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {
+    if (!matches_) return;
+    matches_->change(prefix_of(status.last_subscription_handle), status.current_count_change);
+    participant_.waker.signal();
+  }
+
+  Participant& participant_;
+  std::shared_ptr<Matches> matches_;
+  typename Topic<Message>::Sample sample_;
+  dds::DataWriter* writer_ = nullptr;
+};
+
+/// One DDS reader as an Inbox. The thread of Fast DDS that receives a sample checks it, converts
+/// it, puts it in the queue and wakes the participant's thread; so take() never waits for a lock
+/// that is held while the network is served.
+///
+/// The inbox of statuses adds a status `lost` for everyone who is.
+template <class Message>
+class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
+ public:
+  /// @param matches   told who sends; may be null.
+  DdsInbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
+      : participant_{participant}, own_prefix_{participant.prefix()}, matches_{std::move(matches)} {
+    if constexpr (kWatchesPeers) departures_ = participant_.on_departure([this](const auto& who) { lose(who); });
+    reader_ = participant_.create_reader<Message>(partition, this);
+  }
+  ~DdsInbox() override {
+    participant_.remove(reader_);
+    if (matches_) matches_->clear();
+    if constexpr (kWatchesPeers) participant_.forget(departures_);
+  }
+  DdsInbox(const DdsInbox&) = delete;
+  DdsInbox& operator=(const DdsInbox&) = delete;
+
+  [[nodiscard]] bool take(Message& message) noexcept override { return queue_.pop(message); }
+
+ private:
+  static constexpr bool kWatchesPeers = std::is_same_v<Message, ParticipantStatus>;
+  struct Nothing {};
+
+  void on_data_available(dds::DataReader* reader) override {
+    typename Topic<Message>::Sample sample;
+    dds::SampleInfo info;
+    bool any = false;
+    while (reader->take_next_sample(&sample, &info) == kReturnOk) {
+      if (!info.valid_data || prefix_of(info.publication_handle) == own_prefix_) continue;
+      Message message;
+      if (!decode(sample, message)) {
+        participant_.malformed.fetch_add(1, std::memory_order_relaxed);
+        continue;
+      }
+      if constexpr (kWatchesPeers) peers_.heard(prefix_of(info.publication_handle), info.instance_handle, message);
+      if (!queue_.push(message)) participant_.overflowed.fetch_add(1, std::memory_order_relaxed);
+      any = true;
+    }
+    if (any) participant_.waker.signal();
+  }
+
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
+    if constexpr (kWatchesPeers) {
+      if (status.current_count_change < 0) lose(prefix_of(status.last_publication_handle));
+    }
+    if (!matches_) return;
+    matches_->change(prefix_of(status.last_publication_handle), status.current_count_change);
+    participant_.waker.signal();
+  }
+
+  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override {
+    if constexpr (kWatchesPeers) {
+      if (status.not_alive_count_change > 0) lose(prefix_of(status.last_publication_handle));
+    }
+  }
+
+  void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus& status) override {
+    if constexpr (kWatchesPeers) {
+      const std::optional<ParticipantStatus> loss = peers_.silent(status.last_instance_handle);
+      if (!loss) return;
+      participant_.deadlines_missed.fetch_add(1, std::memory_order_relaxed);
+      report(*loss);
+    }
+  }
+
+  void lose(const GuidPrefix& who) {
+    if constexpr (kWatchesPeers) {
+      if (const std::optional<ParticipantStatus> loss = peers_.gone(who)) report(*loss);
+    }
+  }
+
+  void report(const ParticipantStatus& loss) {
+    if constexpr (kWatchesPeers) {
+      queue_.push_displacing(loss);
+      participant_.waker.signal();
+    }
+  }
+
+  Participant& participant_;
+  const GuidPrefix own_prefix_;
+  std::shared_ptr<Matches> matches_;
+  BoundedQueue<Message> queue_{kInboxCapacity<Message>};
+  [[no_unique_address]] std::conditional_t<kWatchesPeers, Peers, Nothing> peers_;
+  std::size_t departures_ = 0;  // what on_departure() returned
+  dds::DataReader* reader_ = nullptr;
+};
+
+}  // namespace hybridtest::fast_dds

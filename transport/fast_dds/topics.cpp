@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "transport/fast_dds/topics.hpp"
+
+namespace hybridtest::fast_dds {
+namespace {
+
+constexpr Duration kRepairPeriod = std::chrono::milliseconds{20};
+
+// What writers and readers state alike.
+template <class Qos>
+void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSettings& settings, Qos& qos) {
+  qos.reliability().kind = delivery.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind =
+      delivery.for_late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_instances = delivery.instances;
+  qos.resource_limits().max_samples = depth * delivery.instances;
+  qos.resource_limits().allocated_samples = std::min(qos.resource_limits().max_samples, 64);
+  qos.endpoint().history_memory_policy = kPreallocated;
+  // Delivery through files shared by processes: what a killed process leaves behind blocks others.
+  qos.data_sharing().off();
+  if (delivery.heartbeat) {
+    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = to_dds(settings.lease);
+    qos.deadline().period = to_dds(settings.heartbeat_deadline);
+  }
+}
+
+}  // namespace
+
+DdsDuration to_dds(Duration duration) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(duration);
+  return {static_cast<std::int32_t>(seconds.count()), static_cast<std::uint32_t>((duration - seconds).count())};
+}
+
+dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& settings) {
+  dds::DataWriterQos qos;
+  set_delivery(delivery, delivery.depth, settings, qos);
+  if (delivery.heartbeat) qos.liveliness().announcement_period = to_dds(settings.lease / 4);
+  // The caller's thread sends: no queue and no thread switch on the way of a command.
+  qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+  qos.reliability().max_blocking_time = to_dds(std::chrono::milliseconds{10});
+  qos.reliable_writer_qos().times.heartbeatPeriod = to_dds(kRepairPeriod);
+  qos.reliable_writer_qos().times.nackResponseDelay = to_dds(Duration{0});
+  return qos;
+}
+
+dds::DataReaderQos reader_qos(const Delivery& delivery, const FastDdsSettings& settings) {
+  dds::DataReaderQos qos;
+  set_delivery(delivery, delivery.reader_depth > 0 ? delivery.reader_depth : delivery.depth, settings, qos);
+  return qos;
+}
+
+}  // namespace hybridtest::fast_dds

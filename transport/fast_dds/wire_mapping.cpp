@@ -1,0 +1,315 @@
+#include "transport/fast_dds/wire_mapping.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+
+namespace hybridtest::fast_dds {
+namespace {
+
+template <class Array>
+constexpr std::size_t kSize = std::tuple_size_v<std::remove_cvref_t<Array>>;
+static_assert(kSize<decltype(wire::CommandPoint{}.displacement_m())> == kMaxInterfaceDofs);
+static_assert(kSize<decltype(wire::ForceMeasurement{}.force_n())> == kMaxInterfaceDofs);
+static_assert(kSize<decltype(wire::TestAnnouncement{}.substructures())> == kMaxSubstructures);
+static_assert(kSize<decltype(wire::DisplacementCommand{}.points())> == kCommandPoints);
+static_assert(kSize<decltype(wire::SignalBlock{}.samples())> == kMaxSignalSamples);
+static_assert(wire::Name::max_size == ParticipantId::kCapacity);
+
+using Values = std::array<double, kMaxInterfaceDofs>;
+
+// --- checks
+
+bool is_time(double model_time_s) noexcept { return std::isfinite(model_time_s) && model_time_s >= 0.0; }
+
+bool is_step(Step step) noexcept { return step >= kNoStep; }
+
+bool is_substructure(std::uint16_t index) noexcept { return index < kMaxSubstructures; }
+
+template <class Enum>
+bool to_enum(std::uint8_t number, Enum last, Enum& value) noexcept {
+  if (number > static_cast<std::uint8_t>(last)) return false;
+  value = static_cast<Enum>(number);
+  return true;
+}
+
+bool to_reason(std::uint8_t number, StopReason& reason) noexcept {
+  reason = static_cast<StopReason>(number);
+  return name(reason) != "unknown";
+}
+
+bool to_code(std::uint16_t number, EventCode& code) noexcept {
+  code = static_cast<EventCode>(number);
+  return name(code) != "unknown";
+}
+
+// A bit is known when it has a name.
+std::uint32_t known_faults() noexcept {
+  std::uint32_t known = 0;
+  for (std::uint32_t bit = 1; bit != 0; bit <<= 1U) {
+    if (name(static_cast<FaultFlags>(bit)) != "several") known |= bit;
+  }
+  return known;
+}
+
+bool to_faults(std::uint32_t bits, FaultFlags& faults) noexcept {
+  static const std::uint32_t known = known_faults();
+  faults = static_cast<FaultFlags>(bits);
+  return (bits & ~known) == 0;
+}
+
+bool to_flags(std::uint32_t bits, MeasurementFlags& flags) noexcept {
+  constexpr MeasurementFlags kKnown = MeasurementFlags::extrapolated | MeasurementFlags::held |
+                                      MeasurementFlags::saturated | MeasurementFlags::late | MeasurementFlags::repeated;
+  flags = static_cast<MeasurementFlags>(bits);
+  return (bits & ~static_cast<std::uint32_t>(kKnown)) == 0;
+}
+
+// --- parts
+
+std::uint8_t encode_values(const InterfaceVector& vector, Values& values) noexcept {
+  values.fill(0.0);
+  for (Eigen::Index i = 0; i < vector.size(); ++i) values[static_cast<std::size_t>(i)] = vector[i];
+  return static_cast<std::uint8_t>(vector.size());
+}
+
+bool decode_values(const Values& values, std::uint8_t count, InterfaceVector& vector) noexcept {
+  if (count > values.size()) return false;
+  vector = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
+  return true;
+}
+
+template <std::size_t Capacity>
+void encode_text(const FixedText<Capacity>& text, eprosima::fastrtps::fixed_string<Capacity>& field) {
+  std::array<char, Capacity + 1> terminated{};
+  std::copy_n(text.view().data(), text.view().size(), terminated.data());
+  field = terminated.data();
+}
+
+template <std::size_t Capacity>
+FixedText<Capacity> decode_text(const eprosima::fastrtps::fixed_string<Capacity>& field) noexcept {
+  return FixedText<Capacity>{std::string_view{field.c_str(), field.size()}};
+}
+
+void encode_point(const CommandPoint& point, wire::CommandPoint& sample) noexcept {
+  sample.step(point.step);
+  sample.model_time_s(point.model_time_s);
+  sample.displacement_count(encode_values(point.displacement_m, sample.displacement_m()));
+  sample.velocity_count(encode_values(point.velocity_m_per_s, sample.velocity_m_per_s()));
+  sample.acceleration_count(encode_values(point.acceleration_m_per_s2, sample.acceleration_m_per_s2()));
+}
+
+bool decode_point(const wire::CommandPoint& sample, CommandPoint& point) noexcept {
+  point.step = sample.step();
+  point.model_time_s = sample.model_time_s();
+  return is_step(point.step) && is_time(point.model_time_s) &&
+         decode_values(sample.displacement_m(), sample.displacement_count(), point.displacement_m) &&
+         decode_values(sample.velocity_m_per_s(), sample.velocity_count(), point.velocity_m_per_s) &&
+         decode_values(sample.acceleration_m_per_s2(), sample.acceleration_count(), point.acceleration_m_per_s2);
+}
+
+}  // namespace
+
+// --- test_announcement
+
+void encode(const TestAnnouncement& message, wire::TestAnnouncement& sample) {
+  encode_text(message.test_name, sample.test_name());
+  sample.coordinator(message.coordinator);
+  sample.scenario_digest() = message.scenario_digest;
+  sample.mode(static_cast<std::uint8_t>(message.mode));
+  sample.step_s(message.step_s);
+  sample.duration_s(message.duration_s);
+  sample.time_scale(message.time_scale);
+  sample.substructure_count(message.substructure_count);
+  for (std::size_t i = 0; i < message.substructures.size(); ++i) {
+    const SubstructureAnnouncement& from = message.substructures[i];
+    wire::SubstructureAnnouncement& to = sample.substructures()[i];
+    encode_text(from.id, to.id());
+    to.role(static_cast<std::uint8_t>(from.role));
+    to.interface_dofs(from.interface_dofs);
+  }
+}
+
+bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noexcept {
+  message.test_name = decode_text(sample.test_name());
+  message.coordinator = sample.coordinator();
+  message.scenario_digest = sample.scenario_digest();
+  message.step_s = sample.step_s();
+  message.duration_s = sample.duration_s();
+  message.time_scale = sample.time_scale();
+  message.substructure_count = sample.substructure_count();
+  if (!to_enum(sample.mode(), CouplingMode::paced, message.mode)) return false;
+  if (!is_time(message.step_s) || !is_time(message.duration_s) || !is_time(message.time_scale)) return false;
+  if (message.substructure_count > kMaxSubstructures) return false;
+  for (std::size_t i = 0; i < message.substructures.size(); ++i) {
+    const wire::SubstructureAnnouncement& from = sample.substructures()[i];
+    SubstructureAnnouncement& to = message.substructures[i];
+    to.id = decode_text(from.id());
+    to.interface_dofs = from.interface_dofs();
+    if (!to_enum(from.role(), Role::operator_tool, to.role) || to.interface_dofs > kMaxInterfaceDofs) return false;
+  }
+  return true;
+}
+
+// --- participant_status
+
+void encode(const ParticipantStatus& message, wire::ParticipantStatus& sample) {
+  encode_text(message.id, sample.id());
+  sample.role(static_cast<std::uint8_t>(message.role));
+  sample.incarnation(message.incarnation);
+  sample.state(static_cast<std::uint8_t>(message.state));
+  sample.scenario_digest() = message.scenario_digest;
+  sample.last_step(message.last_step);
+  sample.faults(static_cast<std::uint32_t>(message.faults));
+  sample.clock_ns(message.clock.count());
+}
+
+bool decode(const wire::ParticipantStatus& sample, ParticipantStatus& message) noexcept {
+  message.id = decode_text(sample.id());
+  message.incarnation = sample.incarnation();
+  message.scenario_digest = sample.scenario_digest();
+  message.last_step = sample.last_step();
+  message.clock = Duration{sample.clock_ns()};
+  return to_enum(sample.role(), Role::operator_tool, message.role) &&
+         to_enum(sample.state(), LifecycleState::refused, message.state) && is_step(message.last_step) &&
+         to_faults(sample.faults(), message.faults);
+}
+
+// --- displacement_command
+
+void encode(const DisplacementCommand& message, wire::DisplacementCommand& sample) noexcept {
+  sample.substructure(message.substructure);
+  sample.attempt(message.attempt);
+  sample.point_count(message.point_count);
+  sample.coordinator(message.coordinator);
+  sample.send_time_ns(message.send_time.count());
+  for (std::size_t i = 0; i < message.points.size(); ++i) encode_point(message.points[i], sample.points()[i]);
+}
+
+bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& message) noexcept {
+  message.substructure = sample.substructure();
+  message.attempt = sample.attempt();
+  message.point_count = sample.point_count();
+  message.coordinator = sample.coordinator();
+  message.send_time = Duration{sample.send_time_ns()};
+  if (!is_substructure(message.substructure)) return false;
+  if (message.point_count < 1 || message.point_count > kCommandPoints) return false;
+  for (std::size_t i = 0; i < message.points.size(); ++i) {
+    if (!decode_point(sample.points()[i], message.points[i])) return false;
+  }
+  return true;
+}
+
+// --- force_measurement
+
+void encode(const ForceMeasurement& message, wire::ForceMeasurement& sample) noexcept {
+  sample.substructure(message.substructure);
+  sample.flags(static_cast<std::uint32_t>(message.flags));
+  sample.sender(message.sender);
+  sample.step(message.step);
+  sample.model_time_s(message.model_time_s);
+  sample.receive_time_ns(message.receive_time.count());
+  sample.send_time_ns(message.send_time.count());
+  sample.command_send_time_ns(message.command_send_time.count());
+  sample.imposed_displacement_count(encode_values(message.imposed_displacement_m, sample.imposed_displacement_m()));
+  sample.measured_displacement_count(encode_values(message.measured_displacement_m, sample.measured_displacement_m()));
+  sample.force_count(encode_values(message.force_n, sample.force_n()));
+}
+
+bool decode(const wire::ForceMeasurement& sample, ForceMeasurement& message) noexcept {
+  message.substructure = sample.substructure();
+  message.sender = sample.sender();
+  message.step = sample.step();
+  message.model_time_s = sample.model_time_s();
+  message.receive_time = Duration{sample.receive_time_ns()};
+  message.send_time = Duration{sample.send_time_ns()};
+  message.command_send_time = Duration{sample.command_send_time_ns()};
+  return is_substructure(message.substructure) && is_step(message.step) && is_time(message.model_time_s) &&
+         to_flags(sample.flags(), message.flags) &&
+         decode_values(sample.imposed_displacement_m(), sample.imposed_displacement_count(),
+                       message.imposed_displacement_m) &&
+         decode_values(sample.measured_displacement_m(), sample.measured_displacement_count(),
+                       message.measured_displacement_m) &&
+         decode_values(sample.force_n(), sample.force_count(), message.force_n);
+}
+
+// --- test_control
+
+void encode(const TestControl& message, wire::TestControl& sample) noexcept {
+  sample.verb(static_cast<std::uint8_t>(message.verb));
+  sample.sender(message.sender);
+  sample.sender_role(static_cast<std::uint8_t>(message.sender_role));
+  sample.reason(static_cast<std::uint8_t>(message.reason));
+}
+
+bool decode(const wire::TestControl& sample, TestControl& message) noexcept {
+  message.sender = sample.sender();
+  return to_enum(sample.verb(), ControlVerb::emergency_stop, message.verb) &&
+         to_enum(sample.sender_role(), Role::operator_tool, message.sender_role) &&
+         to_reason(sample.reason(), message.reason);
+}
+
+// --- event
+
+void encode(const Event& message, wire::Event& sample) {
+  encode_text(message.source, sample.source());
+  sample.incarnation(message.incarnation);
+  sample.severity(static_cast<std::uint8_t>(message.severity));
+  sample.code(static_cast<std::uint16_t>(message.code));
+  sample.step(message.step);
+  sample.model_time_s(message.model_time_s);
+  encode_text(message.subject, sample.subject());
+  sample.values() = message.values;
+  sample.clock_ns(message.clock.count());
+}
+
+bool decode(const wire::Event& sample, Event& message) noexcept {
+  message.source = decode_text(sample.source());
+  message.incarnation = sample.incarnation();
+  message.step = sample.step();
+  message.model_time_s = sample.model_time_s();
+  message.subject = decode_text(sample.subject());
+  message.values = sample.values();
+  message.clock = Duration{sample.clock_ns()};
+  return to_enum(sample.severity(), Severity::fault, message.severity) && to_code(sample.code(), message.code) &&
+         is_step(message.step) && is_time(message.model_time_s);
+}
+
+// --- signal_block
+
+void encode(const SignalBlock& message, wire::SignalBlock& sample) noexcept {
+  sample.substructure(message.substructure);
+  sample.sample_count(message.sample_count);
+  for (std::size_t i = 0; i < message.samples.size(); ++i) {
+    const SignalSample& from = message.samples[i];
+    wire::SignalSample& to = sample.samples()[i];
+    to.model_time_s(from.model_time_s);
+    to.target_displacement_m(from.target_displacement_m);
+    to.command_displacement_m(from.command_displacement_m);
+    to.measured_displacement_m(from.measured_displacement_m);
+    to.force_n(from.force_n);
+  }
+}
+
+bool decode(const wire::SignalBlock& sample, SignalBlock& message) noexcept {
+  message.substructure = sample.substructure();
+  message.sample_count = sample.sample_count();
+  if (!is_substructure(message.substructure) || message.sample_count > kMaxSignalSamples) return false;
+  for (std::size_t i = 0; i < message.samples.size(); ++i) {
+    const wire::SignalSample& from = sample.samples()[i];
+    SignalSample& to = message.samples[i];
+    to.model_time_s = from.model_time_s();
+    to.target_displacement_m = from.target_displacement_m();
+    to.command_displacement_m = from.command_displacement_m();
+    to.measured_displacement_m = from.measured_displacement_m();
+    to.force_n = from.force_n();
+    if (!is_time(to.model_time_s)) return false;
+  }
+  return true;
+}
+
+}  // namespace hybridtest::fast_dds

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/messages.hpp"
+#include "hybridtest.h"
+
+/// Between the messages of core/ and their form on the wire; the only place that knows both.
+///
+/// encode() takes any message that core/ can hold. decode() trusts nothing: it returns false,
+/// leaving `message` in an unspecified but valid state, when a count exceeds its array, a
+/// number is no enumerator or holds unknown flags, or a step, time or substructure is out of
+/// the range that the IDL states. Displacements and forces may be NaN or infinite; what that
+/// means is for the nodes to decide. No call touches the heap for the hot messages.
+namespace hybridtest::fast_dds {
+
+void encode(const TestAnnouncement& message, wire::TestAnnouncement& sample);
+void encode(const ParticipantStatus& message, wire::ParticipantStatus& sample);
+void encode(const DisplacementCommand& message, wire::DisplacementCommand& sample) noexcept;
+void encode(const ForceMeasurement& message, wire::ForceMeasurement& sample) noexcept;
+void encode(const TestControl& message, wire::TestControl& sample) noexcept;
+void encode(const Event& message, wire::Event& sample);
+void encode(const SignalBlock& message, wire::SignalBlock& sample) noexcept;
+
+[[nodiscard]] bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noexcept;
+[[nodiscard]] bool decode(const wire::ParticipantStatus& sample, ParticipantStatus& message) noexcept;
+[[nodiscard]] bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& message) noexcept;
+[[nodiscard]] bool decode(const wire::ForceMeasurement& sample, ForceMeasurement& message) noexcept;
+[[nodiscard]] bool decode(const wire::TestControl& sample, TestControl& message) noexcept;
+[[nodiscard]] bool decode(const wire::Event& sample, Event& message) noexcept;
+[[nodiscard]] bool decode(const wire::SignalBlock& sample, SignalBlock& message) noexcept;
+
+}  // namespace hybridtest::fast_dds

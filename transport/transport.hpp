@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "core/messages.hpp"
+#include "core/ports.hpp"
+#include "transport/waker.hpp"
+
+namespace hybridtest {
+
+/// Messages that wait in one inbox at most; a message beyond that is dropped and counted.
+/// Sized so that a thread which is late by a whole second of a fast test still loses nothing
+/// that the protocol does not repeat.
+template <class Message>
+inline constexpr std::size_t kInboxCapacity = 64;
+template <>
+inline constexpr std::size_t kInboxCapacity<ForceMeasurement> = 256;
+template <>
+inline constexpr std::size_t kInboxCapacity<ParticipantStatus> = 256;
+template <>
+inline constexpr std::size_t kInboxCapacity<Event> = 1024;
+
+/// What went wrong in the network layer since the transport was made.
+struct TransportCounters {
+  std::uint64_t overflowed = 0;        // dropped because an inbox of this participant was full
+  std::uint64_t malformed = 0;         // dropped because the bytes were not a valid message
+  std::uint64_t unsent = 0;            // send() returned false
+  std::uint64_t deadlines_missed = 0;  // heartbeats of participants that came late
+};
+
+/// One participant's door to the test: makes the ports of its Node.
+///
+/// - Messages travel inside one test (partition) and never back to the participant that sent them.
+/// - The order of one sender's messages is kept. send() never blocks.
+/// - Announcement and statuses are kept for those who join later: the newest per sender.
+/// - When a participant goes without having said `finished` or `refused`, every status inbox of
+///   the others yields its last status once more with state `lost`: when it leaves, or when its
+///   liveliness lease runs out. In a full inbox a loss displaces the oldest status.
+/// - Anything that arrives signals waker().
+///
+/// Ports may be made and destroyed at any time; each is used by one thread at a time. Methods
+/// that make ports throw std::runtime_error when the network layer refuses.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  /// What the participant's thread waits on.
+  [[nodiscard]] virtual Waker& waker() noexcept = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<Outbox<TestAnnouncement>> announcement_outbox() = 0;
+  [[nodiscard]] virtual std::unique_ptr<Inbox<TestAnnouncement>> announcement_inbox() = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<Outbox<ParticipantStatus>> status_outbox() = 0;
+  [[nodiscard]] virtual std::unique_ptr<Inbox<ParticipantStatus>> status_inbox() = 0;
+
+  /// To substructures 0 .. count - 1; a command for another is not accepted.
+  [[nodiscard]] virtual std::unique_ptr<Outbox<DisplacementCommand>> command_outbox(
+      std::uint16_t substructure_count) = 0;
+  /// Commands for this substructure alone.
+  [[nodiscard]] virtual std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() = 0;
+  /// Measurements of every substructure.
+  [[nodiscard]] virtual std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<Outbox<TestControl>> control_outbox() = 0;
+  [[nodiscard]] virtual std::unique_ptr<Inbox<TestControl>> control_inbox() = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<Outbox<Event>> event_outbox() = 0;
+  [[nodiscard]] virtual std::unique_ptr<Inbox<Event>> event_inbox() = 0;
+
+  /// Best effort: blocks may be lost without notice.
+  [[nodiscard]] virtual std::unique_ptr<Outbox<SignalBlock>> signal_outbox() = 0;
+  [[nodiscard]] virtual std::unique_ptr<Inbox<SignalBlock>> signal_inbox() = 0;
+
+  /// True when one and the same other participant takes this substructure's commands and sends
+  /// measurements, and this participant holds the opposite ports: a command sent now arrives.
+  /// A change signals waker().
+  [[nodiscard]] virtual bool reachable(SubstructureIndex substructure) const noexcept = 0;
+
+  [[nodiscard]] virtual TransportCounters counters() const noexcept = 0;
+};
+
+}  // namespace hybridtest

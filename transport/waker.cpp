@@ -1,0 +1,66 @@
+#include "transport/waker.hpp"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+
+namespace hybridtest {
+namespace {
+
+constexpr std::uint32_t kIdle = 0;
+constexpr std::uint32_t kSignalled = 1;
+constexpr std::uint32_t kWaiting = 2;
+
+// steady_clock of libstdc++ on Linux is CLOCK_MONOTONIC, the clock FUTEX_WAIT_BITSET measures with.
+timespec to_timespec(std::chrono::steady_clock::time_point deadline) noexcept {
+  using std::chrono::duration_cast;
+  using std::chrono::nanoseconds;
+  using std::chrono::seconds;
+  const nanoseconds since_boot = std::max(duration_cast<nanoseconds>(deadline.time_since_epoch()), nanoseconds{0});
+  const seconds whole = duration_cast<seconds>(since_boot);
+  timespec result{};
+  result.tv_sec = static_cast<time_t>(whole.count());
+  result.tv_nsec = static_cast<long>((since_boot - whole).count());
+  return result;
+}
+
+// False only when the deadline passed; everything else (woken, state changed, interrupted) is
+// for the caller to look at again.
+bool sleep_while(std::atomic<std::uint32_t>& state, std::uint32_t value, const timespec* deadline) noexcept {
+  const long result = ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state), FUTEX_WAIT_BITSET_PRIVATE, value,
+                                deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
+  return result == 0 || errno != ETIMEDOUT;
+}
+
+}  // namespace
+
+void Waker::signal() noexcept {
+  if (state_.exchange(kSignalled, std::memory_order_acq_rel) != kWaiting) return;
+  const int saved_errno = errno;
+  ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state_), FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+  errno = saved_errno;
+}
+
+bool Waker::wait_until(std::chrono::steady_clock::time_point deadline) noexcept {
+  const bool endless = deadline == std::chrono::steady_clock::time_point::max();
+  const timespec until = endless ? timespec{} : to_timespec(deadline);
+  bool in_time = true;
+  while (true) {
+    std::uint32_t expected = kIdle;
+    if (!state_.compare_exchange_strong(expected, kWaiting, std::memory_order_acq_rel)) {
+      // Signalled before. Read and written in one operation, so that what a signal arriving just
+      // now announces is seen by the caller.
+      state_.exchange(kIdle, std::memory_order_acq_rel);
+      return true;
+    }
+    if (in_time) in_time = sleep_while(state_, kWaiting, endless ? nullptr : &until);
+    if (state_.exchange(kIdle, std::memory_order_acq_rel) == kSignalled) return true;
+    if (!in_time) return false;
+  }
+}
+
+}  // namespace hybridtest
