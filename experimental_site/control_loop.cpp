@@ -19,18 +19,18 @@ constexpr std::int64_t kSignalDecimation = 16;
 
 }  // namespace
 
-ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig,
-                         std::vector<std::unique_ptr<Compensator>> compensators, EnergyErrorMonitor energy_error,
-                         ControlLoopPorts ports, RowSink& control_record)
+ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteCompensation compensation,
+                         EnergyErrorMonitor energy_error, ControlLoopPorts ports, RowSink& control_record)
     : settings_{settings},
       rig_{rig},
-      compensators_{std::move(compensators)},
+      compensation_{std::move(compensation)},
       energy_error_{std::move(energy_error)},
       ports_{ports},
       control_record_{control_record},
       trajectory_{settings.dofs, settings.step_s, settings.time_scale},
       period_s_{settings.step_s / settings.periods_per_step} {
-  HYBRIDTEST_ASSERT(std::cmp_equal(compensators_.size(), settings.dofs));
+  HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.commands.size(), settings.dofs));
+  HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.forces.size(), settings.dofs));
   const InterfaceVector zero = InterfaceVector::Zero(settings.dofs);
   command_.displacement_m = zero;
   wanted_command_m_ = zero;
@@ -38,8 +38,10 @@ ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig,
   no_motion_ = zero;
   feedback_ = {zero, zero};
   feedback_before_ = feedback_;
+  compensated_force_n_ = zero;
+  compensated_force_before_n_ = zero;
   ramp_begin_m_ = zero;
-  row_.resize(5 + 4 * static_cast<std::size_t>(settings.dofs));
+  row_.resize(5 + 5 * static_cast<std::size_t>(settings.dofs));
 }
 
 Instant ControlLoop::advance(Instant now) noexcept {
@@ -96,7 +98,8 @@ void ControlLoop::arm(Instant now) noexcept {
     ports_.reports.send(report);
     return;
   }
-  for (auto& compensator : compensators_) compensator->reset();
+  for (auto& compensator : compensation_.commands) compensator->reset();
+  for (auto& compensator : compensation_.forces) compensator->reset();
   energy_error_.reset();
   trajectory_.reset(no_motion_);
   phase_ = Phase::standing;
@@ -139,7 +142,8 @@ void ControlLoop::begin_ramp() noexcept {
   ramp_period_ = 0;
   // A raised cosine is fastest in its middle, pi/2 times its mean; it stays below half the limit.
   const double least_s = std::numbers::pi * ramp_begin_m_.cwiseAbs().maxCoeff() / settings_.limits.velocity_m_per_s;
-  ramp_periods_ = static_cast<std::int64_t>(std::ceil(std::max(settings_.return_time_s, least_s) / period_s_));
+  const double periods = std::ceil(std::max(settings_.return_time_s, least_s) / period_s_);
+  ramp_periods_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(periods));  // also from zero in no time
 }
 
 bool ControlLoop::has_due_period(Instant now) const noexcept {
@@ -174,6 +178,7 @@ void ControlLoop::run_period() noexcept {
   if (phase_ == Phase::ramping) ramp_command();
   exchange();
   if (phase_ == Phase::running) {
+    compensate_forces();
     energy_error_.sample(trajectory_.point().displacement_m, feedback_.displacement_m, feedback_.force_n);
     if (passes_interlocks() && is_reached) report_measurement(reached);
   }
@@ -188,7 +193,7 @@ void ControlLoop::shape_command() noexcept {
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
     const CompensatorInput input{point.displacement_m[k], point.velocity_m_per_s[k], point.acceleration_m_per_s2[k],
                                  feedback_.displacement_m[k], feedback_.force_n[k]};
-    wanted_command_m_[k] = compensators_[static_cast<std::size_t>(k)]->command(input);
+    wanted_command_m_[k] = compensation_.commands[static_cast<std::size_t>(k)]->command(input);
   }
 }
 
@@ -213,6 +218,14 @@ void ControlLoop::ramp_command() noexcept {
 void ControlLoop::exchange() noexcept {
   feedback_before_ = feedback_;
   rig_fault_ = rig_.exchange(command_, feedback_) != RigStatus::healthy;
+}
+
+void ControlLoop::compensate_forces() noexcept {
+  compensated_force_before_n_ = compensated_force_n_;
+  for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
+    compensated_force_n_[k] = compensation_.forces[static_cast<std::size_t>(k)]->corrected_force(
+        {last_target_m_[k], feedback_.displacement_m[k], feedback_.force_n[k]});
+  }
 }
 
 bool ControlLoop::passes_interlocks() noexcept {
@@ -255,7 +268,7 @@ void ControlLoop::report_measurement(const ReachedTarget& reached) noexcept {
   measurement.target_displacement_m = reached.target.displacement_m;
   measurement.imposed_displacement_m = command_.displacement_m;
   measurement.measured_displacement_m = at_target(feedback_before_.displacement_m, feedback_.displacement_m);
-  measurement.force_n = at_target(feedback_before_.force_n, feedback_.force_n);
+  measurement.force_n = at_target(compensated_force_before_n_, compensated_force_n_);
   measurement.flags = reached.flags | motion_flags_;
   ports_.reports.send(report);
 }
@@ -271,6 +284,7 @@ void ControlLoop::record() noexcept {
     row_[next++] = command_.displacement_m[k];
     row_[next++] = feedback_.displacement_m[k];
     row_[next++] = feedback_.force_n[k];
+    row_[next++] = compensated_force_n_[k];
   }
   row_[next++] = energy_error_.energy_error_j();
   row_[next++] = static_cast<double>(static_cast<std::uint32_t>(faults_));
@@ -289,6 +303,7 @@ TableLayout ControlLoop::control_layout(int dofs) {
     layout.columns.push_back({"command_displacement_m" + suffix, "m"});
     layout.columns.push_back({"measured_displacement_m" + suffix, "m"});
     layout.columns.push_back({"measured_force_n" + suffix, "N"});
+    layout.columns.push_back({"compensated_force_n" + suffix, "N"});
   }
   layout.columns.push_back({"energy_error_j", "J"});
   layout.columns.push_back({"faults", ""});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compensation/compensator.hpp"
+#include "compensation/force_compensator.hpp"
 #include "core/node.hpp"
 #include "core/ports.hpp"
 #include "core/records.hpp"
@@ -31,16 +32,22 @@ struct ControlLoopPorts {
   Outbox<SignalSample>& signals;
 };
 
+/// One per interface degree of freedom each.
+struct SiteCompensation {
+  std::vector<std::unique_ptr<Compensator>> commands;
+  std::vector<std::unique_ptr<ForceCompensator>> forces;
+};
+
 /// The part of a site that stands between targets and the rig, once per control period:
-/// trajectory, compensator, motion limits, interlocks, exchange with the rig, record.
+/// trajectory, compensator, motion limits, interlocks, exchange with the rig, force compensator,
+/// record. Interlocks judge forces as measured; the coordinator gets them as compensated.
 ///
 /// In lockstep, control periods follow each other as fast as targets come; in paced mode each
 /// has its own time and those missed are made up for at once, so that the rig sees every one.
 /// Allocates, locks and logs nothing after construction.
 class ControlLoop final : public Node {
  public:
-  /// @param compensators   one per interface degree of freedom.
-  ControlLoop(const ControlLoopSettings& settings, Rig& rig, std::vector<std::unique_ptr<Compensator>> compensators,
+  ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteCompensation compensation,
               EnergyErrorMonitor energy_error, ControlLoopPorts ports, RowSink& control_record);
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -64,6 +71,7 @@ class ControlLoop final : public Node {
   void limit_motion() noexcept;
   void ramp_command() noexcept;
   void exchange() noexcept;
+  void compensate_forces() noexcept;
   [[nodiscard]] bool passes_interlocks() noexcept;
   void trip(const InterlockVerdict& verdict) noexcept;
   void report_measurement(const ReachedTarget& reached) noexcept;
@@ -71,7 +79,7 @@ class ControlLoop final : public Node {
 
   ControlLoopSettings settings_;
   Rig& rig_;
-  std::vector<std::unique_ptr<Compensator>> compensators_;
+  SiteCompensation compensation_;
   EnergyErrorMonitor energy_error_;
   ControlLoopPorts ports_;
   RowSink& control_record_;
@@ -94,6 +102,8 @@ class ControlLoop final : public Node {
   InterfaceVector no_motion_;
   RigFeedback feedback_;
   RigFeedback feedback_before_;
+  InterfaceVector compensated_force_n_;
+  InterfaceVector compensated_force_before_n_;
   InterfaceVector ramp_begin_m_;
   std::int64_t ramp_periods_ = 0;
   std::int64_t ramp_period_ = 0;

@@ -21,7 +21,7 @@ struct StepMeasurement {
   InterfaceVector target_displacement_m;    // [m]
   InterfaceVector imposed_displacement_m;   // [m] command to the actuators
   InterfaceVector measured_displacement_m;  // [m]
-  InterfaceVector force_n;                  // [N]
+  InterfaceVector force_n;                  // [N] compensated
   MeasurementFlags flags = MeasurementFlags::none;
 };
 

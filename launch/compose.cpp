@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compensation/no_compensation.hpp"
+#include "compensation/no_force_compensation.hpp"
 #include "compensation/polynomial_displacement.hpp"
 #include "coordinator/central_difference.hpp"
 #include "coordinator/explicit_newmark.hpp"
@@ -44,10 +45,10 @@ struct Type {
 
 /// Reads the `type` key and then, by it, the rest of the section.
 template <class Reading>
-Reading read_type(Section& section, const std::vector<Type<Reading>>& types) {
+Reading read_type(Section& section, const std::vector<Type<Reading>>& types, std::optional<std::string> fallback = {}) {
   std::vector<std::string> names;
   std::ranges::transform(types, std::back_inserter(names), &Type<Reading>::name);
-  Reading reading = types[section.choice("type", names)].read(section);
+  Reading reading = types[section.choice("type", names, std::move(fallback))].read(section);
   section.finish();
   return reading;
 }
@@ -256,6 +257,10 @@ CompensatorReading read_none(Section&) {
   return {[](double) { return std::make_unique<NoCompensation>(); }, 0.0};
 }
 
+ForceCompensatorMaker read_no_force_compensation(Section&) {
+  return [](double) { return std::make_unique<NoForceCompensation>(); };
+}
+
 CompensatorReading read_polynomial_displacement(Section& section) {
   const int order = static_cast<int>(section.integer("order", 1, 4, 3));
   const double delay_s = section.number("delay_s", {.low = 0.0, .high = 10.0});
@@ -307,7 +312,11 @@ RigReading read_rig(Section section, int dofs) {
 
 CompensatorReading read_compensator(Section section) {
   return read_type<CompensatorReading>(
-      section, {{"none", read_none}, {"polynomial_displacement", read_polynomial_displacement}});
+      section, {{"none", read_none}, {"polynomial_displacement", read_polynomial_displacement}}, "none");
+}
+
+ForceCompensatorMaker read_force_compensator(Section section) {
+  return read_type<ForceCompensatorMaker>(section, {{"none", read_no_force_compensation}}, "none");
 }
 
 std::string read_integrator_type(Section section) {

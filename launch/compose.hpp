@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compensation/compensator.hpp"
+#include "compensation/force_compensator.hpp"
 #include "coordinator/integrator.hpp"
 #include "coordinator/linear_structure.hpp"
 #include "core/config/section.hpp"
@@ -43,7 +44,12 @@ struct CompensatorReading {
   std::function<std::unique_ptr<Compensator>(double control_period_s)> make;
   double delay_s = 0.0;  // that it makes up for
 };
+/// `none` when no type is given.
 [[nodiscard]] CompensatorReading read_compensator(config::Section section);
+
+using ForceCompensatorMaker = std::function<std::unique_ptr<ForceCompensator>(double control_period_s)>;
+/// `none` when no type is given.
+[[nodiscard]] ForceCompensatorMaker read_force_compensator(config::Section section);
 
 /// @return the type's name, for make_integrator().
 [[nodiscard]] std::string read_integrator_type(config::Section section);

@@ -102,7 +102,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   rig_->connect();
   // A twentieth of the displacement limit: smaller motion does not scale the energy error.
   EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
-  loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensators(control_period_s),
+  loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
                                         std::move(energy_error), ControlLoopPorts{requests_, waking_reports_, signals_},
                                         surroundings.sink("control"));
   link_ = std::make_unique<SiteLink>(

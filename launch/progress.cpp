@@ -48,7 +48,7 @@ void Progress::learn(const ParticipantStatus& status) {
   const auto known = states_.find(id);
   if (known == states_.end() || known->second != status.state) {
     states_[id] = status.state;
-    next_show_ = Instant{};  // worth showing at once
+    if (is_terminal_) next_show_ = Instant{};  // worth showing at once
   }
 }
 

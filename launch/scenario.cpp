@@ -177,9 +177,28 @@ SiteLimits read_limits(Section section) {
   if (section.has("energy_error_ratio")) {
     limits.energy_error_ratio = section.number("energy_error_ratio", config::kPositive);
   }
-  limits.command_age_s = section.number("command_age_s", {.low = 0.01, .high = 86400.0}, 2.0);
+  limits.command_age_s = section.number("command_age_s", {.low = 0.01, .high = 86400.0}, 1.0);
   section.finish();
   return limits;
+}
+
+/// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
+template <class Reading>
+std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
+  std::vector<Reading> readings;
+  if (section.has(key)) {
+    for (Section& entry : section.sections(key, true)) readings.push_back(read(entry));
+  } else {
+    readings.push_back(read(section.section_or_empty(key)));
+  }
+  if (readings.size() != 1 && readings.size() != dofs) {
+    section.error(key,
+                  "expected one, or one for each of the " + std::to_string(dofs) + " interface degrees of freedom");
+    if (readings.empty()) readings.push_back(read(section.section_or_empty(key)));
+    readings.resize(1, readings.front());
+  }
+  if (readings.size() == 1) readings.resize(dofs, readings.front());
+  return readings;
 }
 
 void read_site(Section& section, const TimeScenario& time, SubstructureScenario& substructure) {
@@ -195,20 +214,13 @@ void read_site(Section& section, const TimeScenario& time, SubstructureScenario&
   const double site_step_s = time.step_s * time.time_scale;
   site.periods_per_step = std::max(1, static_cast<int>(std::ceil(site_step_s * site.control_rate_hz - 1e-6)));
 
-  std::vector<CompensatorReading> compensators;
-  for (Section& entry : section.sections("compensator", true)) {
-    compensators.push_back(read_compensator(entry));
-  }
-  if (compensators.size() == 1) compensators.resize(dofs, compensators.front());
-  if (compensators.size() != dofs) {
-    section.error("compensator",
-                  "expected one, or one for each of the " + std::to_string(dofs) + " interface degrees of freedom");
-  } else {
-    site.compensated_delay_s = std::ranges::min(compensators, {}, &CompensatorReading::delay_s).delay_s;
-  }
-  substructure.make_compensators = [compensators](double period_s) {
-    std::vector<std::unique_ptr<Compensator>> made;
-    for (const CompensatorReading& compensator : compensators) made.push_back(compensator.make(period_s));
+  const auto commands = read_each(section, "compensator", dofs, read_compensator);
+  const auto forces = read_each(section, "force_compensator", dofs, read_force_compensator);
+  site.compensated_delay_s = std::ranges::min(commands, {}, &CompensatorReading::delay_s).delay_s;
+  substructure.make_compensation = [commands, forces](double period_s) {
+    SiteCompensation made;
+    for (const CompensatorReading& compensator : commands) made.commands.push_back(compensator.make(period_s));
+    for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
     return made;
   };
   site.limits = read_limits(section.section("limits"));
@@ -282,7 +294,7 @@ void try_out(const Scenario& scenario, SubstructureScenario& substructure) {
   }
   const double period_s = scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step;
   static_cast<void>(substructure.make_rig(period_s));
-  static_cast<void>(substructure.make_compensators(period_s));
+  static_cast<void>(substructure.make_compensation(period_s));
   static_cast<void>(EnergyErrorMonitor{substructure.initial_stiffness_n_per_m, 1.0});
 }
 

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "compensation/compensator.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/integrator.hpp"
 #include "coordinator/linear_structure.hpp"
 #include "core/messages.hpp"
+#include "experimental_site/control_loop.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/rigs/rig.hpp"
 #include "numerical_substructure/substructure_model.hpp"
@@ -57,7 +57,7 @@ struct SubstructureScenario {
   SiteScenario site;                                               // experimental, and below
   /// @param control_period_s   in site time.
   std::function<std::unique_ptr<Rig>(double control_period_s)> make_rig;
-  std::function<std::vector<std::unique_ptr<Compensator>>(double control_period_s)> make_compensators;
+  std::function<SiteCompensation(double control_period_s)> make_compensation;
 };
 
 /// A scenario file, read, checked and ready to be composed.

@@ -6,6 +6,13 @@
 
 #include "launch/design_motion/design_motion.hpp"
 
+namespace {
+
+/// EN 1998-1:2004, 3.2.3.1.2(4)c.
+constexpr double kLowestAllowed = 0.9;
+
+}  // namespace
+
 /// Makes the ground motion that the scenarios ship with, or another one like it.
 int main(int argc, char** argv) {
   hybridtest::design_motion::DesignMotionSettings settings;
@@ -24,15 +31,23 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const auto motion = hybridtest::design_motion::design_motion(settings);
+    if (motion.fit.lowest < kLowestAllowed) {
+      std::fprintf(stderr,
+                   "design_motion: the spectrum falls to %.3f of the target between 0.05 and 4 s, below the 0.9 that "
+                   "Eurocode 8 allows; try another seed or more iterations\n",
+                   motion.fit.lowest);
+      return 1;
+    }
     std::ofstream stream{file, std::ios::binary};
-    stream << hybridtest::design_motion::at2_text(motion, settings);
+    stream << hybridtest::design_motion::at2_text(motion.acceleration_m_per_s2, settings);
     stream.close();
     if (!stream) {
       std::fprintf(stderr, "design_motion: %s cannot be written; check the folder and the space on the disk\n",
                    file.c_str());
       return 1;
     }
-    std::printf("%s: %zu values every %g s\n", file.c_str(), motion.size(), settings.dt_s);
+    std::printf("%s: %zu values every %g s; spectrum %.3f to %.3f of the target between 0.05 and 4 s\n", file.c_str(),
+                motion.acceleration_m_per_s2.size(), settings.dt_s, motion.fit.lowest, motion.fit.highest);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "design_motion: %s\n", error.what());

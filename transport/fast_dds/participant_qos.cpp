@@ -2,10 +2,12 @@
 
 #include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "transport/fast_dds/dds_version.hpp"
 #include "transport/fast_dds/topics.hpp"
@@ -55,6 +57,14 @@ Locator to_locator(std::string_view address, std::uint16_t default_port) {
   return locator;
 }
 
+// Fast DDS maps its segments whole and dies of SIGBUS where the file system turns out smaller.
+bool has_room_for_shared_memory() {
+  constexpr std::uintmax_t kRoom = 8U << 20U;
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space("/dev/shm", error);
+  return !error && space.available >= kRoom;
+}
+
 void add_transports(const FastDdsSettings& settings, dds::DomainParticipantQos& qos) {
   const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
   // A full socket buffer is a lost packet, which the protocol makes up for; a blocked step is not.
@@ -63,7 +73,7 @@ void add_transports(const FastDdsSettings& settings, dds::DomainParticipantQos& 
   if (settings.loopback_only) udp->interfaceWhiteList.emplace_back(kLoopback);
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
-  if (settings.shared_memory) {
+  if (settings.shared_memory && has_room_for_shared_memory()) {
     qos.transport().user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
   }
 }

@@ -44,8 +44,9 @@ class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener 
 
  private:
   void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {
-    if (!matches_) return;
-    matches_->change(prefix_of(status.last_subscription_handle), status.current_count_change);
+    const GuidPrefix who = prefix_of(status.last_subscription_handle);
+    if (!matches_ || who == participant_.prefix()) return;
+    matches_->change(who, status.current_count_change);
     participant_.waker.signal();
   }
 
@@ -102,11 +103,12 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   }
 
   void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
+    const GuidPrefix who = prefix_of(status.last_publication_handle);
     if constexpr (kWatchesPeers) {
-      if (status.current_count_change < 0) lose(prefix_of(status.last_publication_handle));
+      if (status.current_count_change < 0) lose(who);
     }
-    if (!matches_) return;
-    matches_->change(prefix_of(status.last_publication_handle), status.current_count_change);
+    if (!matches_ || who == own_prefix_) return;
+    matches_->change(who, status.current_count_change);
     participant_.waker.signal();
   }
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/delay_estimator.hpp"
+#include "compensation/sample_history.hpp"
+
+namespace hybridtest {
+
+/// Delay at which reference and measurement are most alike.
+///
+///     C(l) = sum of w r(t - l T) m(t),   E(l) = sum of w r(t - l T)^2,   l from the lower to the upper bound
+///     likeness(l) = C(l)^2 / E(l), largest at the delay
+///
+/// over a window w that fades with a memory instead of ending, w = exp(-age / memory): the sums then
+/// follow by recursion, without subtraction whose rounding would add up. By the inequality of Cauchy and
+/// Schwarz the likeness is largest at the delay for a pure delay with any gain. Where between two lags,
+/// follows from the parabola through the largest and those a few milliseconds on either side, whose width
+/// keeps noise small. Lags are compared anew every few milliseconds.
+///
+/// Frozen while the mean square of r in the window is below that of motion_m_min.
+class CrossCorrelation final : public DelayEstimator {
+ public:
+  struct Parameters {
+    DelayLimits limits;
+    double memory_s = 1.0;             // [s] of the window; 0.01 to 100
+    double parabola_half_s = 0.004;    // [s] from its middle to its ends, rounded to samples; 1 sample to 0.1
+    double comparison_period_s = 0.005;  // [s] rounded to samples; 1 sample to 1
+    double motion_m_min = 1e-4;        // [m] root mean square; 1e-9 to 1
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  CrossCorrelation(const Parameters& parameters, double control_period_s);
+
+ private:
+  void observe(const DelaySample& sample) noexcept override;
+  void forget() noexcept override;
+  void accumulate(double reference_m, double measured_m) noexcept;
+  void compare() noexcept;
+  [[nodiscard]] double likeness(std::size_t index) const noexcept;
+
+  Parameters parameters_;
+  double keep_;
+  std::size_t half_;        // samples from the middle of the parabola to its ends
+  std::size_t comparison_;  // samples between comparisons
+  // Lag index i stands for a delay of i - half_ samples: the measurement is held back by half_, so that the
+  // parabola has both its ends for a delay of zero as well.
+  std::size_t lags_;
+  SampleHistory measured_m_;
+  std::vector<double> references_m_;  // a ring written twice, so that the last lags_ samples stand in one row
+  std::size_t newest_ = 0;
+  std::vector<double> correlations_m2_;  // C by lag index
+  std::vector<double> energies_m2_;      // E by lag index
+  std::size_t since_comparison_ = 0;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "compensation/delay_estimator.hpp"
+#include "compensation/sample_history.hpp"
+
+namespace hybridtest {
+
+/// Delay from zero crossings, where the motion is fastest and time is told best (after Darby, Williams
+/// and Blakeborough, J. Eng. Mech. 128, 2002; Ahmadizadeh, Mosqueda and Reinhorn, Earthquake Engng
+/// Struct. Dyn. 37, 2008).
+///
+/// Reference r and measurement m are averaged over the same short window. Each time the average of one
+/// passes zero, the instant follows from the straight line through the two samples about it. Of the
+/// crossings of r in the same direction, within the bounds of the delay, the one counts that makes the
+/// delay nearest to the present one:
+///
+///     delay <- delay + weight (t_m - t_r - delay),   where |slope of m| > slope_min
+///
+/// Exact for a pure delay up to the curvature of the motion between two samples. An offset between the
+/// sensors moves crossings up and down oppositely, and averages out.
+///
+/// Interpretation: Darby corrects by the synchronisation error at every sample, weighted with velocity;
+/// Ahmadizadeh et al. divide it by the slope. Both are most certain at the crossings; that only those
+/// count here, and as times, makes large delays no less exact than small ones.
+class ZeroCrossingSlope final : public DelayEstimator {
+ public:
+  struct Parameters {
+    DelayLimits limits;
+    double average_s = 0.004;            // [s] window of the averages, rounded to samples; 0 to 1
+    double slope_m_per_s_min = 0.005;    // [m/s] slower crossings tell nothing; above 0, at most 100
+    double crossing_weight = 0.3;        // [] of a new crossing; above 0, at most 1
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  ZeroCrossingSlope(const Parameters& parameters, double control_period_s);
+
+ private:
+  // Moving average of a signal, and where it last passed zero.
+  struct Channel {
+    explicit Channel(std::size_t window) : samples(window) {}
+    /// @return whether the average has passed zero since the sample before.
+    bool advance(double value, double period_s) noexcept;
+    void reset() noexcept;
+
+    SampleHistory samples;
+    double average_m = 0.0;
+    double slope_m_per_s = 0.0;
+    double fraction = 0.0;  // of a period, from the crossing to the newest sample
+    bool has_average = false;
+  };
+  struct Crossing {
+    double age_periods = 0.0;
+    bool is_rising = false;
+  };
+
+  void observe(const DelaySample& sample) noexcept override;
+  void forget() noexcept override;
+  void remember_reference_crossing() noexcept;
+  void compare_measured_crossing() noexcept;
+
+  static constexpr std::size_t kCrossings = 16;
+
+  double slope_m_per_s_min_;
+  double crossing_weight_;
+  Channel reference_;
+  Channel measured_;
+  std::array<Crossing, kCrossings> crossings_{};  // of the reference, a ring
+  std::size_t next_ = 0;
+  std::size_t known_ = 0;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "compensation/force_compensator.hpp"
+#include "compensation/sample_history.hpp"
+
+namespace hybridtest {
+
+/// Optimal pick (Wu, Wang and Bursi, Earthquake Engng Struct. Dyn. 42, 2013), the half on forces of the
+/// upper-bound delay (upper_bound_delay.hpp).
+///
+/// Of the measurements of the last moments, the one whose displacement is nearest to the desired one
+/// gives the force. Between two samples displacement and force are taken along straight lines. A
+/// specimen passes a displacement on its way out and again on its way back; of several passages the
+/// newest counts that goes the way the desired displacement goes.
+///
+/// Exact for a specimen that was at the desired displacement within the window. Interpretation: the
+/// paper's abstract says that the desired displacement is picked out by an optimal process; criterion,
+/// interpolation and direction are ours.
+class OptimalPick final : public ForceCompensator {
+ public:
+  struct Parameters {
+    double window_s = 0.010;  // [s] to look back over, at least upper bound less smallest delay; 1 period to 1
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  OptimalPick(const Parameters& parameters, double control_period_s);
+
+  [[nodiscard]] double corrected_force(const ForceSample& sample) noexcept override;
+  void reset() noexcept override;
+
+ private:
+  [[nodiscard]] double picked(double desired_m) const noexcept;
+
+  SampleHistory displacements_m_;
+  SampleHistory forces_n_;
+  double desired_m_ = 0.0;
+  bool is_rising_ = true;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "compensation/compensator.hpp"
+#include "compensation/low_pass.hpp"
+#include "compensation/polynomial_extrapolation.hpp"
+#include "compensation/sample_history.hpp"
+
+namespace hybridtest {
+
+/// Two-stage adaptive compensation (Wang, Ning, Xu, Zhou and Wu, Mech. Syst. Signal Process. 133, 2019;
+/// tested by Wang, Yan, Ning and Wu, Shock and Vibration, 2020): a polynomial extrapolation makes up for
+/// the larger, known part of the delay, an adaptive discrete model of the transfer system for the rest.
+///
+///     coarse   p(k) = extrapolation of third order of the target by the coarse delay d
+///     fine     command(k) = theta' (p(k), p(k-m), p(k-2m))
+///
+///     theta by recursive least squares with forgetting of u(k-d) = theta' (x_m(k), x_m(k-m), x_m(k-2m)),
+///
+/// u the commands sent, x_m the measurement. With theta = (1, 0, 0), at first, the polynomial alone; the
+/// identity if d is zero besides.
+///
+/// Interpretation: the papers' text was not at hand, only their abstracts, which name the two stages.
+/// Number and spacing m of the terms (neighbouring samples at a kilohertz tell nothing apart above the
+/// sensor noise), the low-pass on both signals of the fit and the adaptation's settings are ours.
+class TwoStageAdaptive final : public Compensator {
+ public:
+  struct Parameters {
+    double coarse_delay_s = 0.020;     // [s] d, rounded to control periods, at least one; 0 to 1, 0: no first stage
+    double term_spacing_s = 0.010;     // [s] m, rounded to control periods; 1 period to 1
+    double memory_s = 5.0;             // [s] of the least squares; 0.1 to 1000
+    double filter_hz = 20.0;           // [Hz] 0.001 to 0.45 of the control rate
+    double equation_error_m = 3e-6;    // [m] standard deviation, of the filtered signals; 1e-12 to 1
+    double theta_deviation = 0.3;      // [] of each coefficient at first, from (1, 0, 0); above 0, at most 10
+    double theta_max = 3.0;            // [] bound of |coefficient|; 1 to 100
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  TwoStageAdaptive(const Parameters& parameters, double control_period_s);
+
+  [[nodiscard]] double command(const CompensatorInput& input) noexcept override;
+  void reset() noexcept override;
+
+  [[nodiscard]] const Eigen::Vector3d& theta() const noexcept { return theta_; }
+
+ private:
+  void learn(double measured_displacement_m) noexcept;
+
+  Parameters parameters_;
+  std::size_t delay_;  // control periods
+  std::size_t spacing_;
+  double keep_;
+  double error_variance_m2_;
+  PolynomialExtrapolation extrapolation_;
+  LowPass measured_filter_;
+  LowPass command_filter_;
+  SampleHistory extrapolated_m_;
+  SampleHistory measured_m_;  // filtered, as the next
+  SampleHistory sent_m_;
+  Eigen::Vector3d theta_;
+  Eigen::Matrix3d covariance_;
+  double held_measurement_m_ = 0.0;
+  double last_sent_m_ = 0.0;
+};
+
+}  // namespace hybridtest
