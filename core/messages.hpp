@@ -85,6 +85,11 @@ struct ParticipantStatus {
   bool operator==(const ParticipantStatus&) const = default;
 };
 
+/// Whether two vectors have the same size and entries; Eigen's own comparison wants equal sizes.
+[[nodiscard]] inline bool same(const InterfaceVector& a, const InterfaceVector& b) noexcept {
+  return a.size() == b.size() && a == b;
+}
+
 /// The structure's motion at one step, in interface coordinates.
 struct CommandPoint {
   Step step = kNoStep;
@@ -92,7 +97,10 @@ struct CommandPoint {
   InterfaceVector displacement_m;         // [m]
   InterfaceVector velocity_m_per_s;       // [m/s] integrator's own; predicted on the newest point
   InterfaceVector acceleration_m_per_s2;  // [m/s2] likewise
-  bool operator==(const CommandPoint&) const = default;
+  bool operator==(const CommandPoint& other) const noexcept {
+    return step == other.step && model_time_s == other.model_time_s && same(displacement_m, other.displacement_m) &&
+           same(velocity_m_per_s, other.velocity_m_per_s) && same(acceleration_m_per_s2, other.acceleration_m_per_s2);
+  }
 };
 
 /// Coordinator to one substructure, keyed by its index.
@@ -135,7 +143,13 @@ struct ForceMeasurement {
   Duration receive_time{};       // [ns] sender's clock, command received
   Duration send_time{};          // [ns] sender's clock
   Duration command_send_time{};  // [ns] echo of the command's send_time, coordinator's clock
-  bool operator==(const ForceMeasurement&) const = default;
+  bool operator==(const ForceMeasurement& other) const noexcept {
+    return substructure == other.substructure && sender == other.sender && step == other.step &&
+           model_time_s == other.model_time_s && same(imposed_displacement_m, other.imposed_displacement_m) &&
+           same(measured_displacement_m, other.measured_displacement_m) && same(force_n, other.force_n) &&
+           flags == other.flags && receive_time == other.receive_time && send_time == other.send_time &&
+           command_send_time == other.command_send_time;
+  }
 };
 
 enum class ControlVerb : std::uint8_t { arm, start, pause, resume, stop, emergency_stop };

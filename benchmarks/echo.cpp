@@ -1,0 +1,47 @@
+// echo [fast_dds|udp|transport|all] [--samples N] [--rounds N] [--network …] [--wait …]
+// Prints one line of JSON per round and kind; kinds alternate, so that what else the machine does
+// falls on all alike.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "benchmarks/echo.hpp"
+#include "benchmarks/latency_report.hpp"
+
+int main(int argc, char** argv) {
+  using namespace hybridtest::benchmarks;
+  if (const std::optional<int> code = echo_peer_main(argc, argv)) return *code;
+
+  CLI::App app{"Round-trip time of one command to two peers in processes of their own, both answers in"};
+  EchoSettings settings;
+  std::string kind = "all";
+  int rounds = 1;
+  app.add_option("kind", kind, "fast_dds, udp, transport or all")
+      ->check(CLI::IsMember({"fast_dds", "udp", "transport", "all"}));
+  app.add_option("--samples", settings.samples, "round trips that count, per round")->check(CLI::PositiveNumber);
+  app.add_option("--rounds", rounds, "rounds")->check(CLI::PositiveNumber);
+  app.add_option("--network", settings.network, "udp, shared_memory (besides UDP) or library_default")
+      ->check(CLI::IsMember({"udp", "shared_memory", "library_default"}));
+  app.add_option("--wait", settings.wait, "bare Fast DDS: listener or waitset")
+      ->check(CLI::IsMember({"listener", "waitset"}));
+  app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 232));
+  CLI11_PARSE(app, argc, argv);
+
+  const auto wanted = [&](const char* name) { return kind == "all" || kind == name; };
+  const auto print = [](const std::string& what, const std::vector<double>& times_us) {
+    std::printf("%s\n", latency_json(what, times_us).c_str());
+    std::fflush(stdout);
+  };
+  try {
+    for (int round = 0; round < rounds; ++round) {
+      if (wanted("udp")) print("udp", udp_echo_us(settings));
+      if (wanted("fast_dds")) print("fast_dds " + settings.network + " " + settings.wait, fast_dds_echo_us(settings));
+      if (wanted("transport")) print("transport " + settings.network, transport_echo_us(settings));
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "echo: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,90 @@
+// The echo through our Fast DDS transport, each participant's thread waiting on its Waker as the
+// executor does: what the transport costs above the bare echo.
+
+#include <unistd.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "benchmarks/echo.hpp"
+#include "benchmarks/peer_processes.hpp"
+#include "transport/fast_dds/fast_dds_transport.hpp"
+
+namespace hybridtest::benchmarks {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::unique_ptr<Transport> join(const EchoSettings& settings, int run) {
+  fast_dds::FastDdsSettings transport;
+  transport.domain = settings.domain;
+  transport.loopback_only = true;
+  transport.shared_memory = settings.network == "shared_memory";
+  return fast_dds::make_fast_dds_transport(transport, "echo" + std::to_string(run));
+}
+
+}  // namespace
+
+void transport_echo_peer(const EchoSettings& settings, int index, int run) {
+  const auto transport = join(settings, run);
+  const auto commands = transport->command_inbox(static_cast<SubstructureIndex>(index));
+  const auto measurements = transport->measurement_outbox();
+  DisplacementCommand command;
+  ForceMeasurement measurement;
+  measurement.substructure = static_cast<SubstructureIndex>(index);
+  while (true) {
+    static_cast<void>(transport->waker().wait_until(Clock::time_point::max()));
+    while (commands->take(command)) {
+      measurement.step = command.newest().step;
+      measurements->send(measurement);
+    }
+  }
+}
+
+std::vector<double> transport_echo_us(const EchoSettings& settings) {
+  static int runs = 0;
+  const int run = static_cast<int>(::getpid()) * 100 + runs++ % 100;
+  PeerProcesses peers;
+  for (int i = 0; i < kEchoPeers; ++i) {
+    peers.start({"echo_peer", "transport", std::to_string(i), std::to_string(run), std::to_string(settings.domain),
+                 settings.network, settings.wait});
+  }
+  const auto transport = join(settings, run);
+  const auto commands = transport->command_outbox(kEchoPeers);
+  const auto measurements = transport->measurement_inbox();
+  Waker& waker = transport->waker();
+  const Clock::time_point give_up = Clock::now() + std::chrono::seconds{20};
+  while (!transport->reachable(0) || !transport->reachable(1)) {
+    if (Clock::now() > give_up) throw std::runtime_error{"the transport echo peers did not appear"};
+    static_cast<void>(waker.wait_until(Clock::now() + std::chrono::milliseconds{100}));
+  }
+
+  DisplacementCommand command;
+  ForceMeasurement measurement;
+  command.point_count = 1;
+  std::vector<double> times_us;
+  times_us.reserve(static_cast<std::size_t>(settings.samples));
+  for (int i = 0; i < settings.warm_up + settings.samples; ++i) {
+    const Clock::time_point start = Clock::now();
+    bool answered[kEchoPeers] = {};
+    command.points[0].step = i;
+    while (!answered[0] || !answered[1]) {
+      for (SubstructureIndex peer = 0; peer < kEchoPeers; ++peer) {
+        command.substructure = peer;
+        if (!answered[peer]) commands->send(command);
+      }
+      const Clock::time_point repeat = Clock::now() + std::chrono::milliseconds{200};
+      if (repeat > start + std::chrono::seconds{20}) throw std::runtime_error{"an echo peer fell silent"};
+      while ((!answered[0] || !answered[1]) && waker.wait_until(repeat)) {
+        while (measurements->take(measurement)) {
+          if (measurement.step == i && measurement.substructure < kEchoPeers) answered[measurement.substructure] = true;
+        }
+      }
+    }
+    const std::chrono::duration<double, std::micro> round_trip = Clock::now() - start;
+    if (i >= settings.warm_up) times_us.push_back(round_trip.count());
+  }
+  return times_us;
+}
+
+}  // namespace hybridtest::benchmarks

@@ -1,0 +1,258 @@
+// What the Fast DDS transport does beyond the common contract: processes that die, stall or send
+// what is no message; settings.
+
+#include "transport/fast_dds/fast_dds_transport.hpp"
+
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/contract/networks.hpp"
+#include "tests/contract/sample_messages.hpp"
+#include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/participant_qos.hpp"
+#include "transport/fast_dds/topics.hpp"
+
+namespace hybridtest {
+namespace {
+
+/// A process that takes part in the test `name` as `peer`, repeating its status, until killed.
+class PeerProcess {
+ public:
+  explicit PeerProcess(std::string name) {
+    std::string program = CONTRACT_PEER_PROGRAM;
+    char* arguments[] = {program.data(), name.data(), nullptr};
+    if (::posix_spawn(&process_, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
+      throw std::runtime_error{"cannot start " + program};
+    }
+  }
+  ~PeerProcess() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+
+  void signal(int number) const { ASSERT_EQ(::kill(process_, number), 0); }
+
+ private:
+  pid_t process_ = 0;
+};
+
+/// Takes statuses until one of `peer` in `state` comes.
+[[nodiscard]] bool hears(Transport& observer, Inbox<ParticipantStatus>& statuses, LifecycleState state) {
+  return eventually(observer, [&] {
+    ParticipantStatus status;
+    while (statuses.take(status)) {
+      if (status.id == ParticipantId{"peer"} && status.state == state) return true;
+    }
+    return false;
+  });
+}
+
+// The lease bounds the silence; what the operating system adds under load is given as much again.
+constexpr Duration kLossTime = 2 * kTestLease;
+
+TEST(FastDdsTransport, KilledProcessIsLostWithinTheLease) {
+  const auto observer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto statuses = observer->status_inbox();
+  const PeerProcess peer{unique_test_name()};
+  ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::running));
+  peer.signal(SIGKILL);
+  const auto killed = std::chrono::steady_clock::now();
+  ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::lost));
+  EXPECT_LE(std::chrono::steady_clock::now() - killed, kLossTime);
+}
+
+TEST(FastDdsTransport, StoppedProcessIsLostAndHeardAgainWhenItGoesOn) {
+  const auto observer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto statuses = observer->status_inbox();
+  const PeerProcess peer{unique_test_name()};
+  ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::running));
+  peer.signal(SIGSTOP);
+  const auto stopped = std::chrono::steady_clock::now();
+  ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::lost));
+  EXPECT_LE(std::chrono::steady_clock::now() - stopped, kLossTime);
+  peer.signal(SIGCONT);
+  EXPECT_TRUE(hears(*observer, *statuses, LifecycleState::running));
+}
+
+TEST(FastDdsTransport, ParticipantWhoseNodeStallsWhileItsRigCanMoveIsLost) {
+  const auto observer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto statuses = observer->status_inbox();
+  const auto peer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto status = peer->status_outbox();
+  status->send(sample_status("peer", LifecycleState::armed));  // and never again, yet its process lives
+  ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::armed));
+  EXPECT_TRUE(hears(*observer, *statuses, LifecycleState::lost));
+  EXPECT_GE(observer->counters().deadlines_missed, 1U);
+}
+
+TEST(FastDdsTransport, ParticipantThatIsSilentBeforeItsRigCanMoveIsNotLost) {
+  const auto observer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto statuses = observer->status_inbox();
+  const auto connecting = FastDdsUdpNetwork::join(unique_test_name());
+  const auto connecting_status = connecting->status_outbox();
+  ParticipantStatus slow = sample_status("slow", LifecycleState::ready);
+  connecting_status->send(slow);
+  // Another that stalls later shows that the deadline of the first has passed as well.
+  ASSERT_TRUE(eventually(*observer, [&] { return statuses->take(slow); }));
+  const auto peer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto status = peer->status_outbox();
+  status->send(sample_status("peer", LifecycleState::armed));
+  bool slow_lost = false;
+  ASSERT_TRUE(eventually(*observer, [&] {
+    ParticipantStatus received;
+    while (statuses->take(received)) {
+      if (received.state != LifecycleState::lost) continue;
+      if (received.id == ParticipantId{"peer"}) return true;
+      slow_lost = true;
+    }
+    return false;
+  }));
+  EXPECT_FALSE(slow_lost);
+}
+
+/// Writes bytes of its own choosing under the name of a true type.
+class ForgedType final : public fast_dds::dds::TopicDataType {
+ public:
+  explicit ForgedType(std::vector<std::uint8_t> bytes) : bytes_{std::move(bytes)} {
+    setName("hybridtest::wire::TestControl");
+    m_typeSize = 256;
+  }
+  bool serialize(void*, fast_dds::Payload* payload) override {
+    std::copy(bytes_.begin(), bytes_.end(), payload->data);
+    payload->length = static_cast<std::uint32_t>(bytes_.size());
+    return true;
+  }
+  bool deserialize(fast_dds::Payload*, void*) override { return false; }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void*) override {
+    return [size = bytes_.size()] { return static_cast<std::uint32_t>(size); };
+  }
+  void* createData() override { return new int; }
+  void deleteData(void* sample) override { delete static_cast<int*>(sample); }
+  bool getKey(void*, fast_dds::InstanceHandle*, bool) override { return false; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+struct Forgery {
+  const char* name;
+  std::vector<std::uint8_t> bytes;
+};
+
+class ForgedControl : public ::testing::TestWithParam<Forgery> {};
+
+TEST_P(ForgedControl, IsDroppedAndCountedAndWhatFollowsArrives) {
+  namespace dds = fast_dds::dds;
+  const auto receiver = FastDdsUdpNetwork::join(unique_test_name());
+  const auto controls = receiver->control_inbox();
+
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  auto* forger = factory->create_participant(kTestDomain, fast_dds::participant_qos(test_settings()));
+  ASSERT_NE(forger, nullptr);
+  const dds::TypeSupport type{new ForgedType{GetParam().bytes}};
+  type.register_type(forger);
+  auto* topic = forger->create_topic("hybridtest/1/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  dds::PublisherQos publisher_qos;
+  publisher_qos.partition().push_back(unique_test_name().c_str());
+  auto* writer = forger->create_publisher(publisher_qos)->create_datawriter(topic, dds::DATAWRITER_QOS_DEFAULT);
+  int sample = 0;
+  EXPECT_TRUE(eventually(*receiver, [&] {
+    writer->write(&sample);
+    return receiver->counters().malformed > 0;
+  }));
+  TestControl control;
+  EXPECT_FALSE(controls->take(control));
+
+  const auto sender = FastDdsUdpNetwork::join(unique_test_name());
+  const auto outbox = sender->control_outbox();
+  EXPECT_TRUE(eventually(*receiver, [&] {
+    outbox->send(sample_control());
+    return controls->take(control);
+  }));
+  EXPECT_EQ(control, sample_control());
+  forger->delete_contained_entities();
+  factory->delete_participant(forger);
+}
+
+// After the encapsulation header {0, 1, 0, 0}: verb, padding to 8, sender, role, reason.
+INSTANTIATE_TEST_SUITE_P(
+    FastDdsTransport, ForgedControl,
+    ::testing::Values(Forgery{"cut_off", {0, 1, 0, 0, 4}}, Forgery{"unknown_encoding", {0x7f, 0x7f, 0, 0, 4}},
+                      Forgery{"no_such_verb", {0, 1, 0, 0, 200, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}}),
+    [](const auto& forgery) { return forgery.param.name; });
+
+TEST(FastDdsSettings, OutOfRangeIsRefused) {
+  const auto refused = [](auto change) {
+    fast_dds::FastDdsSettings settings = test_settings();
+    change(settings);
+    EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings)), std::invalid_argument);
+  };
+  refused([](auto& s) { s.domain = 233; });
+  refused([](auto& s) { s.loopback_participants = 0; });
+  refused([](auto& s) { s.loopback_participants = 201; });
+  refused([](auto& s) { s.lease = Duration{1}; });
+  refused([](auto& s) { s.heartbeat_deadline = Duration{1}; });
+  refused([](auto& s) { s.initial_peers = {"127.0.0.1:"}; });
+  refused([](auto& s) { s.initial_peers = {"127.0.0.1:70000"}; });
+  refused([](auto& s) { s.initial_peers = {"127.0.0.1:7x"}; });
+  EXPECT_NO_THROW(static_cast<void>(fast_dds::participant_qos(test_settings())));
+}
+
+TEST(FastDdsSettings, TestNameThatPartitionsWouldMisreadIsRefused) {
+  for (const std::string& name : {std::string{}, std::string{"a*"}, std::string{"a/b"}, std::string(65, 'a')}) {
+    EXPECT_THROW(static_cast<void>(fast_dds::make_fast_dds_transport(test_settings(), name)), std::invalid_argument);
+  }
+}
+
+class ProfileFile : public ::testing::Test {
+ protected:
+  fast_dds::FastDdsSettings settings_with(const std::string& text) {
+    std::ofstream{path_} << text;
+    fast_dds::FastDdsSettings settings = test_settings();
+    settings.profile_file = path_;
+    return settings;
+  }
+  ~ProfileFile() override { std::filesystem::remove(path_); }
+
+ private:
+  const std::filesystem::path path_ = std::filesystem::path{::testing::TempDir()} / (unique_test_name() + ".xml");
+};
+
+// Fast DDS keeps the profiles of every file that a process has read: this test comes first.
+TEST_F(ProfileFile, WithoutOurProfileOrWithoutSenseIsRefused) {
+  EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with("no xml"))), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="somebody_else"><rtps/></participant>
+</profiles>)"))),
+               std::runtime_error);
+}
+
+TEST_F(ProfileFile, ReplacesTransportsAndPeersButNotTheLease) {
+  const auto qos = fast_dds::participant_qos(settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="hybridtest">
+    <rtps><participantID>17</participantID></rtps>
+  </participant>
+</profiles>)"));
+  EXPECT_EQ(qos.wire_protocol().participant_id, 17);
+  EXPECT_TRUE(qos.transport().user_transports.empty());
+  EXPECT_EQ(qos.wire_protocol().builtin.discovery_config.leaseDuration, fast_dds::to_dds(kTestLease));
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,302 @@
+#include "transport/fast_dds/wire_mapping.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/random.hpp"
+
+namespace hybridtest::fast_dds {
+namespace {
+
+/// Over the wire: encode, serialise to CDR, back, decode.
+template <class Sample, class Message>
+[[nodiscard]] bool travels(const Message& message, Message& received) {
+  Sample sent;
+  encode(message, sent);
+  std::vector<char> bytes(Sample::getMaxCdrSerializedSize() + 4);
+  eprosima::fastcdr::FastBuffer out_buffer{bytes.data(), bytes.size()};
+  eprosima::fastcdr::Cdr out{out_buffer};
+  sent.serialize(out);
+  eprosima::fastcdr::FastBuffer in_buffer{bytes.data(), out.getSerializedDataLength()};
+  eprosima::fastcdr::Cdr in{in_buffer};
+  Sample arrived;
+  arrived.deserialize(in);
+  return decode(arrived, received);
+}
+
+// --- random messages over the whole range of each type
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_{seed} {}
+
+  template <class Number>
+  Number any() {
+    return static_cast<Number>(random_.bits());
+  }
+  std::uint64_t up_to(std::uint64_t last) { return random_.below(last + 1); }
+  /// Any magnitude, now and then no number at all.
+  double value() {
+    switch (random_.below(8)) {
+      case 0: return 0.0;
+      case 1: return -0.0;
+      case 2: return std::numeric_limits<double>::infinity();
+      case 3: return std::numeric_limits<double>::denorm_min();
+      default: return random_.uniform(-1.0, 1.0) * std::pow(10.0, random_.uniform(-300.0, 300.0));
+    }
+  }
+  double time_s() { return random_.uniform(0.0, 1e6); }
+  Step step() { return static_cast<Step>(random_.bits() >> 1U) - 1; }
+  Duration clock() { return Duration{any<std::int64_t>()}; }
+  InterfaceVector vector() {
+    InterfaceVector result{static_cast<Eigen::Index>(up_to(kMaxInterfaceDofs))};
+    for (double& entry : result) entry = value();
+    return result;
+  }
+  template <std::size_t Capacity>
+  FixedText<Capacity> text() {
+    std::string result(up_to(Capacity), ' ');
+    for (char& letter : result) letter = static_cast<char>(1 + up_to(254));  // any byte but the end of text
+    return FixedText<Capacity>{result};
+  }
+  ScenarioDigest digest() {
+    ScenarioDigest result;
+    for (auto& byte : result) byte = any<std::uint8_t>();
+    return result;
+  }
+  template <class Enum>
+  Enum one_of(Enum last) {
+    return static_cast<Enum>(up_to(static_cast<std::uint64_t>(last)));
+  }
+
+  TestAnnouncement announcement() {
+    TestAnnouncement m;
+    m.test_name = text<64>();
+    m.coordinator = any<Incarnation>();
+    m.scenario_digest = digest();
+    m.mode = one_of(CouplingMode::paced);
+    m.step_s = time_s();
+    m.duration_s = time_s();
+    m.time_scale = time_s();
+    m.substructure_count = static_cast<std::uint16_t>(up_to(kMaxSubstructures));
+    for (auto& substructure : m.substructures) {
+      substructure = {text<48>(), one_of(Role::operator_tool), static_cast<std::uint8_t>(up_to(kMaxInterfaceDofs))};
+    }
+    return m;
+  }
+  ParticipantStatus status() {
+    return {text<48>(),
+            one_of(Role::operator_tool),
+            any<Incarnation>(),
+            one_of(LifecycleState::refused),
+            digest(),
+            step(),
+            static_cast<FaultFlags>(up_to(0x1fff)),
+            clock()};
+  }
+  DisplacementCommand command() {
+    DisplacementCommand m;
+    m.substructure = static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1));
+    m.coordinator = any<Incarnation>();
+    m.point_count = static_cast<std::uint8_t>(1 + up_to(kCommandPoints - 1));
+    for (auto& point : m.points) point = {step(), time_s(), vector(), vector(), vector()};
+    m.attempt = any<std::uint16_t>();
+    m.send_time = clock();
+    return m;
+  }
+  ForceMeasurement measurement() {
+    return {static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1)),
+            any<Incarnation>(),
+            step(),
+            time_s(),
+            vector(),
+            vector(),
+            vector(),
+            static_cast<MeasurementFlags>(up_to(0x1f)),
+            clock(),
+            clock(),
+            clock()};
+  }
+  TestControl control() {
+    return {one_of(ControlVerb::emergency_stop), any<Incarnation>(), one_of(Role::operator_tool),
+            one_of(StopReason::recording_failed)};
+  }
+  Event event() {
+    return {text<48>(),
+            any<Incarnation>(),
+            one_of(Severity::fault),
+            one_of(EventCode::emergency_stop),
+            step(),
+            time_s(),
+            text<48>(),
+            {value(), value()},
+            clock()};
+  }
+  SignalBlock signal() {
+    SignalBlock m;
+    m.substructure = static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1));
+    m.sample_count = static_cast<std::uint8_t>(up_to(kMaxSignalSamples));
+    for (auto& sample : m.samples) sample = {time_s(), value(), value(), value(), value()};
+    return m;
+  }
+
+ private:
+  Random random_;
+};
+
+bool same(const InterfaceVector& a, const InterfaceVector& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+template <class Message>
+bool same(const Message& a, const Message& b) {
+  return a == b;
+}
+
+bool same(const CommandPoint& a, const CommandPoint& b) {
+  return a.step == b.step && a.model_time_s == b.model_time_s && same(a.displacement_m, b.displacement_m) &&
+         same(a.velocity_m_per_s, b.velocity_m_per_s) && same(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
+}
+
+// Vectors apart: Eigen compares vectors of one size only, and 0 equals -0.
+bool same(const DisplacementCommand& a, const DisplacementCommand& b) {
+  bool equal = a.substructure == b.substructure && a.coordinator == b.coordinator && a.point_count == b.point_count &&
+               a.attempt == b.attempt && a.send_time == b.send_time;
+  for (std::size_t i = 0; i < a.points.size(); ++i) equal = equal && same(a.points[i], b.points[i]);
+  return equal;
+}
+
+bool same(const ForceMeasurement& a, const ForceMeasurement& b) {
+  return a.substructure == b.substructure && a.sender == b.sender && a.step == b.step &&
+         a.model_time_s == b.model_time_s && same(a.imposed_displacement_m, b.imposed_displacement_m) &&
+         same(a.measured_displacement_m, b.measured_displacement_m) && same(a.force_n, b.force_n) &&
+         a.flags == b.flags && a.receive_time == b.receive_time && a.send_time == b.send_time &&
+         a.command_send_time == b.command_send_time;
+}
+
+template <class Sample, class Message>
+void round_trip(Message (Draw::*draw)()) {
+  Draw source{2024};
+  for (int i = 0; i < 2000; ++i) {
+    const Message message = (source.*draw)();
+    Message received;
+    ASSERT_TRUE((travels<Sample>(message, received))) << "draw " << i;
+    ASSERT_TRUE(same(message, received)) << "draw " << i;
+  }
+}
+
+TEST(WireMapping, EveryAnnouncementSurvives) { round_trip<wire::TestAnnouncement>(&Draw::announcement); }
+TEST(WireMapping, EveryStatusSurvives) { round_trip<wire::ParticipantStatus>(&Draw::status); }
+TEST(WireMapping, EveryCommandSurvives) { round_trip<wire::DisplacementCommand>(&Draw::command); }
+TEST(WireMapping, EveryMeasurementSurvives) { round_trip<wire::ForceMeasurement>(&Draw::measurement); }
+TEST(WireMapping, EveryControlSurvives) { round_trip<wire::TestControl>(&Draw::control); }
+TEST(WireMapping, EveryEventSurvives) { round_trip<wire::Event>(&Draw::event); }
+TEST(WireMapping, EverySignalBlockSurvives) { round_trip<wire::SignalBlock>(&Draw::signal); }
+
+TEST(WireMapping, NotANumberSurvives) {
+  ForceMeasurement message = Draw{1}.measurement();
+  message.force_n = InterfaceVector::Constant(3, std::numeric_limits<double>::quiet_NaN());
+  ForceMeasurement received;
+  ASSERT_TRUE((travels<wire::ForceMeasurement>(message, received)));
+  EXPECT_TRUE(same(message, received));
+}
+
+/// Whether a valid message is refused after `change` has had its way with it on the wire.
+template <class Sample, class Message, class Change>
+[[nodiscard]] bool refused_after(const Message& message, Change change) {
+  Sample sample;
+  encode(message, sample);
+  Message received;
+  EXPECT_TRUE(decode(sample, received)) << "valid before the change";
+  change(sample);
+  return !decode(sample, received);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(WireMapping, CommandOutOfRangeIsRefused) {
+  const auto refused = [](auto change) { return refused_after<wire::DisplacementCommand>(Draw{3}.command(), change); };
+  EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
+  EXPECT_TRUE(refused([](auto& s) { s.point_count(0); }));
+  EXPECT_TRUE(refused([](auto& s) { s.point_count(kCommandPoints + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[3].step(-2); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[3].model_time_s(-1e-9); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[0].model_time_s(kNaN); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[0].displacement_count(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[1].velocity_count(255); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[2].acceleration_count(13); }));
+  EXPECT_FALSE(refused([](auto& s) { s.points()[0].displacement_m()[0] = kNaN; })) << "for the nodes to decide";
+}
+
+TEST(WireMapping, MeasurementOutOfRangeIsRefused) {
+  const auto refused = [](auto change) { return refused_after<wire::ForceMeasurement>(Draw{4}.measurement(), change); };
+  EXPECT_TRUE(refused([](auto& s) { s.substructure(65535); }));
+  EXPECT_TRUE(refused([](auto& s) { s.flags(1U << 5U); }));
+  EXPECT_TRUE(refused([](auto& s) { s.step(-2); }));
+  EXPECT_TRUE(refused([](auto& s) { s.model_time_s(std::numeric_limits<double>::infinity()); }));
+  EXPECT_TRUE(refused([](auto& s) { s.imposed_displacement_count(13); }));
+  EXPECT_TRUE(refused([](auto& s) { s.measured_displacement_count(13); }));
+  EXPECT_TRUE(refused([](auto& s) { s.force_count(13); }));
+}
+
+TEST(WireMapping, StatusOutOfRangeIsRefused) {
+  const auto refused = [](auto change) { return refused_after<wire::ParticipantStatus>(Draw{5}.status(), change); };
+  EXPECT_TRUE(refused([](auto& s) { s.role(4); }));
+  EXPECT_TRUE(refused([](auto& s) { s.state(static_cast<std::uint8_t>(LifecycleState::lost)); }))
+      << "only the transport says who is lost";
+  EXPECT_TRUE(refused([](auto& s) { s.last_step(-2); }));
+  EXPECT_TRUE(refused([](auto& s) { s.faults(1U << 31U); }));
+}
+
+TEST(WireMapping, AnnouncementOutOfRangeIsRefused) {
+  const auto refused = [](auto change) {
+    return refused_after<wire::TestAnnouncement>(Draw{6}.announcement(), change);
+  };
+  EXPECT_TRUE(refused([](auto& s) { s.mode(2); }));
+  EXPECT_TRUE(refused([](auto& s) { s.substructure_count(kMaxSubstructures + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.step_s(kNaN); }));
+  EXPECT_TRUE(refused([](auto& s) { s.duration_s(-1.0); }));
+  EXPECT_TRUE(refused([](auto& s) { s.time_scale(kNaN); }));
+  EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].role(9); }));
+  EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].interface_dofs(13); }));
+}
+
+TEST(WireMapping, ControlAndEventOutOfRangeAreRefused) {
+  const auto control_refused = [](auto change) { return refused_after<wire::TestControl>(Draw{7}.control(), change); };
+  EXPECT_TRUE(control_refused([](auto& s) { s.verb(6); }));
+  EXPECT_TRUE(control_refused([](auto& s) { s.sender_role(4); }));
+  EXPECT_TRUE(control_refused([](auto& s) { s.reason(200); }));
+  const auto event_refused = [](auto change) { return refused_after<wire::Event>(Draw{8}.event(), change); };
+  EXPECT_TRUE(event_refused([](auto& s) { s.severity(3); }));
+  EXPECT_TRUE(event_refused([](auto& s) { s.code(60000); }));
+  EXPECT_TRUE(event_refused([](auto& s) { s.step(-2); }));
+  EXPECT_TRUE(event_refused([](auto& s) { s.model_time_s(kNaN); }));
+  EXPECT_FALSE(event_refused([](auto& s) { s.values()[0] = kNaN; }));
+}
+
+TEST(WireMapping, SignalBlockOutOfRangeIsRefused) {
+  const auto refused = [](auto change) { return refused_after<wire::SignalBlock>(Draw{9}.signal(), change); };
+  EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
+  EXPECT_TRUE(refused([](auto& s) { s.sample_count(kMaxSignalSamples + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.samples()[31].model_time_s(kNaN); }));
+}
+
+TEST(WireMapping, HotMessagesFitOneEthernetFrame) {
+  // 1500 bytes less headers: IP 20, UDP 8, RTPS 20, INFO_TS 12, DATA 24 with inline key hash 24,
+  // HEARTBEAT that rides along 32, encapsulation 4.
+  constexpr std::size_t kRoom = 1500 - 20 - 8 - 20 - 12 - 24 - 24 - 32 - 4;
+  EXPECT_LE(wire::DisplacementCommand::getMaxCdrSerializedSize(), kRoom);
+  EXPECT_LE(wire::ForceMeasurement::getMaxCdrSerializedSize(), kRoom);
+  EXPECT_LE(wire::SignalBlock::getMaxCdrSerializedSize(), kRoom);
+}
+
+}  // namespace
+}  // namespace hybridtest::fast_dds
