@@ -43,6 +43,10 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrato
   HYBRIDTEST_ASSERT(std::cmp_equal(settings_.ground_acceleration_m_per_s2.size(), settings_.last_step + 1));
   HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
   row_.resize(4 + 4 * static_cast<std::size_t>(restoring_force_n_.size()));
+  // A site answers when its actuators have arrived, in paced mode a step later.
+  if (settings_.mode == CouplingMode::paced) {
+    settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
+  }
 }
 
 Instant Coordinator::advance(Instant now) noexcept {
@@ -75,17 +79,21 @@ void Coordinator::take_control_messages(Instant now) noexcept {
   TestControl message;
   while (ports_.control_in.take(message)) {
     if (message.sender == presence_.identity().incarnation || message.sender_role != Role::operator_tool) continue;
+    // Passed on to all: an operator's tool may be gone before everyone has found it.
     switch (message.verb) {
       case ControlVerb::stop: begin_stop(now, StopReason::interrupted); break;
       case ControlVerb::emergency_stop:
         report(now, Severity::fault, EventCode::emergency_stop);
+        control(ControlVerb::emergency_stop, StopReason::interlock);
         begin_stop(now, StopReason::interlock);
         break;
       case ControlVerb::pause:
         if (!std::exchange(is_paused_, true)) report(now, Severity::information, EventCode::test_paused);
+        control(ControlVerb::pause);
         break;
       case ControlVerb::resume:
         if (std::exchange(is_paused_, false)) report(now, Severity::information, EventCode::test_resumed);
+        control(ControlVerb::resume);
         step_due_ = std::max(step_due_, now);
         break;
       case ControlVerb::arm:
@@ -194,29 +202,34 @@ void Coordinator::run(Instant now) noexcept {
 }
 
 void Coordinator::watch_participants(Instant now) noexcept {
+  bool somebody_is_lost = false;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     const bool is_lost = peer == nullptr || peer->status.state == LifecycleState::lost ||
-                         peer->status.state == LifecycleState::refused ||
-                         peer->status.state == LifecycleState::finished;
-    if (is_lost) {
-      report(now, Severity::fault, EventCode::participant_lost, substructure.id);
-      presence_.raise(FaultFlags::participant_lost);
-      begin_stop(now, StopReason::participant_lost);
-      return;
-    }
-    constexpr FaultFlags kRecording = FaultFlags::records_dropped | FaultFlags::recording_failed;
-    const bool has_recording_fault = any(peer->status.faults & kRecording);
+                         peer->status.state == LifecycleState::refused;
+    if (!is_lost) continue;
+    report(now, Severity::fault, EventCode::participant_lost, substructure.id);
+    presence_.raise(FaultFlags::participant_lost);
+    somebody_is_lost = true;
+  }
+  if (somebody_is_lost) {
+    begin_stop(now, StopReason::participant_lost);
+    return;
+  }
+  constexpr FaultFlags kRecording = FaultFlags::records_dropped | FaultFlags::recording_failed;
+  bool has_recording_fault = any(presence_.faults() & kRecording);
+  for (const auto& substructure : settings_.substructures) {
+    const Peer* peer = presence_.find(substructure.id);
+    has_recording_fault = has_recording_fault || any(peer->status.faults & kRecording);
     const bool has_other_fault = (peer->status.faults & kRecording) != peer->status.faults;
-    if (has_other_fault || peer->status.state == LifecycleState::stopping) {
+    const bool is_leaving =
+        peer->status.state == LifecycleState::stopping || peer->status.state == LifecycleState::finished;
+    if (has_other_fault || is_leaving) {
       begin_stop(now, has_other_fault ? StopReason::interlock : StopReason::interrupted);
       return;
     }
-    if (has_recording_fault && settings_.stop_on_recording_failure) {
-      begin_stop(now, StopReason::recording_failed);
-      return;
-    }
   }
+  if (has_recording_fault && settings_.stop_on_recording_failure) begin_stop(now, StopReason::recording_failed);
 }
 
 void Coordinator::open_step(Instant now) noexcept {
@@ -259,6 +272,7 @@ void Coordinator::repeat_unanswered(Instant now) noexcept {
 }
 
 void Coordinator::complete_step(Instant now) noexcept {
+  record_exchanges();
   restoring_force_n_.setZero();
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const auto& interface = settings_.substructures[i].interface;
@@ -275,7 +289,6 @@ void Coordinator::complete_step(Instant now) noexcept {
       if (interface[k].relative_to != InterfaceDof::kGround) restoring_force_n_[interface[k].relative_to] -= force;
     }
   }
-  record_exchanges();
   const Step step = ledger_.step();
   const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
   applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;

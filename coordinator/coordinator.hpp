@@ -45,8 +45,9 @@ struct CoordinatorSettings {
   Duration settle = std::chrono::milliseconds{300};  // listen for an older coordinator first
   Duration discovery_timeout = std::chrono::seconds{30};
   Duration arm_timeout = std::chrono::seconds{10};
-  Duration stop_timeout = std::chrono::seconds{10};        // for the others to come to rest
-  Duration repeat_after = std::chrono::milliseconds{200};  // an unanswered command is sent again
+  Duration stop_timeout = std::chrono::seconds{10};  // for the others to come to rest
+  /// An unanswered command is sent again; in paced mode the length of a step is added.
+  Duration repeat_after = std::chrono::milliseconds{200};
 };
 
 struct CoordinatorPorts {

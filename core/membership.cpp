@@ -38,9 +38,9 @@ Request Membership::next_request(Instant now) noexcept {
         if (state == LifecycleState::armed) return Request::start;
         break;
       case ControlVerb::stop: return stop_for(message.reason);
-      case ControlVerb::pause:
-      case ControlVerb::resume:
-      case ControlVerb::emergency_stop: break;
+      case ControlVerb::pause: return Request::pause;
+      case ControlVerb::resume: return Request::resume;
+      case ControlVerb::emergency_stop: break;  // obeyed above, whoever sent it
     }
   }
 

@@ -9,6 +9,11 @@ namespace {
   return state == LifecycleState::finished || state == LifecycleState::refused || state == LifecycleState::lost;
 }
 
+/// Clocks that differ by less are those of participants that started together.
+constexpr Duration kStartedTogether = std::chrono::milliseconds{200};
+/// More than a status takes there and back.
+constexpr Duration kOnItsWay = std::chrono::milliseconds{50};
+
 [[nodiscard]] bool may_still_leave(LifecycleState state) noexcept {
   return state == LifecycleState::joining || state == LifecycleState::ready;
 }
@@ -108,6 +113,8 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
     if (!has_left(place->status.state) || has_left(status.state)) return;
   } else if (has_left(place->status.state) && place->status.state != LifecycleState::lost) {
     return;  // a late or repeated status of one that has said goodbye
+  } else if (status.clock < place->status.clock && status.state != LifecycleState::lost) {
+    return;  // overtaken on its way: newer states and faults stay
   }
   // A transport reports a loss with what it remembers; a step once answered stays answered.
   const Step last_step = is_other_process ? status.last_step : std::max(place->status.last_step, status.last_step);
@@ -117,9 +124,13 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
 
 void Presence::judge_duplicate(const ParticipantStatus& other, Instant now) noexcept {
   if (has_left(other.state)) return;
-  const Duration own_age = now.time_since_epoch();
+  // The status was on its way for a while and makes its sender look younger. Two that started
+  // together would each take the other for the younger and both stay; between them the
+  // incarnation decides. The margin makes both see the tie when one does.
+  const Duration older_by = other.clock - now.time_since_epoch();
+  const bool started_together = older_by >= -(kStartedTogether + kOnItsWay) && older_by <= kStartedTogether;
   const bool other_is_older =
-      other.clock > own_age || (other.clock == own_age && other.incarnation < identity_.incarnation);
+      started_together ? other.incarnation < identity_.incarnation : older_by > Duration::zero();
   // Once armed nobody leaves for a newcomer's sake; only the newcomer can still go.
   if (may_still_leave(own_.state) && (other_is_older || !may_still_leave(other.state))) is_duplicate_ = true;
   if (!duplicate_reported_) {

@@ -24,7 +24,8 @@ struct Peer {
 };
 
 /// A participant's own status and what it knows of the others: heartbeats, leases, and the rule
-/// that of two participants with one id the younger leaves.
+/// that of two participants with one id the younger leaves; of two that started together, the
+/// one with the higher incarnation.
 ///
 /// The clock of a participant starts at its start, so that the `clock` in a status tells its age.
 class Presence {

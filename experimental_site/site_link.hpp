@@ -32,7 +32,10 @@ class SiteLink final : public Node {
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
 
   [[nodiscard]] bool is_done() const noexcept;
-  [[nodiscard]] StopReason stop_reason() const noexcept { return stop_reason_; }
+  [[nodiscard]] StopReason stop_reason() const noexcept {
+    // A link that is refused has nothing to stop.
+    return stop_reason_ != StopReason::none ? stop_reason_ : membership_.stop_reason();
+  }
 
   [[nodiscard]] static TableLayout steps_layout(int dofs);
 

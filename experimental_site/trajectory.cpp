@@ -50,7 +50,12 @@ void Trajectory::set_target(const CommandPoint& target) noexcept {
   end_velocity_m_per_s_ = target.velocity_m_per_s / time_scale_;
   end_acceleration_m_per_s2_ = target.acceleration_m_per_s2 / (time_scale_ * time_scale_);
 
-  if (!is_first_target_) path_time_s_ = std::min(path_time_s_, interval_begin_s_ + kSlowDownAt * step_s_);
+  if (!is_first_target_) {
+    const double slow_down_s = interval_begin_s_ + kSlowDownAt * step_s_;
+    // With few samples to a step it can be late without a sample that slowed down.
+    if (path_time_s_ > slow_down_s + kSameTime * step_s_) flags_ |= MeasurementFlags::late;
+    path_time_s_ = std::min(path_time_s_, slow_down_s);
+  }
   segment_begin_s_ = path_time_s_;
   begin_displacement_m_ = point_.displacement_m;
   begin_velocity_m_per_s_ = slope_m_per_s_;

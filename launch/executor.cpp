@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
+#include <thread>
 
 namespace hybridtest {
 namespace {
@@ -26,6 +27,10 @@ void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::f
     if (is_done()) return;
     if (wake > now) static_cast<void>(waker.wait_until(clock.deadline(wake)));
   }
+}
+
+void wait_while(const std::function<bool()>& condition) {
+  while (condition()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
 }
 
 void stop_on_signals(Waker& waker) {

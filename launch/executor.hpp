@@ -36,6 +36,9 @@ class ProcessClock {
 void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::function<bool()>& is_done,
                const std::function<void(Instant)>& between);
 
+/// Sleeps, a millisecond at a time, while the condition holds.
+void wait_while(const std::function<bool()>& condition);
+
 /// Makes SIGINT and SIGTERM ask for a safe stop: they set a flag and signal the waker. The waker
 /// must outlive the process's wish to be stopped; one waker per process.
 void stop_on_signals(Waker& waker);

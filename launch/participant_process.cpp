@@ -75,9 +75,7 @@ class Housekeeping {
     watch_recording(now);
     process_.event_log().write();
     // Lockstep has no deadlines: rather than lose records it waits for the disk.
-    while (may_wait_ && process_.recorder().should_drain() && !process_.recorder().failed()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds{1});
-    }
+    if (may_wait_) wait_while([&] { return process_.recorder().should_drain() && !process_.recorder().failed(); });
   }
 
  private:
@@ -103,6 +101,13 @@ class Housekeeping {
   bool reported_drop_ = false;
 };
 
+/// Of the process, once its records are closed: a part taken to the end counts as data only with all its records.
+int exit_code_of(const Participant& participant, const Recorder& recorder) {
+  const int exit_code = exit_code_for(participant.stop_reason());
+  const bool has_holes = recorder.failed() || recorder.dropped() > 0;
+  return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
+}
+
 /// @param at_the_end   the last word to the recording, before it is closed.
 void run_to_the_end(
     Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, CouplingMode mode,
@@ -126,7 +131,7 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
     const CoordinatorReport report = participant.report();
     process.recorder().sink("test").append(test_row(scenario, report, exit_code_for(report.reason)));
   });
-  return exit_code_for(participant.stop_reason());
+  return exit_code_of(participant, process.recorder());
 }
 
 int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
@@ -135,7 +140,7 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
   stop_on_signals(process.transport().waker());
   run_to_the_end(participant, process, clock, scenario.time.mode);
-  return exit_code_for(participant.stop_reason());
+  return exit_code_of(participant, process.recorder());
 }
 
 int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
@@ -160,7 +165,7 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
   loop_waker.signal();
   if (loop_thread.joinable()) loop_thread.join();
   set_assert_action(nullptr, nullptr);
-  return exit_code_for(participant.stop_reason());
+  return exit_code_of(participant, process.recorder());
 }
 
 int run_role(const Scenario& scenario, const ParticipantProcessOptions& options, Role role, const ProcessClock& clock) {

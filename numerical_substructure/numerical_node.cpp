@@ -19,10 +19,7 @@ NumericalNode::NumericalNode(SubstructureIndex index, std::unique_ptr<Substructu
 
 Instant NumericalNode::advance(Instant now) noexcept {
   const Instant wake = presence_.advance(now);
-  if (std::exchange(requested_stop_, StopReason::none) != StopReason::none) {
-    presence_.set_state(LifecycleState::stopping);
-    presence_.set_state(LifecycleState::finished);
-  }
+  if (requested_stop_ != StopReason::none) presence_.set_state(LifecycleState::finished);
   for (Request request = membership_.next_request(now); request != Request::none;
        request = membership_.next_request(now)) {
     obey(request);

@@ -26,10 +26,14 @@ class NumericalNode final : public Node {
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
   /// Leaves the test, as Ctrl-C does; takes effect at the next advance().
-  void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
+  void request_stop(StopReason reason) noexcept {
+    if (!is_done()) requested_stop_ = reason;
+  }
 
   [[nodiscard]] bool is_done() const noexcept;
-  [[nodiscard]] StopReason stop_reason() const noexcept { return membership_.stop_reason(); }
+  [[nodiscard]] StopReason stop_reason() const noexcept {
+    return requested_stop_ != StopReason::none ? requested_stop_ : membership_.stop_reason();
+  }
 
   /// @param dofs   names of the interface degrees of freedom.
   [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);

@@ -352,6 +352,13 @@ std::vector<Section> Section::sections(std::string_view key, bool or_single) {
   return sections;
 }
 
+std::vector<Section> Section::sections_or_empty(std::string_view key) {
+  if (state_->recorded_sections(key) == nullptr && state_->read(key) == nullptr) {
+    state_->record_sections(key, {state_->open(nullptr, state_->path_of(key), state_->place())});
+  }
+  return sections(key, true);
+}
+
 void Section::error(std::string_view key, std::string what) {
   const Node* const node = key.empty() ? nullptr : state_->find(key);
   const std::string path = key.empty() ? state_->path() : state_->path_of(key);

@@ -81,6 +81,9 @@ class Section {
   [[nodiscard]] std::optional<Section> optional_section(std::string_view key);
   /// A required list of mappings, possibly empty; a single mapping is accepted as a list of one if `or_single`.
   [[nodiscard]] std::vector<Section> sections(std::string_view key, bool or_single = false);
+  /// As sections(key, true), but when the key is absent a list of one empty section, from which the
+  /// fallbacks go into effective() as a list of one.
+  [[nodiscard]] std::vector<Section> sections_or_empty(std::string_view key);
 
   /// Reports at the key (or, with an empty or absent key, at the section itself).
   void error(std::string_view key, std::string what);

@@ -55,6 +55,21 @@ TEST_F(PresenceTest, LosesAPeerThatIsSilentForTheLeaseAndNotBefore) {
   EXPECT_EQ(presence_.find("coordinator")->status.state, LifecycleState::lost);
 }
 
+TEST_F(PresenceTest, AStatusThatWasOvertakenOnItsWayChangesNothing) {
+  ParticipantStatus newer = status_of("coordinator", 9, LifecycleState::stopping, seconds{5});
+  newer.faults = FaultFlags::force_limit;
+  inbox_.send(newer);
+  inbox_.send(status_of("coordinator", 9, LifecycleState::running, seconds{4}));
+  static_cast<void>(presence_.advance(at(seconds{0})));
+  ASSERT_NE(presence_.find("coordinator"), nullptr);
+  EXPECT_EQ(presence_.find("coordinator")->status.state, LifecycleState::stopping);
+  EXPECT_EQ(presence_.find("coordinator")->status.faults, FaultFlags::force_limit);
+  // A loss is reported with what the transport remembers, which may be older.
+  inbox_.send(status_of("coordinator", 9, LifecycleState::lost, seconds{4}));
+  static_cast<void>(presence_.advance(at(seconds{0})));
+  EXPECT_FALSE(presence_.is_alive(9));
+}
+
 TEST_F(PresenceTest, ALostPeerThatIsHeardAgainIsBack) {
   inbox_.send(status_of("coordinator", 9, LifecycleState::running));
   static_cast<void>(presence_.advance(at(seconds{0})));
@@ -74,12 +89,35 @@ TEST_F(PresenceTest, AStatusThatArrivesAfterTheFarewellChangesNothing) {
 
 TEST_F(PresenceTest, TheYoungerOfTwoWithOneIdIsTheDuplicate) {
   static_cast<void>(presence_.advance(at(seconds{1})));
-  inbox_.send(status_of("site", 6, LifecycleState::joining, milliseconds{900}));
+  inbox_.send(status_of("site", 4, LifecycleState::joining, milliseconds{700}));
   static_cast<void>(presence_.advance(at(seconds{1})));
   EXPECT_FALSE(presence_.is_duplicate()) << "the other one is younger";
-  inbox_.send(status_of("site", 6, LifecycleState::joining, milliseconds{2600}));
+  inbox_.send(status_of("site", 6, LifecycleState::joining, milliseconds{2800}));
   static_cast<void>(presence_.advance(at(milliseconds{2500})));
   EXPECT_TRUE(presence_.is_duplicate());
+}
+
+TEST_F(PresenceTest, OfTwoThatStartTogetherOneLeavesWhateverTheirStatusesTakeOnTheirWay) {
+  for (const Duration on_its_way : {Duration{0}, Duration{milliseconds{1}}, Duration{milliseconds{20}}}) {
+    for (Duration younger_by{}; younger_by <= milliseconds{400}; younger_by += milliseconds{5}) {
+      RingPort<ParticipantStatus> to_older{4};
+      RingPort<ParticipantStatus> to_younger{4};
+      RingPort<Event> events{16};
+      Presence older{Identity{"site", Role::experimental_site, 6, {}}, seconds{2}, to_older, to_younger, events};
+      Presence younger{Identity{"site", Role::experimental_site, 5, {}}, seconds{2}, to_younger, to_older, events};
+      const Instant sent = at(seconds{1});
+      static_cast<void>(older.advance(sent));
+      static_cast<void>(younger.advance(sent - younger_by));
+      static_cast<void>(older.advance(sent + on_its_way));
+      static_cast<void>(younger.advance(sent - younger_by + on_its_way));
+      EXPECT_TRUE(older.is_duplicate() || younger.is_duplicate())
+          << to_seconds(younger_by) << " s apart, " << to_seconds(on_its_way) << " s on its way";
+      // Both leave only where one sees a tie and the other may not.
+      if (younger_by < milliseconds{200} || younger_by > milliseconds{250}) {
+        EXPECT_NE(older.is_duplicate(), younger.is_duplicate()) << to_seconds(younger_by) << " s apart";
+      }
+    }
+  }
 }
 
 TEST_F(PresenceTest, OneThatIsArmedDoesNotLeaveForAnother) {

@@ -1,0 +1,578 @@
+#include "coordinator/coordinator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "core/ring_port.hpp"
+#include "tests/support/kept_rows.hpp"
+
+namespace hybridtest {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Incarnation kOwn = 99;
+constexpr double kStep_s = 0.01;
+constexpr double kGround_m_per_s2 = 2.0;
+
+/// Moves by one millimetre a step, so that what it was given can be read off.
+class CountingIntegrator final : public Integrator {
+ public:
+  explicit CountingIntegrator(Eigen::Index dofs) {
+    current_.displacement_m = current_.velocity_m_per_s = current_.acceleration_m_per_s2 = Eigen::VectorXd::Zero(dofs);
+    completed_ = current_;
+  }
+  [[nodiscard]] const MotionState& current() const noexcept override { return current_; }
+  [[nodiscard]] const MotionState& completed() const noexcept override { return completed_; }
+  void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
+               const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override {
+    completed_ = current_;
+    completed_.velocity_m_per_s = restoring_force_n;
+    completed_.acceleration_m_per_s2 = applied_force_n;
+    current_.displacement_m.array() += 0.001;
+    if (++advances == diverges_after) current_.displacement_m[0] = std::numeric_limits<double>::infinity();
+  }
+
+  int advances = 0;
+  int diverges_after = -1;
+
+ private:
+  MotionState current_;
+  MotionState completed_;
+};
+
+/// A coordinator of two substructures, `a` at the only degree of freedom and `b` likewise, whose
+/// part the test plays.
+class CoordinatorTest : public testing::Test {
+ protected:
+  struct Substructure {
+    ParticipantStatus status;
+    bool answers = true;
+  };
+
+  void make(CouplingMode mode = CouplingMode::lockstep, Step last_step = 5, bool stop_on_recording_failure = false,
+            double time_scale = 1.0) {
+    CoordinatorSettings settings;
+    settings.test_name = "test";
+    settings.mode = mode;
+    settings.step_s = kStep_s;
+    settings.duration_s = kStep_s * static_cast<double>(last_step);
+    settings.time_scale = time_scale;
+    settings.last_step = last_step;
+    settings.substructures = {{"a", Role::experimental_site, {{0, InterfaceDof::kGround}}},
+                              {"b", Role::numerical_substructure, {{0, InterfaceDof::kGround}}}};
+    settings.load_per_ground_acceleration_kg = Eigen::VectorXd::Constant(1, -3.0);
+    settings.ground_acceleration_m_per_s2.assign(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2);
+    settings.stop_on_recording_failure = stop_on_recording_failure;
+    auto integrator = std::make_unique<CountingIntegrator>(1);
+    integrator_ = integrator.get();
+    coordinator_ = std::make_unique<Coordinator>(
+        settings, std::move(integrator), presence_,
+        CoordinatorPorts{announcements_, control_in_, control_out_, measurements_, commands_},
+        CoordinatorRecord{steps_, exchanges_});
+    for (std::size_t i = 0; i < 2; ++i) {
+      substructures_[i].status.id = i == 0 ? "a" : "b";
+      substructures_[i].status.incarnation = 10 + i;
+    }
+  }
+
+  /// Time passes and the coordinator runs.
+  Instant advance(Duration passed = {}) {
+    now_ += passed;
+    return coordinator_->advance(now_);
+  }
+  void say(std::size_t substructure, LifecycleState state, FaultFlags faults = FaultFlags::none) {
+    ParticipantStatus& status = substructures_[substructure].status;
+    status.state = state;
+    status.faults = faults;
+    status.clock = now_.time_since_epoch();
+    statuses_.send(status);
+  }
+  void say_both(LifecycleState state) {
+    say(0, state);
+    say(1, state);
+  }
+  /// Heartbeats, so that nobody is lost while time passes.
+  void keep_alive() {
+    for (const Substructure& substructure : substructures_) statuses_.send(substructure.status);
+  }
+  void answer(std::size_t substructure, Step step, double force_n = 1.0, Incarnation sender = 0) {
+    ForceMeasurement measurement;
+    measurement.substructure = static_cast<SubstructureIndex>(substructure);
+    measurement.sender = sender == 0 ? substructures_[substructure].status.incarnation : sender;
+    measurement.step = step;
+    measurement.force_n = InterfaceVector::Constant(1, force_n);
+    measurements_.send(measurement);
+  }
+  /// Settled, everyone ready and armed; step 0 has gone out.
+  void start() {
+    advance();
+    advance(milliseconds{300});
+    say_both(LifecycleState::ready);
+    advance();
+    say_both(LifecycleState::armed);
+    advance();
+    say_both(LifecycleState::running);
+    advance();
+  }
+  void operator_says(ControlVerb verb) {
+    TestControl message;
+    message.verb = verb;
+    message.sender = 1234;
+    control_in_.send(message);
+    advance();
+  }
+  std::vector<DisplacementCommand> take_commands() { return take_all(commands_); }
+  std::vector<TestControl> take_control() { return take_all(control_out_); }
+  template <class Message>
+  static std::vector<Message> take_all(RingPort<Message>& port) {
+    std::vector<Message> taken;
+    Message message;
+    while (port.take(message)) taken.push_back(message);
+    return taken;
+  }
+  /// Subjects of the events with this code since the last call.
+  std::multiset<std::string> subjects(EventCode code) {
+    for (const Event& event : take_all(events_)) told_.push_back(event);
+    std::multiset<std::string> found;
+    for (const Event& event : told_) {
+      if (event.code == code) found.insert(event.subject.text());
+    }
+    return found;
+  }
+  [[nodiscard]] StopReason reason() const { return coordinator_->report().reason; }
+  [[nodiscard]] Step completed() const { return coordinator_->report().completed_steps; }
+
+  RingPort<ParticipantStatus> statuses_{256};
+  RingPort<ParticipantStatus> own_statuses_{4096};
+  RingPort<Event> events_{1024};
+  RingPort<TestAnnouncement> announcements_{4};
+  RingPort<TestControl> control_in_{16};
+  RingPort<TestControl> control_out_{1024};
+  RingPort<ForceMeasurement> measurements_{256};
+  RingPort<DisplacementCommand> commands_{1024};
+  KeptRows steps_{Coordinator::steps_layout({"floor"})};
+  KeptRows exchanges_{Coordinator::exchanges_layout()};
+  Presence presence_{Identity{"coordinator", Role::coordinator, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
+                     events_};
+  std::array<Substructure, 2> substructures_;
+  CountingIntegrator* integrator_ = nullptr;
+  std::unique_ptr<Coordinator> coordinator_;
+  Instant now_{};
+  std::vector<Event> told_;
+};
+
+TEST_F(CoordinatorTest, AnnouncesTheTestOnceItHasListenedForAnOlderCoordinator) {
+  make();
+  TestAnnouncement announcement;
+  advance();
+  advance(milliseconds{299});
+  EXPECT_FALSE(announcements_.take(announcement));
+  advance(milliseconds{1});
+  ASSERT_TRUE(announcements_.take(announcement));
+  EXPECT_EQ(announcement.coordinator, kOwn);
+  ASSERT_EQ(announcement.substructure_count, 2);
+  EXPECT_EQ(announcement.substructures[1].id, "b");
+  EXPECT_EQ(announcement.substructures[1].interface_dofs, 1);
+  EXPECT_EQ(announcement.step_s, kStep_s);
+}
+
+TEST_F(CoordinatorTest, ArmsWhenAllAreReadyAndStartsWhenAllAreArmed) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say(0, LifecycleState::ready);
+  advance();
+  EXPECT_TRUE(take_control().empty());
+  say(1, LifecycleState::ready);
+  advance();
+  auto control = take_control();
+  ASSERT_EQ(control.size(), 1U);
+  EXPECT_EQ(control[0].verb, ControlVerb::arm);
+  advance(milliseconds{250});
+  control = take_control();
+  ASSERT_EQ(control.size(), 1U) << "arm is said again to who did not obey";
+  say_both(LifecycleState::armed);
+  EXPECT_TRUE(take_commands().empty());
+  advance();
+  control = take_control();
+  ASSERT_EQ(control.size(), 1U);
+  EXPECT_EQ(control[0].verb, ControlVerb::start);
+  const auto commands = take_commands();
+  ASSERT_EQ(commands.size(), 2U);
+  EXPECT_EQ(commands[0].newest().step, 0);
+  EXPECT_EQ(commands[1].substructure, 1);
+}
+
+TEST_F(CoordinatorTest, NamesWhoDidNotAppear) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say(0, LifecycleState::ready);
+  advance(seconds{1});
+  for (int i = 0; i < 29; ++i) {
+    say(0, LifecycleState::ready);
+    advance(seconds{1});
+    ASSERT_EQ(reason(), i < 28 ? StopReason::none : StopReason::not_assembled) << i;
+  }
+  EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"b"}));
+}
+
+TEST_F(CoordinatorTest, NamesWhoDidNotArm) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say_both(LifecycleState::ready);
+  advance();
+  say(1, LifecycleState::armed);
+  for (int i = 0; i < 11; ++i) {
+    keep_alive();
+    advance(seconds{1});
+  }
+  EXPECT_EQ(reason(), StopReason::not_assembled);
+  EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"a"}));
+}
+
+TEST_F(CoordinatorTest, EndsWhenASubstructureRefuses) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say(1, LifecycleState::refused);
+  advance();
+  EXPECT_EQ(reason(), StopReason::refused);
+  EXPECT_EQ(subjects(EventCode::digest_mismatch), (std::multiset<std::string>{"b"}));
+}
+
+TEST_F(CoordinatorTest, CompletesEveryStepOnceAndInOrder) {
+  make();
+  start();
+  Step step = 0;
+  while (completed() <= 5 && reason() == StopReason::none) {
+    answer(0, step, 10.0);
+    answer(0, step, 1e9);      // repeated by the network, or worse
+    answer(1, step - 1, 1e9);  // late
+    answer(1, step, 1e9, 77);  // of another process
+    answer(1, step + 1, 1e9);  // of a step not asked for
+    advance(milliseconds{1});
+    ASSERT_EQ(completed(), step);
+    answer(1, step, 20.0);
+    advance(milliseconds{1});
+    ASSERT_EQ(completed(), ++step);
+  }
+  EXPECT_EQ(reason(), StopReason::completed);
+  EXPECT_EQ(completed(), 6);
+  EXPECT_EQ(integrator_->advances, 6);
+  ASSERT_EQ(steps_.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(steps_.at(i, steps_.column("step")), static_cast<double>(i));
+    EXPECT_DOUBLE_EQ(steps_.at(i, steps_.column("displacement_floor_m")), 0.001 * static_cast<double>(i));
+    EXPECT_EQ(steps_.at(i, steps_.column("restoring_force_floor_n")), 30.0);
+    EXPECT_EQ(steps_.at(i, steps_.column("acceleration_floor_m_per_s2")), -3.0 * kGround_m_per_s2);
+    EXPECT_EQ(steps_.at(i, steps_.column("ground_acceleration_m_per_s2")), kGround_m_per_s2);
+  }
+  ASSERT_EQ(exchanges_.size(), 12U);
+  EXPECT_NEAR(exchanges_.at(3, exchanges_.column("round_trip_us")), 2000.0, 1e-6);
+}
+
+TEST_F(CoordinatorTest, EachCommandCarriesTheStepsBefore) {
+  make();
+  start();
+  for (Step step = 0; step < 5; ++step) {
+    answer(0, step, 10.0);
+    answer(1, step, 20.0);
+    advance(milliseconds{1});
+  }
+  const auto commands = take_commands();
+  ASSERT_EQ(commands.size(), 12U);
+  const DisplacementCommand& newest = commands.back();
+  ASSERT_EQ(newest.point_count, kCommandPoints);
+  for (int i = 0; i < kCommandPoints; ++i) {
+    const CommandPoint& point = newest.points[static_cast<std::size_t>(i)];
+    EXPECT_EQ(point.step, 5 - i);
+    EXPECT_DOUBLE_EQ(point.displacement_m[0], 0.001 * static_cast<double>(5 - i));
+    EXPECT_DOUBLE_EQ(point.model_time_s, kStep_s * static_cast<double>(5 - i));
+    // Final velocity once the step is complete; this integrator gives the restoring force for it.
+    EXPECT_EQ(point.velocity_m_per_s[0], i > 0 ? 30.0 : 0.0);
+  }
+  EXPECT_EQ(commands[0].point_count, 1);
+}
+
+TEST_F(CoordinatorTest, RepeatsACommandToThoseWhoHaveNotAnswered) {
+  make();
+  start();
+  take_commands();
+  answer(0, 0);
+  advance(milliseconds{199});
+  EXPECT_TRUE(take_commands().empty());
+  advance(milliseconds{1});
+  auto commands = take_commands();
+  ASSERT_EQ(commands.size(), 1U);
+  EXPECT_EQ(commands[0].substructure, 1);
+  EXPECT_EQ(commands[0].attempt, 1);
+  EXPECT_EQ(commands[0].newest().step, 0);
+  advance(milliseconds{200});
+  EXPECT_EQ(take_commands().size(), 1U);
+  answer(1, 0);
+  advance();
+  EXPECT_EQ(subjects(EventCode::command_repeated), (std::multiset<std::string>{"b"})) << "said once a step";
+  EXPECT_EQ(exchanges_.at(0, exchanges_.column("attempts")), 1.0);
+  EXPECT_EQ(exchanges_.at(1, exchanges_.column("attempts")), 3.0);
+}
+
+TEST_F(CoordinatorTest, InPacedModeASlowStepIsNotTakenForALostCommand) {
+  make(CouplingMode::paced, 5, false, 100.0);  // a step lasts a second
+  start();
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  take_commands();
+  for (int i = 0; i < 10; ++i) {
+    keep_alive();
+    advance(milliseconds{100});
+    EXPECT_TRUE(take_commands().empty()) << "the actuator is still on its way";
+  }
+  keep_alive();
+  advance(milliseconds{200});
+  EXPECT_EQ(take_commands().size(), 2U);
+}
+
+TEST_F(CoordinatorTest, InPacedModeCommandsKeepToTheirTime) {
+  make(CouplingMode::paced, 20);
+  start();  // step 0 is out
+  std::vector<Instant> sent;
+  Step answered = 0;
+  for (int millisecond = 0; millisecond < 100; ++millisecond) {
+    for (const DisplacementCommand& command : take_commands()) {
+      if (command.substructure == 0) sent.push_back(now_);
+    }
+    if (sent.size() > static_cast<std::size_t>(answered)) {
+      answer(0, answered);
+      answer(1, answered);
+      ++answered;
+    }
+    advance(milliseconds{1});
+  }
+  // One step ahead of its own time: step 1 goes out with step 0's answer, at most one step long
+  // ahead, and each one after it a step later.
+  ASSERT_GE(sent.size(), 5U);
+  for (std::size_t i = 2; i < sent.size(); ++i) EXPECT_GE(sent[i] - sent[i - 1], milliseconds{10});
+  EXPECT_LE(sent.size(), 12U);
+}
+
+TEST_F(CoordinatorTest, PausesAndResumes) {
+  make();
+  start();
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  take_commands();
+  operator_says(ControlVerb::pause);
+  answer(0, 1);
+  answer(1, 1);
+  advance();
+  EXPECT_EQ(completed(), 2) << "what was asked is completed";
+  EXPECT_TRUE(take_commands().empty()) << "and nothing new asked";
+  operator_says(ControlVerb::resume);
+  EXPECT_EQ(take_commands().size(), 2U);
+  EXPECT_EQ(subjects(EventCode::test_paused).size(), 1U);
+  EXPECT_EQ(subjects(EventCode::test_resumed).size(), 1U);
+}
+
+TEST_F(CoordinatorTest, AForceThatIsNotFiniteEndsTheTest) {
+  make();
+  start();
+  answer(0, 0);
+  answer(1, 0, std::numeric_limits<double>::quiet_NaN());
+  advance();
+  EXPECT_EQ(reason(), StopReason::not_finite);
+  EXPECT_EQ(integrator_->advances, 0);
+  EXPECT_EQ(subjects(EventCode::measurement_not_finite), (std::multiset<std::string>{"b"}));
+  EXPECT_EQ(exchanges_.size(), 2U) << "the exchange that ended the test is on record";
+}
+
+TEST_F(CoordinatorTest, AForceVectorOfAnotherSizeEndsTheTest) {
+  make();
+  start();
+  answer(0, 0);
+  ForceMeasurement measurement;
+  measurement.substructure = 1;
+  measurement.sender = substructures_[1].status.incarnation;
+  measurement.step = 0;
+  measurement.force_n = InterfaceVector::Zero(2);
+  measurements_.send(measurement);
+  advance();
+  EXPECT_EQ(reason(), StopReason::not_finite);
+  EXPECT_EQ(integrator_->advances, 0);
+}
+
+TEST_F(CoordinatorTest, AMotionThatIsNotFiniteEndsTheTest) {
+  make();
+  integrator_->diverges_after = 3;
+  start();
+  for (Step step = 0; step < 5; ++step) {
+    answer(0, step);
+    answer(1, step);
+    advance();
+  }
+  EXPECT_EQ(reason(), StopReason::not_finite);
+  EXPECT_EQ(steps_.size(), 3U);
+  for (const DisplacementCommand& command : take_commands()) EXPECT_TRUE(command.newest().displacement_m.allFinite());
+}
+
+TEST_F(CoordinatorTest, LosesASubstructureWithItsLease) {
+  make();
+  start();
+  for (int i = 0; i < 5; ++i) {
+    say(0, LifecycleState::running);
+    advance(milliseconds{500});
+  }
+  EXPECT_EQ(reason(), StopReason::participant_lost);
+  EXPECT_EQ(subjects(EventCode::participant_lost), (std::multiset<std::string>{"b"}));
+  EXPECT_EQ(exchanges_.size(), 2U) << "the unanswered exchange is on record";
+}
+
+TEST_F(CoordinatorTest, NamesAllWhoAreLostAtOnce) {
+  make();
+  start();
+  advance(seconds{2});
+  EXPECT_EQ(reason(), StopReason::participant_lost);
+  EXPECT_EQ(subjects(EventCode::participant_lost), (std::multiset<std::string>{"a", "b"}));
+}
+
+TEST_F(CoordinatorTest, ASubstructureThatIsStoppedByHandInterruptsTheTest) {
+  make();
+  start();
+  say(0, LifecycleState::stopping);
+  advance();
+  EXPECT_EQ(reason(), StopReason::interrupted);
+}
+
+TEST_F(CoordinatorTest, ASubstructureThatHasLeftOfItsOwnAccordIsNotLost) {
+  make();
+  start();
+  say(1, LifecycleState::finished);
+  advance();
+  EXPECT_EQ(reason(), StopReason::interrupted);
+  EXPECT_TRUE(subjects(EventCode::participant_lost).empty());
+}
+
+TEST_F(CoordinatorTest, AFaultAtASiteEndsTheTestAsAnInterlock) {
+  make();
+  start();
+  say(0, LifecycleState::running, FaultFlags::force_limit);
+  advance();
+  EXPECT_EQ(reason(), StopReason::interlock);
+}
+
+TEST_F(CoordinatorTest, AFailedRecordingEndsTheTestOnlyIfTheScenarioSaysSo) {
+  make(CouplingMode::lockstep, 5, false);
+  start();
+  say(0, LifecycleState::running, FaultFlags::records_dropped);
+  advance();
+  EXPECT_EQ(reason(), StopReason::none);
+
+  const Instant before = now_;
+  make(CouplingMode::lockstep, 5, true);
+  now_ = before;
+  start();
+  say(0, LifecycleState::running, FaultFlags::records_dropped);
+  advance();
+  EXPECT_EQ(reason(), StopReason::recording_failed);
+}
+
+TEST_F(CoordinatorTest, AStopIsRepeatedUntilEveryoneIsAtRest) {
+  make();
+  start();
+  take_control();
+  coordinator_->request_stop(StopReason::interrupted);
+  advance();
+  EXPECT_EQ(reason(), StopReason::interrupted);
+  auto control = take_control();
+  ASSERT_EQ(control.size(), 1U);
+  EXPECT_EQ(control[0].verb, ControlVerb::stop);
+  EXPECT_EQ(control[0].reason, StopReason::interrupted);
+  say(0, LifecycleState::finished);
+  advance(milliseconds{250});
+  EXPECT_EQ(take_control().size(), 1U);
+  EXPECT_FALSE(coordinator_->is_done());
+  say(1, LifecycleState::finished);
+  EXPECT_EQ(advance(), kNever);
+  EXPECT_TRUE(coordinator_->is_done());
+  const auto statuses = take_all(own_statuses_);
+  EXPECT_EQ(statuses.back().state, LifecycleState::finished) << "the last word goes out";
+}
+
+TEST_F(CoordinatorTest, DoesNotWaitForeverForTheOthersToComeToRest) {
+  make();
+  start();
+  coordinator_->request_stop(StopReason::interrupted);
+  advance();
+  for (int i = 0; i < 100; ++i) {
+    keep_alive();
+    advance(milliseconds{99});
+  }
+  EXPECT_FALSE(coordinator_->is_done());
+  keep_alive();
+  advance(milliseconds{100});
+  EXPECT_TRUE(coordinator_->is_done());
+}
+
+TEST_F(CoordinatorTest, AnEmergencyStopEndsTheTest) {
+  make();
+  start();
+  operator_says(ControlVerb::emergency_stop);
+  EXPECT_EQ(reason(), StopReason::interlock);
+  EXPECT_EQ(subjects(EventCode::emergency_stop).size(), 1U);
+}
+
+TEST_F(CoordinatorTest, TheYoungerOfTwoCoordinatorsLeavesAndTouchesNothing) {
+  make();
+  ParticipantStatus other;
+  other.id = "coordinator";
+  other.role = Role::coordinator;
+  other.incarnation = 5;
+  other.state = LifecycleState::running;
+  other.clock = seconds{100};
+  statuses_.send(other);
+  advance();
+  EXPECT_TRUE(coordinator_->is_done());
+  EXPECT_EQ(reason(), StopReason::refused);
+  EXPECT_EQ(subjects(EventCode::second_coordinator).size(), 1U);
+  EXPECT_TRUE(take_control().empty()) << "a stop would end the older one's test";
+  TestAnnouncement announcement;
+  EXPECT_FALSE(announcements_.take(announcement));
+}
+
+TEST_F(CoordinatorTest, ARunningCoordinatorStaysWhenAnotherAppears) {
+  make();
+  start();
+  ParticipantStatus other;
+  other.id = "coordinator";
+  other.incarnation = 5;
+  other.clock = seconds{100};
+  statuses_.send(other);
+  advance();
+  EXPECT_EQ(reason(), StopReason::none);
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  EXPECT_EQ(completed(), 1);
+}
+
+TEST_F(CoordinatorTest, OthersCannotArmStartOrStopInItsName) {
+  make();
+  start();
+  TestControl message;
+  message.verb = ControlVerb::stop;
+  message.sender = 5;
+  message.sender_role = Role::coordinator;
+  control_in_.send(message);
+  advance();
+  EXPECT_EQ(reason(), StopReason::none);
+}
+
+}  // namespace
+}  // namespace hybridtest

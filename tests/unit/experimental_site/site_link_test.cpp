@@ -1,0 +1,361 @@
+#include "experimental_site/site_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/ring_port.hpp"
+#include "tests/support/kept_rows.hpp"
+
+namespace hybridtest {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Incarnation kCoordinator = 77;
+constexpr Incarnation kOwn = 5;
+constexpr SubstructureIndex kIndex = 3;
+
+/// The link of a site with one degree of freedom; the test plays the coordinator and the loop.
+class SiteLinkTest : public testing::Test {
+ protected:
+  Instant advance(Duration passed = {}) {
+    now_ += passed;
+    return link_.advance(now_);
+  }
+  void coordinator_is(LifecycleState state) {
+    ParticipantStatus status;
+    status.id = "coordinator";
+    status.role = Role::coordinator;
+    status.incarnation = kCoordinator;
+    status.state = state;
+    statuses_.send(status);
+  }
+  void control(ControlVerb verb, StopReason reason = StopReason::none, Role role = Role::coordinator) {
+    TestControl message;
+    message.verb = verb;
+    message.sender = role == Role::coordinator ? kCoordinator : 1234;
+    message.sender_role = role;
+    message.reason = reason;
+    control_.send(message);
+  }
+  void join() {
+    TestAnnouncement announcement;
+    announcement.coordinator = kCoordinator;
+    announcements_.send(announcement);
+    coordinator_is(LifecycleState::running);
+    advance();
+  }
+  void loop_says(LoopReport::Kind kind, FaultFlags fault = FaultFlags::none) {
+    LoopReport report;
+    report.kind = kind;
+    report.fault = fault;
+    report.observed = 2.0;
+    report.limit = 1.0;
+    reports_.send(report);
+  }
+  void loop_measured(Step step, double force_n, MeasurementFlags flags = MeasurementFlags::none) {
+    LoopReport report;
+    report.measurement.step = step;
+    report.measurement.model_time_s = 0.01 * static_cast<double>(step);
+    report.measurement.target_displacement_m = InterfaceVector::Constant(1, 1.0 * static_cast<double>(step));
+    report.measurement.imposed_displacement_m = InterfaceVector::Constant(1, 1.1 * static_cast<double>(step));
+    report.measurement.measured_displacement_m = InterfaceVector::Constant(1, 1.2 * static_cast<double>(step));
+    report.measurement.force_n = InterfaceVector::Constant(1, force_n);
+    report.measurement.flags = flags;
+    reports_.send(report);
+  }
+  void start() {
+    join();
+    control(ControlVerb::arm);
+    advance();
+    loop_says(LoopReport::Kind::armed);
+    advance();
+    control(ControlVerb::start);
+    advance();
+    take_requests();
+  }
+  /// A command for `step` with as many points before it as fit.
+  static DisplacementCommand command(Step step, Incarnation coordinator = kCoordinator, int dofs = 1) {
+    DisplacementCommand command;
+    command.substructure = kIndex;
+    command.coordinator = coordinator;
+    command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
+    for (int i = 0; i < command.point_count; ++i) {
+      CommandPoint& point = command.points[static_cast<std::size_t>(i)];
+      point.step = step - i;
+      point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 =
+          InterfaceVector::Constant(dofs, static_cast<double>(step - i));
+    }
+    command.send_time = milliseconds{1000 + step};
+    return command;
+  }
+  std::vector<LoopRequest> take_requests() { return take_all(requests_); }
+  std::vector<Step> take_targets() {
+    std::vector<Step> steps;
+    for (const LoopRequest& request : take_requests()) {
+      EXPECT_EQ(request.kind, LoopRequest::Kind::target);
+      EXPECT_EQ(request.target.displacement_m[0], static_cast<double>(request.target.step));
+      steps.push_back(request.target.step);
+    }
+    return steps;
+  }
+  std::vector<ForceMeasurement> take_measurements() { return take_all(measurements_); }
+  std::vector<Event> take_events() { return take_all(events_); }
+  template <class Message>
+  static std::vector<Message> take_all(RingPort<Message>& port) {
+    std::vector<Message> taken;
+    Message message;
+    while (port.take(message)) taken.push_back(message);
+    return taken;
+  }
+
+  RingPort<ParticipantStatus> statuses_{64};
+  RingPort<ParticipantStatus> own_statuses_{256};
+  RingPort<Event> events_{256};
+  RingPort<TestAnnouncement> announcements_{4};
+  RingPort<TestControl> control_{16};
+  RingPort<DisplacementCommand> commands_{64};
+  RingPort<ForceMeasurement> measurements_{64};
+  RingPort<SignalBlock> signal_blocks_{64};
+  RingPort<LoopRequest> requests_{64};
+  RingPort<LoopReport> reports_{64};
+  RingPort<SignalSample> signals_{1024};
+  KeptRows steps_{SiteLink::steps_layout(1)};
+  Presence presence_{Identity{"site", Role::experimental_site, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
+                     events_};
+  SiteLink link_{kIndex,
+                 1,
+                 presence_,
+                 MembershipPorts{announcements_, control_, seconds{30}},
+                 SiteLinkPorts{commands_, measurements_, signal_blocks_, requests_, reports_, signals_},
+                 steps_};
+  Instant now_{};
+};
+
+TEST_F(SiteLinkTest, IsArmedOnceItsLoopIs) {
+  join();
+  EXPECT_EQ(presence_.state(), LifecycleState::ready);
+  control(ControlVerb::arm);
+  advance();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::arm);
+  EXPECT_EQ(presence_.state(), LifecycleState::ready);
+  loop_says(LoopReport::Kind::armed);
+  advance();
+  EXPECT_EQ(presence_.state(), LifecycleState::armed);
+}
+
+TEST_F(SiteLinkTest, ALoopThatCannotArmIsAFault) {
+  join();
+  control(ControlVerb::arm);
+  advance();
+  take_events();
+  loop_says(LoopReport::Kind::arm_failed, FaultFlags::rig_fault);
+  advance();
+  EXPECT_EQ(presence_.state(), LifecycleState::ready);
+  EXPECT_EQ(presence_.faults(), FaultFlags::rig_fault);
+  const auto events = take_events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, EventCode::interlock_tripped);
+}
+
+TEST_F(SiteLinkTest, PassesEveryTargetOnOnceAndInOrder) {
+  start();
+  for (const Step step : {0, 1, 1, 0, 2, 1, 2}) commands_.send(command(step));
+  advance();
+  EXPECT_EQ(take_targets(), (std::vector<Step>{0, 1, 2}));
+}
+
+TEST_F(SiteLinkTest, FindsLostTargetsAmongThePointsOfTheNextCommand) {
+  start();
+  commands_.send(command(0));
+  commands_.send(command(4));  // 1, 2 and 3 were lost
+  advance();
+  EXPECT_EQ(take_targets(), (std::vector<Step>{0, 1, 2, 3, 4}));
+  commands_.send(command(9));  // 5 is in no command any more: a gap would be a jump
+  advance();
+  EXPECT_TRUE(take_targets().empty());
+}
+
+TEST_F(SiteLinkTest, ACommandThatOvertakesTheStartStartsTheLoop) {
+  join();
+  control(ControlVerb::arm);
+  advance();
+  loop_says(LoopReport::Kind::armed);
+  advance();
+  take_requests();
+  commands_.send(command(0));
+  advance();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 2U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::start);
+  EXPECT_EQ(requests[1].kind, LoopRequest::Kind::target);
+  EXPECT_EQ(presence_.state(), LifecycleState::running);
+}
+
+TEST_F(SiteLinkTest, ObeysNoCommandBeforeItIsArmedOfAnotherCoordinatorOrOfAnotherSize) {
+  join();
+  commands_.send(command(0));
+  advance();
+  EXPECT_TRUE(take_requests().empty());
+  start();
+  commands_.send(command(0, kCoordinator + 1));
+  commands_.send(command(0, kCoordinator, 2));
+  advance();
+  EXPECT_TRUE(take_requests().empty());
+}
+
+TEST_F(SiteLinkTest, AnswersWithWhatTheLoopMeasured) {
+  start();
+  commands_.send(command(0));
+  advance(milliseconds{10});
+  EXPECT_TRUE(take_measurements().empty());
+  loop_measured(0, 42.0, MeasurementFlags::saturated);
+  advance(milliseconds{5});
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 1U);
+  EXPECT_EQ(measurements[0].substructure, kIndex);
+  EXPECT_EQ(measurements[0].sender, kOwn);
+  EXPECT_EQ(measurements[0].step, 0);
+  EXPECT_EQ(measurements[0].force_n[0], 42.0);
+  EXPECT_EQ(measurements[0].flags, MeasurementFlags::saturated);
+  EXPECT_EQ(measurements[0].command_send_time, milliseconds{1000});
+  EXPECT_EQ(measurements[0].receive_time, milliseconds{10});
+  EXPECT_EQ(measurements[0].send_time, milliseconds{15});
+  ASSERT_EQ(steps_.size(), 1U);
+  EXPECT_EQ(steps_.at(0, steps_.column("measured_force_n")), 42.0);
+  EXPECT_EQ(steps_.at(0, steps_.column("flags")), static_cast<double>(MeasurementFlags::saturated));
+}
+
+TEST_F(SiteLinkTest, ARepeatedCommandIsAnsweredFromMemoryAndMovesNothing) {
+  start();
+  commands_.send(command(0));
+  advance();
+  commands_.send(command(0));
+  advance();
+  EXPECT_EQ(take_targets(), (std::vector<Step>{0}));
+  EXPECT_TRUE(take_measurements().empty()) << "not measured yet";
+  loop_measured(0, 42.0);
+  advance();
+  ASSERT_EQ(take_measurements().size(), 1U);
+  DisplacementCommand repeated = command(0);
+  repeated.attempt = 1;
+  repeated.send_time = milliseconds{1200};
+  commands_.send(repeated);
+  advance();
+  EXPECT_TRUE(take_targets().empty());
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 1U);
+  EXPECT_EQ(measurements[0].force_n[0], 42.0);
+  EXPECT_EQ(measurements[0].flags, MeasurementFlags::repeated);
+  EXPECT_EQ(measurements[0].command_send_time, milliseconds{1200});
+  EXPECT_EQ(steps_.size(), 1U);
+}
+
+TEST_F(SiteLinkTest, AFaultOfTheLoopIsRaisedAndTold) {
+  start();
+  take_events();
+  loop_says(LoopReport::Kind::fault, FaultFlags::force_limit);
+  loop_says(LoopReport::Kind::fault, FaultFlags::command_age);
+  advance();
+  EXPECT_EQ(presence_.faults(), FaultFlags::force_limit | FaultFlags::command_age);
+  const auto events = take_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].code, EventCode::interlock_tripped);
+  EXPECT_EQ(events[0].severity, Severity::fault);
+  EXPECT_EQ(events[0].subject, "force_limit");
+  EXPECT_EQ(events[0].values, (std::array<double, 2>{2.0, 1.0}));
+  EXPECT_EQ(events[1].code, EventCode::command_overdue);
+}
+
+TEST_F(SiteLinkTest, IsFinishedWhenTheRigIsAtRest) {
+  start();
+  control(ControlVerb::stop, StopReason::completed);
+  advance();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_EQ(presence_.state(), LifecycleState::stopping);
+  control(ControlVerb::stop, StopReason::completed);
+  advance();
+  EXPECT_TRUE(take_requests().empty()) << "a repeated stop is the same stop";
+  loop_says(LoopReport::Kind::at_rest);
+  EXPECT_EQ(advance(), kNever);
+  EXPECT_TRUE(link_.is_done());
+  EXPECT_EQ(link_.stop_reason(), StopReason::completed);
+  EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::finished);
+}
+
+TEST_F(SiteLinkTest, WhatIsMeasuredWhileStoppingIsRecordedAndNotSent) {
+  start();
+  commands_.send(command(0));
+  advance();
+  control(ControlVerb::stop, StopReason::interrupted);
+  advance();
+  loop_measured(0, 42.0);
+  advance();
+  EXPECT_TRUE(take_measurements().empty());
+  EXPECT_EQ(steps_.size(), 1U);
+}
+
+TEST_F(SiteLinkTest, StopsWhenTheCoordinatorIsLost) {
+  start();
+  advance(milliseconds{1999});
+  EXPECT_TRUE(take_requests().empty());
+  advance(milliseconds{1});
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_EQ(link_.stop_reason(), StopReason::coordinator_lost);
+}
+
+TEST_F(SiteLinkTest, StopsOnRequest) {
+  start();
+  link_.request_stop(StopReason::interrupted);
+  advance();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_EQ(link_.stop_reason(), StopReason::interrupted);
+}
+
+TEST_F(SiteLinkTest, AnEmergencyStopGoesToTheLoopFirst) {
+  start();
+  control(ControlVerb::emergency_stop, StopReason::none, Role::operator_tool);
+  advance();
+  const auto requests = take_requests();
+  ASSERT_GE(requests.size(), 1U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::emergency_stop);
+  EXPECT_EQ(link_.stop_reason(), StopReason::interlock);
+  EXPECT_EQ(presence_.faults(), FaultFlags::emergency_stop);
+}
+
+TEST_F(SiteLinkTest, PassesPauseAndResumptionOn) {
+  start();
+  control(ControlVerb::pause, StopReason::none, Role::operator_tool);
+  control(ControlVerb::resume, StopReason::none, Role::operator_tool);
+  advance();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 2U);
+  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::pause);
+  EXPECT_EQ(requests[1].kind, LoopRequest::Kind::resume);
+}
+
+TEST_F(SiteLinkTest, BatchesSignalsForLiveViews) {
+  start();
+  for (int i = 0; i < kMaxSignalSamples + 1; ++i) {
+    SignalSample sample;
+    sample.force_n = i;
+    signals_.send(sample);
+  }
+  advance();
+  const auto blocks = take_all(signal_blocks_);
+  ASSERT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks[0].substructure, kIndex);
+  EXPECT_EQ(blocks[0].sample_count, kMaxSignalSamples);
+  EXPECT_EQ(blocks[0].samples.back().force_n, kMaxSignalSamples - 1);
+}
+
+}  // namespace
+}  // namespace hybridtest

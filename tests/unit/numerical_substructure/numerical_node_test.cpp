@@ -1,0 +1,224 @@
+#include "numerical_substructure/numerical_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/random.hpp"
+#include "core/ring_port.hpp"
+#include "tests/support/kept_rows.hpp"
+#include "tests/support/scripted_substructure.hpp"
+
+namespace hybridtest {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Incarnation kCoordinator = 77;
+constexpr Incarnation kOwn = 5;
+constexpr SubstructureIndex kIndex = 2;
+
+/// A numerical node around a scripted spring of 100 N/m; the test plays the coordinator.
+class NumericalNodeTest : public testing::Test {
+ protected:
+  Instant advance(Duration passed = {}) {
+    now_ += passed;
+    return node_.advance(now_);
+  }
+  void control(ControlVerb verb, StopReason reason = StopReason::none, Role role = Role::coordinator) {
+    TestControl message;
+    message.verb = verb;
+    message.sender = role == Role::coordinator ? kCoordinator : 1234;
+    message.sender_role = role;
+    message.reason = reason;
+    control_.send(message);
+    advance();
+  }
+  void start() {
+    TestAnnouncement announcement;
+    announcement.coordinator = kCoordinator;
+    announcements_.send(announcement);
+    ParticipantStatus status;
+    status.id = "coordinator";
+    status.incarnation = kCoordinator;
+    statuses_.send(status);
+    advance();
+    control(ControlVerb::arm);
+    control(ControlVerb::start);
+  }
+  static DisplacementCommand command(Step step, Incarnation coordinator = kCoordinator, int dofs = 1) {
+    DisplacementCommand command;
+    command.substructure = kIndex;
+    command.coordinator = coordinator;
+    command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
+    for (int i = 0; i < command.point_count; ++i) {
+      CommandPoint& point = command.points[static_cast<std::size_t>(i)];
+      point.step = step - i;
+      point.model_time_s = 0.01 * static_cast<double>(point.step);
+      point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 =
+          InterfaceVector::Constant(dofs, static_cast<double>(step - i));
+    }
+    command.send_time = milliseconds{1000 + step};
+    return command;
+  }
+  void give(const DisplacementCommand& command) {
+    commands_.send(command);
+    advance();
+  }
+  std::vector<ForceMeasurement> take_measurements() {
+    std::vector<ForceMeasurement> taken;
+    ForceMeasurement message;
+    while (measurements_.take(message)) taken.push_back(message);
+    return taken;
+  }
+
+  RingPort<ParticipantStatus> statuses_{64};
+  RingPort<ParticipantStatus> own_statuses_{4096};
+  RingPort<Event> events_{256};
+  RingPort<TestAnnouncement> announcements_{4};
+  RingPort<TestControl> control_{16};
+  RingPort<DisplacementCommand> commands_{64};
+  RingPort<ForceMeasurement> measurements_{64};
+  KeptRows steps_{NumericalNode::steps_layout({"floor"})};
+  Presence presence_{Identity{"model", Role::numerical_substructure, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
+                     events_};
+  SubstructureCalls calls_;
+  NumericalNode node_{kIndex,
+                      std::make_unique<ScriptedSubstructure>(1, linear_spring(100.0), calls_),
+                      presence_,
+                      MembershipPorts{announcements_, control_, seconds{30}},
+                      commands_,
+                      measurements_,
+                      steps_};
+  Instant now_{};
+};
+
+TEST_F(NumericalNodeTest, AnswersACommandWithTheForceOfItsModel) {
+  start();
+  EXPECT_EQ(presence_.state(), LifecycleState::running);
+  EXPECT_EQ(calls_.resets, 1);
+  advance(milliseconds{10});
+  give(command(0));
+  give(command(1));
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 2U);
+  EXPECT_EQ(measurements[1].substructure, kIndex);
+  EXPECT_EQ(measurements[1].sender, kOwn);
+  EXPECT_EQ(measurements[1].step, 1);
+  EXPECT_EQ(measurements[1].force_n[0], 100.0);
+  EXPECT_EQ(measurements[1].imposed_displacement_m[0], 1.0);
+  EXPECT_EQ(measurements[1].flags, MeasurementFlags::none);
+  EXPECT_EQ(measurements[1].command_send_time, milliseconds{1001});
+  EXPECT_EQ(measurements[1].receive_time, milliseconds{10});
+  ASSERT_EQ(steps_.size(), 2U);
+  EXPECT_EQ(steps_.at(1, steps_.column("step")), 1.0);
+  EXPECT_EQ(steps_.at(1, steps_.column("model_time_s")), 0.01);
+  EXPECT_EQ(steps_.at(1, steps_.column("displacement_floor_m")), 1.0);
+  EXPECT_EQ(steps_.at(1, steps_.column("force_floor_n")), 100.0);
+}
+
+TEST_F(NumericalNodeTest, ARepeatedCommandDoesNotChangeTheModel) {
+  start();
+  give(command(0));
+  give(command(1));
+  take_measurements();
+  DisplacementCommand repeated = command(1);
+  repeated.send_time = milliseconds{1200};
+  give(repeated);
+  give(command(0));  // a late copy
+  EXPECT_EQ(calls_.trials, 2);
+  EXPECT_EQ(calls_.commits, 2);
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 1U);
+  EXPECT_EQ(measurements[0].step, 1);
+  EXPECT_EQ(measurements[0].force_n[0], 100.0);
+  EXPECT_EQ(measurements[0].flags, MeasurementFlags::repeated);
+  EXPECT_EQ(measurements[0].command_send_time, milliseconds{1200});
+  EXPECT_EQ(steps_.size(), 2U);
+}
+
+TEST_F(NumericalNodeTest, StepsThatWereLostAreTakenFromTheNextCommandInOrder) {
+  start();
+  give(command(0));
+  give(command(4));
+  ASSERT_EQ(calls_.committed_m.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(calls_.committed_m[i][0], static_cast<double>(i));
+  give(command(9));
+  EXPECT_EQ(calls_.commits, 5) << "5 is in no command any more; its history cannot be skipped";
+  EXPECT_EQ(take_measurements().size(), 2U);
+}
+
+TEST_F(NumericalNodeTest, WhateverTheNetworkDoesEachStepIsTakenOnce) {
+  start();
+  Random random{3};
+  Step newest = 0;
+  for (int i = 0; i < 5000; ++i) {
+    // Mostly near the newest, copies and old ones among them, up to three lost.
+    const Step step = std::max<Step>(0, newest - 3 + static_cast<Step>(random.below(8)));
+    if (step > newest + kCommandPoints) continue;
+    give(command(step));
+    newest = std::max(newest, std::min(step, newest + kCommandPoints));
+    take_measurements();
+  }
+  ASSERT_EQ(calls_.commits, newest + 1);
+  EXPECT_EQ(calls_.trials, calls_.commits);
+  EXPECT_EQ(calls_.reverts, 0);
+  for (std::size_t i = 0; i < calls_.committed_m.size(); ++i) {
+    ASSERT_EQ(calls_.committed_m[i][0], static_cast<double>(i));
+  }
+}
+
+TEST_F(NumericalNodeTest, ServesNobodyElseNorCommandsOfAnotherSize) {
+  start();
+  give(command(0, kCoordinator + 1));
+  give(command(0, kCoordinator, 2));
+  EXPECT_EQ(calls_.trials, 0);
+  EXPECT_TRUE(take_measurements().empty());
+}
+
+TEST_F(NumericalNodeTest, ServesNothingBeforeItIsArmed) {
+  give(command(0, 0));
+  EXPECT_EQ(calls_.trials, 0);
+}
+
+TEST_F(NumericalNodeTest, ACommandThatOvertakesTheStartIsServed) {
+  TestAnnouncement announcement;
+  announcement.coordinator = kCoordinator;
+  announcements_.send(announcement);
+  advance();
+  control(ControlVerb::arm);
+  EXPECT_EQ(presence_.state(), LifecycleState::armed);
+  give(command(0));
+  EXPECT_EQ(presence_.state(), LifecycleState::running);
+  EXPECT_EQ(take_measurements().size(), 1U);
+}
+
+TEST_F(NumericalNodeTest, LeavesWhenItIsStopped) {
+  start();
+  control(ControlVerb::stop, StopReason::completed);
+  EXPECT_TRUE(node_.is_done());
+  EXPECT_EQ(node_.stop_reason(), StopReason::completed);
+  ParticipantStatus status;
+  while (own_statuses_.take(status)) {
+  }
+  EXPECT_EQ(status.state, LifecycleState::finished) << "the last word goes out";
+  give(command(0));
+  EXPECT_EQ(calls_.trials, 0);
+}
+
+TEST_F(NumericalNodeTest, LeavesWhenTheCoordinatorIsLost) {
+  start();
+  advance(seconds{2});
+  EXPECT_TRUE(node_.is_done());
+  EXPECT_EQ(node_.stop_reason(), StopReason::coordinator_lost);
+}
+
+TEST_F(NumericalNodeTest, LeavesOnRequestAndSaysWhy) {
+  start();
+  node_.request_stop(StopReason::interrupted);
+  EXPECT_EQ(advance(), kNever);
+  EXPECT_TRUE(node_.is_done());
+  EXPECT_EQ(node_.stop_reason(), StopReason::interrupted);
+}
+
+}  // namespace
+}  // namespace hybridtest

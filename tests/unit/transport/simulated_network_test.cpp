@@ -1,0 +1,256 @@
+#include "transport/simulated/simulated_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace hybridtest::simulated {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr int kMessages = 20000;
+
+/// One message per microsecond from `a` to `b`; what arrived, by number and time.
+struct Arrivals {
+  std::vector<int> numbers;
+  std::vector<Instant> times;
+  NetworkCounters counters;
+};
+
+Event numbered(int number) {
+  Event event;
+  event.step = number;
+  return event;
+}
+
+Arrivals send_many(std::uint64_t seed, const NetworkConditions& conditions, int messages = kMessages) {
+  SimulatedNetwork network{seed, conditions};
+  const auto a = network.join("a");
+  const auto b = network.join("b");
+  const auto outbox = a->event_outbox();
+  const auto inbox = b->event_inbox();
+  Arrivals arrivals;
+  const auto take_all = [&](Instant now) {
+    Event event;
+    while (inbox->take(event)) {
+      arrivals.numbers.push_back(static_cast<int>(event.step));
+      arrivals.times.push_back(now);
+    }
+  };
+  for (int i = 0; i < messages; ++i) {
+    const Instant now{microseconds{i}};
+    network.advance_to(now);
+    take_all(now);
+    outbox->send(numbered(i));
+  }
+  while (network.next_delivery() != kNever) {
+    const Instant now = network.next_delivery();
+    network.advance_to(now);
+    take_all(now);
+  }
+  arrivals.counters = network.counters();
+  return arrivals;
+}
+
+TEST(SimulatedNetwork, DeliversAfterTheLatencyAndNotBefore) {
+  SimulatedNetwork network{1, {}};
+  const auto a = network.join("a");
+  const auto b = network.join("b");
+  const auto outbox = a->event_outbox();
+  const auto inbox = b->event_inbox();
+  Event event;
+  network.advance_to(Instant{milliseconds{1}});
+  outbox->send(numbered(7));
+  EXPECT_EQ(network.next_delivery(), Instant{milliseconds{1} + microseconds{50}});
+  network.advance_to(Instant{milliseconds{1} + microseconds{50} - Duration{1}});
+  EXPECT_FALSE(inbox->take(event));
+  EXPECT_FALSE(network.take_arrival("b"));
+  network.advance_to(Instant{milliseconds{1} + microseconds{50}});
+  EXPECT_TRUE(network.take_arrival("b"));
+  EXPECT_FALSE(network.take_arrival("b")) << "told once";
+  ASSERT_TRUE(inbox->take(event));
+  EXPECT_EQ(event.step, 7);
+  EXPECT_EQ(network.next_delivery(), kNever);
+}
+
+TEST(SimulatedNetwork, KeepsTheOrderOfALinkUnderJitter) {
+  NetworkConditions conditions;
+  conditions.jitter = milliseconds{1};
+  const Arrivals arrivals = send_many(3, conditions);
+  ASSERT_EQ(arrivals.numbers.size(), static_cast<std::size_t>(kMessages));
+  EXPECT_TRUE(std::ranges::is_sorted(arrivals.numbers));
+  Duration longest{};
+  for (int i = 0; i < kMessages; ++i) {
+    const Duration way = arrivals.times[static_cast<std::size_t>(i)] - Instant{microseconds{i}};
+    EXPECT_GE(way, conditions.latency);
+    longest = std::max(longest, way);
+  }
+  EXPECT_LE(longest, conditions.latency + conditions.jitter);
+  EXPECT_GT(longest, conditions.latency + conditions.jitter / 2);
+}
+
+TEST(SimulatedNetwork, LosesTheShareAskedFor) {
+  NetworkConditions conditions;
+  conditions.loss = 0.1;
+  const Arrivals arrivals = send_many(4, conditions);
+  // Four standard deviations of a binomial distribution.
+  EXPECT_NEAR(static_cast<double>(arrivals.counters.lost), 0.1 * kMessages, 4.0 * std::sqrt(0.09 * kMessages));
+  EXPECT_EQ(arrivals.numbers.size(), kMessages - arrivals.counters.lost);
+  EXPECT_EQ(arrivals.counters.delivered, arrivals.numbers.size());
+}
+
+TEST(SimulatedNetwork, DoublesTheShareAskedFor) {
+  NetworkConditions conditions;
+  conditions.duplication = 0.2;
+  const Arrivals arrivals = send_many(5, conditions);
+  EXPECT_NEAR(static_cast<double>(arrivals.counters.duplicated), 0.2 * kMessages, 4.0 * std::sqrt(0.16 * kMessages));
+  EXPECT_EQ(arrivals.numbers.size(), kMessages + arrivals.counters.duplicated);
+  EXPECT_TRUE(std::ranges::is_sorted(arrivals.numbers));
+}
+
+TEST(SimulatedNetwork, LetsLaterMessagesOvertakeTheShareAskedFor) {
+  NetworkConditions conditions;
+  conditions.reordering = 0.1;
+  const Arrivals arrivals = send_many(6, conditions);
+  EXPECT_NEAR(static_cast<double>(arrivals.counters.reordered), 0.1 * kMessages, 4.0 * std::sqrt(0.09 * kMessages));
+  ASSERT_EQ(arrivals.numbers.size(), static_cast<std::size_t>(kMessages));
+  EXPECT_FALSE(std::ranges::is_sorted(arrivals.numbers));
+  std::vector<int> sorted = arrivals.numbers;
+  std::ranges::sort(sorted);
+  for (int i = 0; i < kMessages; ++i) ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
+}
+
+TEST(SimulatedNetwork, TheSameSeedGivesTheSameArrivalsAndAnotherDoesNot) {
+  NetworkConditions conditions;
+  conditions.jitter = microseconds{300};
+  conditions.loss = conditions.duplication = conditions.reordering = 0.05;
+  const Arrivals first = send_many(7, conditions, 2000);
+  const Arrivals again = send_many(7, conditions, 2000);
+  const Arrivals other = send_many(8, conditions, 2000);
+  EXPECT_EQ(first.numbers, again.numbers);
+  EXPECT_EQ(first.times, again.times);
+  EXPECT_NE(first.times, other.times);
+}
+
+TEST(SimulatedNetwork, AnOutageCutsItsParticipantOffBothWays) {
+  NetworkConditions conditions;
+  conditions.outages.push_back({"a", milliseconds{10}, milliseconds{20}});
+  SimulatedNetwork network{1, conditions};
+  const auto a = network.join("a");
+  const auto b = network.join("b");
+  const auto c = network.join("c");
+  const auto from_a = a->event_outbox();
+  const auto from_b = b->event_outbox();
+  const auto to_a = a->event_inbox();
+  const auto to_c = c->event_inbox();
+  for (const auto& [time, is_cut_off] :
+       {std::pair{milliseconds{9}, false}, {milliseconds{10}, true}, {milliseconds{19}, true}, {milliseconds{20}, false}}) {
+    network.advance_to(Instant{time});
+    from_a->send(numbered(1));
+    from_b->send(numbered(2));
+    network.advance_to(Instant{time + microseconds{50}});
+    Event event;
+    EXPECT_EQ(to_a->take(event), !is_cut_off);
+    std::vector<Step> heard;
+    while (to_c->take(event)) heard.push_back(event.step);
+    EXPECT_EQ(heard, is_cut_off ? (std::vector<Step>{2}) : (std::vector<Step>{1, 2}));
+  }
+}
+
+TEST(SimulatedNetwork, ADeadParticipantNeitherSendsNorHears) {
+  SimulatedNetwork network{1, {}};
+  const auto a = network.join("a");
+  const auto b = network.join("b");
+  const auto from_a = a->event_outbox();
+  const auto from_b = b->event_outbox();
+  const auto to_a = a->event_inbox();
+  const auto to_b = b->event_inbox();
+  EXPECT_TRUE(from_a->send(numbered(1)));
+  from_b->send(numbered(2));
+  network.kill("a");
+  EXPECT_FALSE(from_a->send(numbered(3)));
+  network.advance_to(Instant{seconds{1}});
+  Event event;
+  EXPECT_FALSE(to_a->take(event));
+  ASSERT_TRUE(to_b->take(event)) << "what was under way arrives";
+  EXPECT_EQ(event.step, 1);
+  EXPECT_FALSE(to_b->take(event));
+}
+
+TEST(SimulatedNetwork, NobodyHearsItself) {
+  SimulatedNetwork network{1, {}};
+  const auto a = network.join("a");
+  const auto outbox = a->event_outbox();
+  const auto inbox = a->event_inbox();
+  outbox->send(numbered(1));
+  EXPECT_EQ(network.next_delivery(), kNever);
+}
+
+TEST(SimulatedNetwork, ACommandGoesToItsSubstructureAlone) {
+  SimulatedNetwork network{1, {}};
+  const auto coordinator = network.join("coordinator");
+  const auto first = network.join("first");
+  const auto second = network.join("second");
+  const auto outbox = coordinator->command_outbox(2);
+  const auto to_first = first->command_inbox(0);
+  const auto to_second = second->command_inbox(1);
+  DisplacementCommand command;
+  command.substructure = 1;
+  outbox->send(command);
+  network.advance_to(Instant{seconds{1}});
+  EXPECT_FALSE(to_first->take(command));
+  EXPECT_TRUE(to_second->take(command));
+}
+
+TEST(SimulatedNetwork, ThoseWhoJoinLateGetTheAnnouncementAndTheNewestStatuses) {
+  NetworkConditions conditions;
+  conditions.loss = 0.9;  // never of the announcement
+  SimulatedNetwork lossy{1, conditions};
+  SimulatedNetwork network{1, {}};
+  for (int i = 0; i < 50; ++i) {
+    const auto sender = lossy.join("a" + std::to_string(i));
+    sender->announcement_outbox()->send({});
+    const auto late = lossy.join("b" + std::to_string(i));
+    const auto inbox = late->announcement_inbox();
+    lossy.advance_to(Instant{seconds{i + 1}});
+    TestAnnouncement announcement;
+    EXPECT_TRUE(inbox->take(announcement));
+  }
+  const auto sender = network.join("sender");
+  const auto statuses = sender->status_outbox();
+  ParticipantStatus status;
+  for (const Step step : {1, 2, 3}) {
+    status.last_step = step;
+    statuses->send(status);
+  }
+  network.advance_to(Instant{seconds{1}});
+  const auto late = network.join("late");
+  const auto inbox = late->status_inbox();
+  network.advance_to(Instant{seconds{2}});
+  ASSERT_TRUE(inbox->take(status));
+  EXPECT_EQ(status.last_step, 3);
+  EXPECT_FALSE(inbox->take(status));
+}
+
+TEST(SimulatedNetwork, CountsWhatAFullInboxCouldNotTake) {
+  SimulatedNetwork network{1, {}};
+  const auto a = network.join("a");
+  const auto b = network.join("b");
+  const auto outbox = a->control_outbox();
+  const auto inbox = b->control_inbox();
+  for (std::size_t i = 0; i < kInboxCapacity<TestControl> + 5; ++i) outbox->send({});
+  network.advance_to(Instant{seconds{1}});
+  EXPECT_EQ(b->counters().overflowed, 5U);
+  TestControl control;
+  std::size_t taken = 0;
+  while (inbox->take(control)) ++taken;
+  EXPECT_EQ(taken, kInboxCapacity<TestControl>);
+}
+
+}  // namespace
+}  // namespace hybridtest::simulated
