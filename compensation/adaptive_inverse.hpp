@@ -24,10 +24,10 @@ namespace hybridtest {
 class AdaptiveInverse final : public Compensator {
  public:
   struct Parameters {
-    double delay_s = 0.020;                     // [s] at first; 0 to 1
+    double delay_s = 0.020;                 // [s] at first; 0 to 1
     double proportional_gain_per_m2 = 1e6;  // [1/m2] kp; 0 to 1e12
-    double integral_gain_per_m2_s = 1e5;        // [1/(m2 s)] ki; 0 to 1e12
-    double delay_correction_s_max = 0.010;      // [s] |d_alpha| T at most; 0 to 1
+    double integral_gain_per_m2_s = 1e5;    // [1/(m2 s)] ki; 0 to 1e12
+    double delay_correction_s_max = 0.010;  // [s] |d_alpha| T at most; 0 to 1
   };
 
   /// @throws ConfigError for values outside these ranges.

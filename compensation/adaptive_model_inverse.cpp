@@ -79,6 +79,7 @@ void AdaptiveModelInverse::reset() noexcept {
   state_.setZero();
   covariance_.setZero();
   if (settings_.adapts) covariance_.diagonal().segment<4>(kStiffness) = deviations_.cwiseAbs2();
+  course_.setZero();
   jerk_filter_.setZero();
   sent_m_ = 0.0;
   has_target_ = false;
@@ -95,7 +96,9 @@ double AdaptiveModelInverse::command(const CompensatorInput& input) noexcept {
   }
   const Target target = filtered_target(input);
   const PlantState error = state_.head<kPlant>() - reference_state(target.advanced(settings_.advance_s));
-  sent_m_ = inverse(target.advanced(settings_.advance_s + 0.5 * control_period_s_)) - (gain_ * error).value();
+  const Target middle = target.advanced(settings_.advance_s + 0.5 * control_period_s_);
+  course_ = reference_state(middle);
+  sent_m_ = inverse(middle) - (gain_ * error).value();
   return sent_m_;
 }
 
@@ -110,8 +113,7 @@ TransferSystemModel AdaptiveModelInverse::estimated_model() const noexcept {
 }
 
 AdaptiveModelInverse::Target AdaptiveModelInverse::Target::advanced(double h) const noexcept {
-  return {displacement_m +
-              h * (velocity_m_per_s + h * (acceleration_m_per_s2 / 2.0 + h * jerk_m_per_s3 / 6.0)),
+  return {displacement_m + h * (velocity_m_per_s + h * (acceleration_m_per_s2 / 2.0 + h * jerk_m_per_s3 / 6.0)),
           velocity_m_per_s + h * (acceleration_m_per_s2 + h * (jerk_m_per_s3 / 2.0 + h * snap_m_per_s4 / 6.0)),
           acceleration_m_per_s2 + h * (jerk_m_per_s3 + h * snap_m_per_s4 / 2.0), jerk_m_per_s3 + h * snap_m_per_s4,
           snap_m_per_s4};
@@ -185,17 +187,16 @@ void AdaptiveModelInverse::predict(double sent_m) noexcept {
     term = (a * term).eval();
     after += factor * term;
   }
-  const PlantState middle = 0.5 * (before + after);
   const PlantMatrix ah = a * h;
   const PlantMatrix ah2 = ah * ah;
   const PlantMatrix integral = (PlantMatrix::Identity() + ah / 2.0 + ah2 / 6.0 + ah2 * ah / 24.0) * h;
 
   // By k, beta2, a3, beta1 and d.
   Coupling sensitivity = Coupling::Zero();
-  sensitivity(Model::kVelocity, 0) = -middle(Model::kDisplacement) / settings_.model.mass_kg;
-  sensitivity(Model::kZRate, 1) = -middle(Model::kZ);
-  sensitivity(Model::kForce, 2) = -middle(Model::kForce);
-  sensitivity(Model::kZRate, 3) = -middle(Model::kZRate);
+  sensitivity(Model::kVelocity, 0) = -course_(Model::kDisplacement) / settings_.model.mass_kg;
+  sensitivity(Model::kZRate, 1) = -course_(Model::kZ);
+  sensitivity(Model::kForce, 2) = -course_(Model::kForce);
+  sensitivity(Model::kZRate, 3) = -course_(Model::kZRate);
   sensitivity.col(4) = input_vector_;
   spread(PlantMatrix::Identity() + a * integral, integral * sensitivity);
 
@@ -204,20 +205,30 @@ void AdaptiveModelInverse::predict(double sent_m) noexcept {
   state_.segment<4>(kStiffness) = (keep_ * state_.segment<4>(kStiffness)).cwiseMax(-bound).cwiseMin(bound).eval();
 }
 
+// P <- f P f' + noise with f = (transition, coupling; 0, K) and K diagonal, block by block: half of f is zeros.
 void AdaptiveModelInverse::spread(const PlantMatrix& transition, const Coupling& coupling) noexcept {
-  AllMatrix f = AllMatrix::Identity();
-  f.topLeftCorner<kPlant, kPlant>() = transition;
-  f.topRightCorner<kPlant, 5>() = coupling;
-  for (Eigen::Index i = kStiffness; i <= kBeta1; ++i) f(i, i) = keep_;
-  covariance_ = (f * covariance_ * f.transpose()).eval();
+  Eigen::Matrix<double, 5, 1> kept;
+  kept << keep_, keep_, keep_, keep_, 1.0;
+  const PlantMatrix plant = covariance_.topLeftCorner<kPlant, kPlant>();
+  const Coupling cross = covariance_.topRightCorner<kPlant, 5>();
+  const Coupling others = covariance_.bottomRightCorner<5, 5>();
+
+  PlantMatrix moved = transition * plant;
+  moved.noalias() += coupling * cross.transpose();
+  Coupling moved_cross = transition * cross;
+  moved_cross.noalias() += coupling * others;
+  PlantMatrix next_plant = moved * transition.transpose();
+  next_plant.noalias() += moved_cross * coupling.transpose();
   const PlantState command_noise = coupling.col(4) * settings_.command_noise_m;
-  covariance_.topLeftCorner<kPlant, kPlant>() += command_noise * command_noise.transpose();
-  if (settings_.adapts) {
-    covariance_.diagonal().segment<4>(kStiffness) += (1.0 - keep_ * keep_) * deviations_.cwiseAbs2();
-  }
-  covariance_(kDisturbance, kDisturbance) +=
-      settings_.disturbance_walk_m * settings_.disturbance_walk_m * control_period_s_;
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  next_plant.noalias() += command_noise * command_noise.transpose();
+  Coupling next_others = kept.asDiagonal() * others * kept.asDiagonal();
+  if (settings_.adapts) next_others.diagonal().head<4>() += (1.0 - keep_ * keep_) * deviations_.cwiseAbs2();
+  next_others(4, 4) += settings_.disturbance_walk_m * settings_.disturbance_walk_m * control_period_s_;
+
+  covariance_.topLeftCorner<kPlant, kPlant>() = 0.5 * (next_plant + next_plant.transpose());
+  covariance_.topRightCorner<kPlant, 5>() = moved_cross * kept.asDiagonal();
+  covariance_.bottomLeftCorner<5, kPlant>() = covariance_.topRightCorner<kPlant, 5>().transpose();
+  covariance_.bottomRightCorner<5, 5>() = 0.5 * (next_others + next_others.transpose());
 }
 
 }  // namespace hybridtest

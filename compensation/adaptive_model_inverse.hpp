@@ -18,8 +18,11 @@ namespace hybridtest {
 ///    from the commands that were sent and from both measurements. Displacement sensors are noisy and
 ///    load cells are not, so that x is in effect measured by F/k, while k itself is learnt from the slow
 ///    average of the displacement. The parameters are pulled back to their nominal values; their
-///    variance therefore never exceeds the prior, and a motion too small to tell moves nothing: the
-///    freezing rule of other adaptive methods is the Kalman gain itself.
+///    variance therefore never exceeds the prior. What a parameter does to the states is reckoned along
+///    the states that belong to the target, which carry no noise, not along the estimated ones: noise
+///    that is in estimate and innovation both would pass for a parameter (at rest, for two prior
+///    deviations of k). So a motion too small to tell moves nothing, and the freezing rule of other
+///    adaptive methods is the Kalman gain itself.
 ///
 /// 2. Inversion. With the estimated parameters the command that holds the target is, exactly,
 ///
@@ -37,7 +40,7 @@ namespace hybridtest {
 /// Literature: inversion and regulator, Phillips and Spencer (2013); joint estimation of states and
 /// parameters, Ljung (1979), for inverse compensation Ruiz and Song (2024); the model, Maghareh, Silva
 /// and Dyke (2018). Ours: the load cell as the displacement sensor that is learnt, the prior as bound and
-/// freezing rule, and the treatment of hold and loop delay.
+/// freezing rule, sensitivities along the target, and the treatment of hold and loop delay.
 ///
 /// On the forces, the integrator sees a force that is one sample late and held over one. PolynomialForce
 /// of order 2, delay 1.5 periods, spacing 4 ms makes up for it; where there is no compensator on forces,
@@ -112,6 +115,7 @@ class AdaptiveModelInverse final : public Compensator {
   Eigen::Matrix<double, 1, kPlant> gain_;
   AllState state_ = AllState::Zero();
   AllMatrix covariance_ = AllMatrix::Zero();
+  PlantState course_ = PlantState::Zero();  // that belongs to the target, in the middle of the coming period
   Eigen::Vector2d jerk_filter_ = Eigen::Vector2d::Zero();  // filtered acceleration and its rate
   double sent_m_ = 0.0;
   bool has_target_ = false;

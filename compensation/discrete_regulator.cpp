@@ -20,10 +20,10 @@ Eigen::MatrixXd solve_riccati(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
     g += transition * lu.solve(g) * transition.transpose();
     g = (0.5 * (g + g.transpose())).eval();
     transition = (transition * w).eval();
-    const double change = (next_x - x).norm();
+    const double change = (next_x - x).cwiseAbs().maxCoeff();
     x = 0.5 * (next_x + next_x.transpose());
     if (!x.allFinite()) break;
-    if (change <= 1e-15 * x.norm()) return x;
+    if (change <= 1e-15 * x.cwiseAbs().maxCoeff()) return x;
   }
   throw ConfigError{"no regulator stabilises this model; expected a controllable one, with weights in proportion"};
 }

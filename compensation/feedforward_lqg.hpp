@@ -31,11 +31,11 @@ class FeedforwardLqg final : public Compensator {
  public:
   struct Parameters {
     TransferSystemModel model;
-    bool has_feedback = true;             // off: the feedforward alone
-    double regulator_weight = 30.0;       // [] above 0, at most 1e9
-    double input_noise_m = 2e-4;          // [m] standard deviation of w, per sample; above 0, at most 1
-    double displacement_noise_m = 1.6e-5; // [m] standard deviation of v; above 0, at most 1
-    double jerk_difference_s = 0.004;     // [s] span of the difference for x'''; 1 period to 0.1
+    bool has_feedback = true;              // off: the feedforward alone
+    double regulator_weight = 30.0;        // [] above 0, at most 1e9
+    double input_noise_m = 2e-4;           // [m] standard deviation of w, per sample; above 0, at most 1
+    double displacement_noise_m = 1.6e-5;  // [m] standard deviation of v; above 0, at most 1
+    double jerk_difference_s = 0.004;      // [s] span of the difference for x'''; 1 period to 0.1
   };
 
   /// @throws ConfigError for values outside these ranges and where no regulator exists.

@@ -24,8 +24,9 @@ const ForceCorrection::Parameters& checked_all(const ForceCorrection::Parameters
 }
 
 QuadraticFit window_fit(const ForceCorrection::Parameters& parameters, double control_period_s) {
-  const std::size_t points = checked_periods("window_s", checked_all(parameters).window_s,
-                                             checked_control_period(control_period_s), 3, "a quadratic is fitted in it");
+  const std::size_t points =
+      checked_periods("window_s", checked_all(parameters).window_s, checked_control_period(control_period_s), 3,
+                      "a quadratic is fitted in it");
   return {points, 1, control_period_s};
 }
 
@@ -78,8 +79,7 @@ void ForceCorrection::learn_stiffness(const ForceSample& sample) noexcept {
 }
 
 double ForceCorrection::stiffness_n_per_m() const noexcept {
-  const double prior_m2_s =
-      parameters_.prior_motion_m * parameters_.prior_motion_m * parameters_.stiffness_memory_s;
+  const double prior_m2_s = parameters_.prior_motion_m * parameters_.prior_motion_m * parameters_.stiffness_memory_s;
   return (displacement_force_n_m_s_ + prior_m2_s * parameters_.stiffness_n_per_m) /
          (displacement_square_m2_s_ + prior_m2_s);
 }

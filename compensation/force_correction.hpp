@@ -34,12 +34,12 @@ namespace hybridtest {
 class ForceCorrection final : public ForceCompensator {
  public:
   struct Parameters {
-    double window_s = 0.030;                   // [s] of the fits; 3 samples to 1
-    double horizon_s = 0.050;                  // [s] furthest time ahead; 0 to 1
-    double root_rate_s_per_s_max = 1.0;        // [s/s] of t*; above 0, at most 1000
-    double stiffness_n_per_m = 1e6;            // [N/m] prior of k_s; 0 to 1e12
-    double stiffness_memory_s = 1.0;           // [s] of k_s; 0.01 to 1000
-    double prior_motion_m = 3e-4;              // [m] root mean square of a motion that weighs as the prior; 1e-9 to 1
+    double window_s = 0.030;             // [s] of the fits; 3 samples to 1
+    double horizon_s = 0.050;            // [s] furthest time ahead; 0 to 1
+    double root_rate_s_per_s_max = 1.0;  // [s/s] of t*; above 0, at most 1000
+    double stiffness_n_per_m = 1e6;      // [N/m] prior of k_s; 0 to 1e12
+    double stiffness_memory_s = 1.0;     // [s] of k_s; 0.01 to 1000
+    double prior_motion_m = 3e-4;        // [m] root mean square of a motion that weighs as the prior; 1e-9 to 1
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -8,9 +8,7 @@
 namespace hybridtest {
 
 InverseCompensation::InverseCompensation(const Parameters& parameters, double control_period_s)
-    : initial_delay_s_{parameters.delay_s},
-      control_period_s_{checked_control_period(control_period_s)},
-      targets_m_{2} {
+    : initial_delay_s_{parameters.delay_s}, control_period_s_{checked_control_period(control_period_s)}, targets_m_{2} {
   checked_parameter("delay_s", parameters.delay_s, {0.0, kDelaySMax}, "velocity is not constant for longer");
   set_delay(initial_delay_s_);
 }

@@ -14,11 +14,9 @@ std::size_t checked_spacing(const LinearAcceleration::Parameters& parameters, do
   checked_parameter("point_spacing_s", parameters.point_spacing_s, {0.0, 1.0},
                     "acceleration is not linear in time for longer");
   const double wanted_s = parameters.point_spacing_s > 0.0 ? parameters.point_spacing_s : parameters.delay_s;
-  const std::size_t spacing =
-      checked_periods("point_spacing_s", std::max(wanted_s, control_period_s), control_period_s, 1,
-                      "the accelerations of one point spacing are kept");
-  const double delay_s_max =
-      LinearAcceleration::kSpacingsAheadMax * static_cast<double>(spacing) * control_period_s;
+  const std::size_t spacing = checked_periods("point_spacing_s", std::max(wanted_s, control_period_s), control_period_s,
+                                              1, "the accelerations of one point spacing are kept");
+  const double delay_s_max = LinearAcceleration::kSpacingsAheadMax * static_cast<double>(spacing) * control_period_s;
   checked_parameter("delay_s", parameters.delay_s, {0.0, delay_s_max * (1.0 + 1e-9)},
                     "an acceleration cannot be extrapolated further than 8 point spacings");
   return spacing;
@@ -39,8 +37,8 @@ double LinearAcceleration::command(const CompensatorInput& input) noexcept {
   accelerations_m_per_s2_.push(newest_m_per_s2);
   const double slope = (newest_m_per_s2 - accelerations_m_per_s2_[spacing_]) / point_spacing_s_;
   const double predicted_m_per_s2 = newest_m_per_s2 + delay_s_ * slope;
-  return input.target_m + delay_s_ * (input.target_velocity_m_per_s +
-                                      delay_s_ / 6.0 * (2.0 * newest_m_per_s2 + predicted_m_per_s2));
+  return input.target_m +
+         delay_s_ * (input.target_velocity_m_per_s + delay_s_ / 6.0 * (2.0 * newest_m_per_s2 + predicted_m_per_s2));
 }
 
 void LinearAcceleration::reset() noexcept {

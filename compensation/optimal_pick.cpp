@@ -31,16 +31,19 @@ double OptimalPick::corrected_force(const ForceSample& sample) noexcept {
 }
 
 double OptimalPick::picked(double desired_m) const noexcept {
+  double passages_n = 0.0;
+  int passages = 0;
   double nearest_m = std::abs(displacements_m_[0] - desired_m);
   double nearest_n = forces_n_[0];
   for (std::size_t age = 1; age < displacements_m_.capacity(); ++age) {
     const double older_m = displacements_m_[age];
     const double newer_m = displacements_m_[age - 1];
-    const bool is_passage = is_rising_ ? older_m <= desired_m && desired_m < newer_m
-                                       : older_m >= desired_m && desired_m > newer_m;
+    const bool is_passage =
+        is_rising_ ? older_m <= desired_m && desired_m < newer_m : older_m >= desired_m && desired_m > newer_m;
     if (is_passage && std::isfinite(forces_n_[age]) && std::isfinite(forces_n_[age - 1])) {
       const double fraction = (desired_m - older_m) / (newer_m - older_m);
-      return forces_n_[age] + fraction * (forces_n_[age - 1] - forces_n_[age]);
+      passages_n += forces_n_[age] + fraction * (forces_n_[age - 1] - forces_n_[age]);
+      ++passages;
     }
     const double distance_m = std::abs(older_m - desired_m);
     if (distance_m < nearest_m && std::isfinite(forces_n_[age])) {
@@ -48,7 +51,7 @@ double OptimalPick::picked(double desired_m) const noexcept {
       nearest_n = forces_n_[age];
     }
   }
-  return nearest_n;
+  return passages > 0 ? passages_n / passages : nearest_n;
 }
 
 void OptimalPick::reset() noexcept {

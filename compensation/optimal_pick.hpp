@@ -10,12 +10,13 @@ namespace hybridtest {
 ///
 /// Of the measurements of the last moments, the one whose displacement is nearest to the desired one
 /// gives the force. Between two samples displacement and force are taken along straight lines. A
-/// specimen passes a displacement on its way out and again on its way back; of several passages the
-/// newest counts that goes the way the desired displacement goes.
+/// specimen passes a displacement on its way out and again on its way back; those passages count that
+/// go the way the desired displacement goes. Sensor noise makes several of one, of which the mean is
+/// taken. Where there is none, the nearest sample gives the force.
 ///
-/// Exact for a specimen that was at the desired displacement within the window. Interpretation: the
-/// paper's abstract says that the desired displacement is picked out by an optimal process; criterion,
-/// interpolation and direction are ours.
+/// Exact, but for the straight lines, for a specimen that was at the desired displacement once within
+/// the window. Interpretation: the paper's abstract says that the desired displacement is picked out by
+/// an optimal process; criterion, interpolation and direction are ours.
 class OptimalPick final : public ForceCompensator {
  public:
   struct Parameters {

@@ -36,8 +36,8 @@ double checked_spacing(const PolynomialParameters& parameters, double period_s) 
   const double count = std::max(std::round(wanted_s / period_s), 1.0);
   if (count > kMaxPeriodsPerPoint) {
     throw ConfigError{(is_given ? "point spacing is " : "delay is ") + written(wanted_s) + "; expected at most " +
-                      config::written_integer(static_cast<std::int64_t>(kMaxPeriodsPerPoint)) +
-                      " control periods of " + written(period_s)};
+                      config::written_integer(static_cast<std::int64_t>(kMaxPeriodsPerPoint)) + " control periods of " +
+                      written(period_s)};
   }
   const double delay_s_max = PolynomialExtrapolation::kMaxSpacingsAhead * count * period_s;
   if (delay_s > delay_s_max * (1.0 + kRounding)) {

@@ -50,7 +50,7 @@ class PolynomialExtrapolation {
   double point_spacing_s_ = 0.0;
   std::size_t periods_per_point_ = 1;
   std::array<PolynomialWeights, kMaxPolynomialOrder + 1> weights_{};  // one set for each order up to order_
-  std::vector<double> samples_;                                      // ring of the last order * spacing + 1
+  std::vector<double> samples_;                                       // ring of the last order * spacing + 1
   std::size_t newest_ = 0;
   std::size_t known_ = 0;  // samples since the first, as many as the ring holds
 };

@@ -1,23 +1,24 @@
 #include "compensation/quadratic_fit.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/QR>
 
 namespace hybridtest {
 
 QuadraticFit::QuadraticFit(std::size_t points, std::size_t spacing, double sample_period_s)
     : points_{points}, spacing_{spacing}, weights_(points) {
-  // Time in units of the span, for the sake of the condition.
-  const double unit_s = static_cast<double>(span() - 1) * sample_period_s;
-  const auto rows = static_cast<Eigen::Index>(points);
-  Eigen::MatrixX3d powers(rows, 3);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double t = -static_cast<double>(i) / static_cast<double>(rows - 1);
-    powers.row(i) << 1.0, t, t * t;
-  }
-  const Eigen::MatrixXd weights = powers.householderQr().solve(Eigen::MatrixXd::Identity(rows, rows));
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    weights_[static_cast<std::size_t>(i)] = {weights(0, i), weights(1, i) / unit_s, weights(2, i) / (unit_s * unit_s)};
+  // value = a + b x + c x^2 over x from -1, the oldest, to 1, the newest: well conditioned.
+  const auto row = [points](std::size_t i) {
+    const double x = 1.0 - 2.0 * static_cast<double>(i) / static_cast<double>(points - 1);
+    return Eigen::Vector3d{1.0, x, x * x};
+  };
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < points; ++i) normal += row(i) * row(i).transpose();
+  const double half_s = 0.5 * static_cast<double>(span() - 1) * sample_period_s;
+  for (std::size_t i = 0; i < points; ++i) {
+    const Eigen::Vector3d w = normal.ldlt().solve(row(i));
+    // At the newest sample, by x = 1 + t / half.
+    weights_[i] = {w(0) + w(1) + w(2), (w(1) + 2.0 * w(2)) / half_s, w(2) / (half_s * half_s)};
   }
 }
 

@@ -11,11 +11,11 @@ namespace hybridtest {
 /// Kazemibidokhti and Ricles (2013).
 struct TimeSeriesParameters {
   // At first: published are 1, the delay, delay^2/2. Within their ranges below.
-  double a0 = 1.0;          // []
-  double a1_s = 0.020;      // [s]
-  double a2_s2 = 0.0002;    // [s2]
-  double window_s = 1.0;    // [s] of the least squares, its memory in the conditional variant; 0.1 to 10
-  double filter_hz = 20.0;  // [Hz] corner of the low-pass on both signals; 0.001 to 0.45 of the control rate
+  double a0 = 1.0;             // []
+  double a1_s = 0.020;         // [s]
+  double a2_s2 = 0.0002;       // [s2]
+  double window_s = 1.0;       // [s] of the least squares, its memory in the conditional variant; 0.1 to 10
+  double filter_hz = 20.0;     // [Hz] corner of the low-pass on both signals; 0.001 to 0.45 of the control rate
   double motion_m_min = 1e-4;  // [m] root mean square of the measurement below which nothing is learnt; 1e-9 to 1
   double a0_min = 0.7, a0_max = 1.3;           // [] 0 to 10
   double a1_s_min = 0.0, a1_s_max = 0.08;      // [s] 0 to 1

@@ -15,15 +15,15 @@ namespace hybridtest {
 ///
 /// u command [m], x displacement [m], F force [N], z [N/s].
 struct TransferSystemModel {
-  double gain = 1.0261;                     // []
-  double a1beta0_n_per_m_s3 = 2.1283e13;    // [N/(m s3)]
-  double a2_n_per_m = 4.2297e6;             // [N/m]
-  double a3_per_s = 3.3;                    // [1/s]
-  double beta1_per_s = 425.0;               // [1/s]
-  double beta2_per_s2 = 9.9976e4;           // [1/s2]
-  double mass_kg = 29.13;                   // [kg]
-  double damping_n_s_per_m = 114.22;        // [N s/m]
-  double stiffness_n_per_m = 1.190e6;       // [N/m]
+  double gain = 1.0261;                   // []
+  double a1beta0_n_per_m_s3 = 2.1283e13;  // [N/(m s3)]
+  double a2_n_per_m = 4.2297e6;           // [N/m]
+  double a3_per_s = 3.3;                  // [1/s]
+  double beta1_per_s = 425.0;             // [1/s]
+  double beta2_per_s2 = 9.9976e4;         // [1/s2]
+  double mass_kg = 29.13;                 // [kg]
+  double damping_n_s_per_m = 114.22;      // [N s/m]
+  double stiffness_n_per_m = 1.190e6;     // [N/m]
 
   static constexpr int kStates = 5;  // z, z', F, x, x'
   using State = Eigen::Matrix<double, kStates, 1>;

@@ -28,13 +28,13 @@ namespace hybridtest {
 class TwoStageAdaptive final : public Compensator {
  public:
   struct Parameters {
-    double coarse_delay_s = 0.020;     // [s] d, rounded to control periods, at least one; 0 to 1, 0: no first stage
-    double term_spacing_s = 0.010;     // [s] m, rounded to control periods; 1 period to 1
-    double memory_s = 5.0;             // [s] of the least squares; 0.1 to 1000
-    double filter_hz = 20.0;           // [Hz] 0.001 to 0.45 of the control rate
-    double equation_error_m = 3e-6;    // [m] standard deviation, of the filtered signals; 1e-12 to 1
-    double theta_deviation = 0.3;      // [] of each coefficient at first, from (1, 0, 0); above 0, at most 10
-    double theta_max = 3.0;            // [] bound of |coefficient|; 1 to 100
+    double coarse_delay_s = 0.020;   // [s] d, rounded to control periods, at least one; 0 to 1, 0: no first stage
+    double term_spacing_s = 0.010;   // [s] m, rounded to control periods; 1 period to 1
+    double memory_s = 5.0;           // [s] of the least squares; 0.1 to 1000
+    double filter_hz = 20.0;         // [Hz] 0.001 to 0.45 of the control rate
+    double equation_error_m = 3e-6;  // [m] standard deviation, of the filtered signals; 1e-12 to 1
+    double theta_deviation = 0.3;    // [] of each coefficient at first, from (1, 0, 0); above 0, at most 10
+    double theta_max = 3.0;          // [] bound of |coefficient|; 1 to 100
   };
 
   /// @throws ConfigError for values outside these ranges.

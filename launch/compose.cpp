@@ -5,9 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "compensation/no_compensation.hpp"
-#include "compensation/no_force_compensation.hpp"
-#include "compensation/polynomial_displacement.hpp"
 #include "coordinator/central_difference.hpp"
 #include "coordinator/explicit_newmark.hpp"
 #include "experimental_site/rigs/elastic_specimen.hpp"
@@ -17,6 +14,7 @@
 #include "experimental_site/transfer_systems/first_order.hpp"
 #include "experimental_site/transfer_systems/ideal.hpp"
 #include "experimental_site/transfer_systems/second_order.hpp"
+#include "launch/named_type.hpp"
 #include "mechanics/bilinear.hpp"
 #include "mechanics/bouc_wen.hpp"
 #include "mechanics/elastic.hpp"
@@ -35,23 +33,6 @@ using config::Range;
 using config::Section;
 
 constexpr Range kShareBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
-
-/// A name that a scenario can give in a `type` key, and what reads the rest of the section.
-template <class Reading>
-struct Type {
-  std::string name;
-  Reading (*read)(Section& section);
-};
-
-/// Reads the `type` key and then, by it, the rest of the section.
-template <class Reading>
-Reading read_type(Section& section, const std::vector<Type<Reading>>& types, std::optional<std::string> fallback = {}) {
-  std::vector<std::string> names;
-  std::ranges::transform(types, std::back_inserter(names), &Type<Reading>::name);
-  Reading reading = types[section.choice("type", names, std::move(fallback))].read(section);
-  section.finish();
-  return reading;
-}
 
 template <class Part, class Parameters>
 auto maker_of(const Parameters& parameters) {
@@ -93,8 +74,8 @@ Maker<Law> read_bouc_wen(Section& section) {
   });
 }
 
-const std::vector<Type<Maker<Law>>>& laws() {
-  static const std::vector<Type<Maker<Law>>> table{
+const std::vector<NamedType<Maker<Law>>>& laws() {
+  static const std::vector<NamedType<Maker<Law>>> table{
       {"elastic", read_elastic},
       {"bilinear", read_bilinear},
       {"giuffre_menegotto_pinto", read_giuffre_menegotto_pinto},
@@ -253,25 +234,6 @@ RigReading read_simulated_rig(Section& section, int dofs) {
   return reading;
 }
 
-CompensatorReading read_none(Section&) {
-  return {[](double) { return std::make_unique<NoCompensation>(); }, 0.0};
-}
-
-ForceCompensatorMaker read_no_force_compensation(Section&) {
-  return [](double) { return std::make_unique<NoForceCompensation>(); };
-}
-
-CompensatorReading read_polynomial_displacement(Section& section) {
-  const int order = static_cast<int>(section.integer("order", 1, 4, 3));
-  const double delay_s = section.number("delay_s", {.low = 0.0, .high = 10.0});
-  const double spacing_s = section.number("point_spacing_s", {.low = 0.0, .high = 10.0}, 0.0);
-  return {[=](double period_s) {
-            return std::make_unique<PolynomialDisplacement>(order, from_seconds(delay_s), from_seconds(period_s),
-                                                            from_seconds(spacing_s));
-          },
-          delay_s};
-}
-
 }  // namespace
 
 Maker<Law> read_law(Section section) { return read_type(section, laws()); }
@@ -308,15 +270,6 @@ RigReading read_rig(Section section, int dofs) {
   reading.type = "simulated";
   section.finish();
   return reading;
-}
-
-CompensatorReading read_compensator(Section section) {
-  return read_type<CompensatorReading>(
-      section, {{"none", read_none}, {"polynomial_displacement", read_polynomial_displacement}}, "none");
-}
-
-ForceCompensatorMaker read_force_compensator(Section section) {
-  return read_type<ForceCompensatorMaker>(section, {{"none", read_no_force_compensation}}, "none");
 }
 
 std::string read_integrator_type(Section section) {

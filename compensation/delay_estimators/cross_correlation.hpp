@@ -17,17 +17,18 @@ namespace hybridtest {
 /// follow by recursion, without subtraction whose rounding would add up. By the inequality of Cauchy and
 /// Schwarz the likeness is largest at the delay for a pure delay with any gain. Where between two lags,
 /// follows from the parabola through the largest and those a few milliseconds on either side, whose width
-/// keeps noise small. Lags are compared anew every few milliseconds.
+/// h keeps noise small; the fading of the window across it makes the estimate late by some h^2 / (4 memory),
+/// 4 microseconds as it is set here. Lags are compared anew every few milliseconds.
 ///
 /// Frozen while the mean square of r in the window is below that of motion_m_min.
 class CrossCorrelation final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double memory_s = 1.0;             // [s] of the window; 0.01 to 100
-    double parabola_half_s = 0.004;    // [s] from its middle to its ends, rounded to samples; 1 sample to 0.1
+    double memory_s = 1.0;               // [s] of the window; 0.01 to 100
+    double parabola_half_s = 0.004;      // [s] from its middle to its ends, rounded to samples; 1 sample to 0.1
     double comparison_period_s = 0.005;  // [s] rounded to samples; 1 sample to 1
-    double motion_m_min = 1e-4;        // [m] root mean square; 1e-9 to 1
+    double motion_m_min = 1e-4;          // [m] root mean square; 1e-9 to 1
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -28,10 +28,10 @@ class FrequencyEvaluationIndex final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double window_s = 1.0;            // [s] rounded to an even number of samples; 0.1 to 100
-    double frequency_hz_min = 0.5;    // [Hz] slower motion is drift; 0 to frequency_hz_max
-    double frequency_hz_max = 25.0;   // [Hz] above 0, at most 0.45 of the control rate; at most 256 / window_s
-    double motion_m_min = 1e-4;       // [m] root mean square; 1e-9 to 1
+    double window_s = 1.0;           // [s] rounded to an even number of samples; 0.1 to 100
+    double frequency_hz_min = 0.5;   // [Hz] slower motion is drift; 0 to frequency_hz_max
+    double frequency_hz_max = 25.0;  // [Hz] above 0, at most 0.45 of the control rate; at most 256 / window_s
+    double motion_m_min = 1e-4;      // [m] root mean square; 1e-9 to 1
   };
 
   /// @throws ConfigError for values outside these ranges.
@@ -59,9 +59,9 @@ class FrequencyEvaluationIndex final : public DelayEstimator {
   static void clear(Window& window) noexcept;
 
   Parameters parameters_;
-  std::size_t samples_;  // in a window, even
-  std::size_t first_;    // f_j = j / window, from first_
-  std::size_t count_;    // number of f_j
+  std::size_t samples_;                      // in a window, even
+  std::size_t first_;                        // f_j = j / window, from first_
+  std::size_t count_;                        // number of f_j
   std::vector<std::complex<double>> turns_;  // exp(-2 pi i n / samples_)
   std::vector<double> taper_;                // Hann's window
   std::array<Window, 2> windows_;

@@ -24,7 +24,7 @@ class RecursiveLeastSquares final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double memory_s = 1.0;      // [s] of the least squares; 0.01 to 100
+    double memory_s = 1.0;       // [s] of the least squares; 0.01 to 100
     double motion_m_min = 1e-4;  // [m] root mean square; 1e-9 to 1
   };
 

@@ -12,16 +12,16 @@ std::size_t checked_window(const ZeroCrossingSlope::Parameters& parameters, doub
   checked_parameter("average_s", parameters.average_s, {0.0, 1.0}, "a longer average has no fast motion left");
   checked_parameter("slope_m_per_s_min", parameters.slope_m_per_s_min, {0.0, 100.0, false},
                     "a crossing without slope tells no time");
+  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0}, "a delay learnt from sensor noise is noise");
   checked_parameter("crossing_weight", parameters.crossing_weight, {0.0, 1.0, false},
                     "a crossing counts for something and for no more than itself");
-  return std::max<std::size_t>(checked_periods("average_s", parameters.average_s, control_period_s, 0,
-                                               "it is an average of samples"),
-                               1);
+  return std::max<std::size_t>(
+      checked_periods("average_s", parameters.average_s, control_period_s, 0, "it is an average of samples"), 1);
 }
 
 }  // namespace
 
-bool ZeroCrossingSlope::Channel::advance(double value, double period_s) noexcept {
+bool ZeroCrossingSlope::Channel::advance(double value, double period_s, double swing_m_min) noexcept {
   samples.push(value);
   double sum = 0.0;
   for (std::size_t age = 0; age < samples.capacity(); ++age) sum += samples[age];
@@ -31,7 +31,10 @@ bool ZeroCrossingSlope::Channel::advance(double value, double period_s) noexcept
     has_average = true;
     return false;
   }
-  if ((before_m < 0.0) == (average_m < 0.0)) return false;
+  const bool has_crossed = (before_m < 0.0) != (average_m < 0.0);
+  const double swing_before_m = swing_m;
+  swing_m = has_crossed ? std::abs(average_m) : std::max(swing_m, std::abs(average_m));
+  if (!has_crossed || swing_before_m < swing_m_min) return false;
   slope_m_per_s = (average_m - before_m) / period_s;
   fraction = average_m / (average_m - before_m);
   return true;
@@ -39,21 +42,22 @@ bool ZeroCrossingSlope::Channel::advance(double value, double period_s) noexcept
 
 void ZeroCrossingSlope::Channel::reset() noexcept {
   samples.clear();
-  average_m = slope_m_per_s = fraction = 0.0;
+  average_m = swing_m = slope_m_per_s = fraction = 0.0;
   has_average = false;
 }
 
 ZeroCrossingSlope::ZeroCrossingSlope(const Parameters& parameters, double control_period_s)
     : DelayEstimator{parameters.limits, control_period_s},
       slope_m_per_s_min_{parameters.slope_m_per_s_min},
+      motion_m_min_{parameters.motion_m_min},
       crossing_weight_{parameters.crossing_weight},
       reference_{checked_window(parameters, control_period_s)},
       measured_{reference_.samples.capacity()} {}
 
 void ZeroCrossingSlope::observe(const DelaySample& sample) noexcept {
   for (std::size_t i = 0; i < known_; ++i) crossings_[i].age_periods += 1.0;
-  if (reference_.advance(sample.reference_m, control_period_s())) remember_reference_crossing();
-  if (measured_.advance(sample.measured_displacement_m, control_period_s())) compare_measured_crossing();
+  if (reference_.advance(sample.reference_m, control_period_s(), motion_m_min_)) remember_reference_crossing();
+  if (measured_.advance(sample.measured_displacement_m, control_period_s(), motion_m_min_)) compare_measured_crossing();
 }
 
 void ZeroCrossingSlope::remember_reference_crossing() noexcept {
@@ -65,8 +69,8 @@ void ZeroCrossingSlope::remember_reference_crossing() noexcept {
 void ZeroCrossingSlope::compare_measured_crossing() noexcept {
   if (std::abs(measured_.slope_m_per_s) < slope_m_per_s_min_) return;
   const bool is_rising = measured_.slope_m_per_s > 0.0;
-  // Noise can make a delay of zero look negative.
-  const double tolerance_s = control_period_s();
+  // A delay outside its bounds is to be found at the bound, not to be overlooked.
+  const double tolerance_s = 0.25 * (limits().delay_s_max - limits().delay_s_min);
   bool is_found = false;
   double nearest_s = 0.0;
   for (std::size_t i = 0; i < known_; ++i) {
@@ -77,7 +81,9 @@ void ZeroCrossingSlope::compare_measured_crossing() noexcept {
     nearest_s = delay_s;
     is_found = true;
   }
-  if (is_found) believe(believed_s() + crossing_weight_ * (nearest_s - believed_s()));
+  if (!is_found) return;
+  const double within_s = std::clamp(nearest_s, limits().delay_s_min, limits().delay_s_max);
+  believe(believed_s() + crossing_weight_ * (within_s - believed_s()));
 }
 
 void ZeroCrossingSlope::forget() noexcept {

@@ -14,10 +14,13 @@ namespace hybridtest {
 ///
 /// Reference r and measurement m are averaged over the same short window. Each time the average of one
 /// passes zero, the instant follows from the straight line through the two samples about it. Of the
-/// crossings of r in the same direction, within the bounds of the delay, the one counts that makes the
-/// delay nearest to the present one:
+/// crossings of r in the same direction, within the bounds of the delay and a quarter of their range
+/// beyond, the one counts that makes the delay nearest to the present one:
 ///
-///     delay <- delay + weight (t_m - t_r - delay),   where |slope of m| > slope_min
+///     delay <- delay + weight (t_m - t_r - delay)
+///
+/// A crossing counts where it is faster than slope_min and the signal has been further than motion_min
+/// from zero since the crossing before it, which one made by noise has not.
 ///
 /// Exact for a pure delay up to the curvature of the motion between two samples. An offset between the
 /// sensors moves crossings up and down oppositely, and averages out.
@@ -29,9 +32,10 @@ class ZeroCrossingSlope final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double average_s = 0.004;            // [s] window of the averages, rounded to samples; 0 to 1
-    double slope_m_per_s_min = 0.005;    // [m/s] slower crossings tell nothing; above 0, at most 100
-    double crossing_weight = 0.3;        // [] of a new crossing; above 0, at most 1
+    double average_s = 0.004;          // [s] window of the averages, rounded to samples; 0 to 1
+    double slope_m_per_s_min = 0.005;  // [m/s] slower crossings tell nothing; above 0, at most 100
+    double motion_m_min = 1e-4;        // [m] smaller swings between crossings tell nothing; 1e-9 to 1
+    double crossing_weight = 0.3;      // [] of a new crossing; above 0, at most 1
   };
 
   /// @throws ConfigError for values outside these ranges.
@@ -41,12 +45,13 @@ class ZeroCrossingSlope final : public DelayEstimator {
   // Moving average of a signal, and where it last passed zero.
   struct Channel {
     explicit Channel(std::size_t window) : samples(window) {}
-    /// @return whether the average has passed zero since the sample before.
-    bool advance(double value, double period_s) noexcept;
+    /// @return whether the average has passed zero since the sample before, in a way that counts.
+    bool advance(double value, double period_s, double swing_m_min) noexcept;
     void reset() noexcept;
 
     SampleHistory samples;
     double average_m = 0.0;
+    double swing_m = 0.0;  // furthest from zero since the last crossing
     double slope_m_per_s = 0.0;
     double fraction = 0.0;  // of a period, from the crossing to the newest sample
     bool has_average = false;
@@ -64,6 +69,7 @@ class ZeroCrossingSlope final : public DelayEstimator {
   static constexpr std::size_t kCrossings = 16;
 
   double slope_m_per_s_min_;
+  double motion_m_min_;
   double crossing_weight_;
   Channel reference_;
   Channel measured_;
