@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "coordinator/damping.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
@@ -168,6 +169,12 @@ void read_interface(Section& section, const std::vector<std::string>& dofs, Subs
   }
 }
 
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", seconds);
+  return text;
+}
+
 SiteLimits read_limits(Section section) {
   SiteLimits limits;
   limits.displacement_m = section.number("displacement_m", config::kPositive);
@@ -186,11 +193,7 @@ SiteLimits read_limits(Section section) {
 template <class Reading>
 std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
   std::vector<Reading> readings;
-  if (section.has(key)) {
-    for (Section& entry : section.sections(key, true)) readings.push_back(read(entry));
-  } else {
-    readings.push_back(read(section.section_or_empty(key)));
-  }
+  for (Section& entry : section.sections_or_empty(key)) readings.push_back(read(entry));
   if (readings.size() != 1 && readings.size() != dofs) {
     section.error(key,
                   "expected one, or one for each of the " + std::to_string(dofs) + " interface degrees of freedom");
@@ -224,6 +227,11 @@ void read_site(Section& section, const TimeScenario& time, SubstructureScenario&
     return made;
   };
   site.limits = read_limits(section.section("limits"));
+  if (time.mode == CouplingMode::paced && site.limits.command_age_s <= site_step_s) {
+    section.error("limits", "command_age_s of " + seconds_text(site.limits.command_age_s) +
+                                " is no longer than a step, step_s times time_scale, of " + seconds_text(site_step_s) +
+                                ": every command would be overdue");
+  }
   site.return_time_s = section.number("return_time_s", {.low = 0.0, .high = 3600.0}, 2.0);
 }
 

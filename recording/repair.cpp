@@ -1,4 +1,10 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "recording/error.hpp"
 #include "recording/hdf5/layout.hpp"
@@ -18,6 +24,25 @@ constexpr const char* kSkipEndCheck = "skip_eof_check";
 
 bool opens_normally(const std::filesystem::path& path) {
   return Handle{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose}.valid();
+}
+
+/// Fills the file up to the size that is noted in it, as HDF5 does when it closes it. HDF5 does not survive that
+/// there is no room for it: it gives up the process at its end.
+void fill_up(const std::filesystem::path& path) {
+  hsize_t noted = 0;
+  {
+    const Handle file{H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), H5Fclose};
+    if (!file.valid() || H5Fget_filesize(file.id(), &noted) < 0) return;  // opening for repair says why
+  }
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return;
+  // Only under a lock: a file that somebody writes must not be cut short by a look that was too early.
+  const bool is_ours = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  const off_t size = ::lseek(descriptor, 0, SEEK_END);
+  const bool is_short = is_ours && size >= 0 && static_cast<hsize_t>(size) < noted;
+  const int error = is_short && ::ftruncate(descriptor, static_cast<off_t>(noted)) != 0 ? errno : 0;
+  ::close(descriptor);
+  if (error != 0) throw RecordingError{std::string{"no room to make it whole: "} + std::strerror(error)};
 }
 
 Handle open_for_repair(const std::filesystem::path& path) {
@@ -55,6 +80,7 @@ bool repair(const std::filesystem::path& path) {
   const auto lock = hdf5::lock_library();
   try {
     if (opens_normally(path)) return false;
+    fill_up(path);
     repair_open(path);
     return true;
   } catch (const RecordingError& error) {

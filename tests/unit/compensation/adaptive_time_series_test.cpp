@@ -176,5 +176,21 @@ TEST(AdaptiveTimeSeries, ForgetsAMotionWhenItsWindowIsOver) {
   }
 }
 
+TEST(AdaptiveTimeSeries, ForgetsTheRoundingOfALargeMotionToo) {
+  // Ten million times as large, so that what rounding leaves of its squares is a hundredth of those that follow.
+  AdaptiveTimeSeries series{{}, kPeriod_s};
+  SecondOrderActuator actuator{1.02, kA1_s, kA2_s2};
+  double measured_m = 0.0;
+  for (int i = 0; i < 8 * 2048; ++i) {
+    CompensatorInput input = target(kPeriod_s * i, i < 3 * 2048 ? 3e4 : 3e-3);
+    input.measured_displacement_m = measured_m;
+    measured_m = actuator.displacement_m;
+    actuator.advance(series.command(input), kPeriod_s);
+  }
+  EXPECT_NEAR(series.coefficients()(0), 1.02, 0.002);
+  EXPECT_NEAR(series.coefficients()(1), kA1_s, 1.5 * kPeriod_s);
+  EXPECT_NEAR(series.coefficients()(2), kA2_s2, 1.5 * kA1_s * kPeriod_s);
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -119,7 +119,7 @@ TEST(RunFileWriter, RefusesTablesThatCannotBeTold) {
 
 TEST(RunFileWriter, SaysWhichFileCannotBeCreatedAndWhy) {
   try {
-    RunFileWriter{"/nowhere/at/all.h5", example_header(), {example_layout()}};
+    const RunFileWriter writer{"/nowhere/at/all.h5", example_header(), {example_layout()}};
     FAIL();
   } catch (const RecordingError& error) {
     EXPECT_NE(std::string{error.what()}.find("/nowhere/at/all.h5"), std::string::npos);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace hybridtest {
+
+/// Calls run(0) … run(count - 1), each once, on so many threads. Which thread takes which is left to chance:
+/// a run may depend on its number alone. The first exception of a run is thrown on when all have ended.
+/// @param threads   at least 1.
+void run_in_parallel(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& run);
+
+/// Processors that this process may use.
+[[nodiscard]] unsigned usable_threads();
+
+}  // namespace hybridtest

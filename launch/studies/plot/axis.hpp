@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hybridtest::plot {
+
+/// What a drawing is told of one of its axes.
+struct Axis {
+  std::string label;
+  bool is_logarithmic = false;
+  std::optional<double> low{};  // from the values where absent
+  std::optional<double> high{};
+};
+
+struct Tick {
+  double value = 0.0;
+  std::string label;
+};
+
+/// Maps values of an axis onto 0 to 1.
+class Scale {
+ public:
+  /// @param least, most   of the values; what the axis says goes before them. On a logarithmic axis positive.
+  Scale(const Axis& axis, double least, double most);
+
+  /// 0 at the low end, 1 at the high end; not finite where the value has no place.
+  [[nodiscard]] double share(double value) const noexcept;
+  [[nodiscard]] std::vector<Tick> ticks() const;
+
+ private:
+  bool is_logarithmic_;
+  double low_;  // logarithms of base 10 on a logarithmic axis
+  double high_;
+};
+
+}  // namespace hybridtest::plot

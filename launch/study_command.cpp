@@ -1,0 +1,2 @@
+#include "launch/commands.hpp"
+namespace hybridtest { void add_study_command(CLI::App&, CommandAction&) {} }

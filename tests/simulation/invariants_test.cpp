@@ -1,0 +1,138 @@
+#include "tests/simulation/invariants.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+/// Each invariant holds for a good run and is seen to be violated when that run is spoilt.
+namespace hybridtest {
+namespace {
+
+class InvariantsTest : public testing::Test {
+ protected:
+  double& value(const std::string& participant, const std::string& table, std::size_t row, const std::string& column) {
+    KeptRows& rows = run_.table(participant, table);
+    return rows.at(row, rows.column(column));
+  }
+  static void nudge(double& number) { number = std::nextafter(number, std::numeric_limits<double>::infinity()); }
+
+  Scenario scenario_ =
+      shipped_scenario("two_storey_one_site", {kPulse, "time.duration_s=0.3", "excitation.scale=2.0"});
+  DrawnCase drawn_{"two_storey_one_site", {}, {}, false};
+  KeptSimulation reference_ = keep_simulation(scenario_, SimulationSettings{});
+  KeptSimulation run_ = reference_;
+};
+
+TEST_F(InvariantsTest, HoldForAGoodRun) {
+  EXPECT_EQ(steps_violated(run_, scenario_), Violations{});
+  EXPECT_EQ(limits_violated(run_, scenario_), Violations{});
+  EXPECT_EQ(energy_violated(run_, scenario_), Violations{});
+  EXPECT_EQ(ending_violated(run_, reference_, scenario_, drawn_), Violations{});
+  EXPECT_EQ(history_violated(run_, reference_), Violations{});
+}
+
+TEST_F(InvariantsTest, AMissingStepIsSeen) {
+  run_.table("coordinator", "steps").drop(100);
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AMissingLastStepIsSeen) {
+  run_.table("coordinator", "steps").drop(300);
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AStepTakenTwiceByASubstructureIsSeen) {
+  value("storey_2", "steps", 100, "step") = 99.0;
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AMissingExchangeIsSeen) {
+  run_.table("coordinator", "exchanges").drop(7);
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, ASubstructureThatWasMovedElsewhereIsSeen) {
+  nudge(value("storey_2", "steps", 100, "displacement_floor_2_relative_to_floor_1_m"));
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AForceThatNobodyMeasuredIsSeen) {
+  nudge(value("coordinator", "steps", 100, "restoring_force_floor_1_n"));
+  EXPECT_FALSE(steps_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, ACommandBeyondTheLimitIsSeen) {
+  value("storey_1", "control", 100, "command_displacement_m") = 0.2001;
+  EXPECT_FALSE(limits_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, ACommandThatJumpsIsSeen) {
+  // 1.5 m/s at 2 kHz: the control rate of 1024 Hz is rounded up to two periods a step.
+  value("storey_1", "control", 100, "command_displacement_m") += 0.0016;
+  EXPECT_FALSE(limits_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, ACommandThatIsNotANumberIsSeen) {
+  value("storey_1", "control", 100, "command_displacement_m") = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(limits_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AMissingControlPeriodIsSeen) {
+  run_.table("storey_1", "control").drop(100);
+  EXPECT_FALSE(limits_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AForceThatWasNotIntegratedIsSeenInTheEnergy) {
+  value("coordinator", "steps", 200, "restoring_force_floor_1_n") *= 1.0 + 1e-6;
+  EXPECT_FALSE(energy_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, ADisplacementThatDoesNotBelongToTheMotionIsSeenInTheEnergy) {
+  value("coordinator", "steps", 200, "displacement_floor_2_m") *= 1.0 + 1e-6;
+  EXPECT_FALSE(energy_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AStepThatWasSkippedIsSeenInTheEnergy) {
+  run_.table("coordinator", "steps").drop(200);
+  EXPECT_FALSE(energy_violated(run_, scenario_).empty());
+}
+
+TEST_F(InvariantsTest, AParticipantThatHangsIsSeen) {
+  run_.result.participants[1].is_done = false;
+  EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
+}
+
+TEST_F(InvariantsTest, AnEndWithoutAWordIsSeen) {
+  run_.result.coordinator.reason = StopReason::participant_lost;
+  drawn_.settings.kills.push_back({"storey_1", {}});
+  EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
+  Event told;
+  told.source = "coordinator";
+  told.code = EventCode::participant_lost;
+  told.subject = "storey_1";
+  run_.events.push_back(told);
+  EXPECT_TRUE(ending_violated(run_, reference_, scenario_, drawn_).empty());
+}
+
+TEST_F(InvariantsTest, AnotherEndThanWithoutFaultsIsSeenWhenTheFaultsAreHarmless) {
+  run_.result.coordinator.reason = StopReason::participant_lost;
+  Event told;
+  told.source = "coordinator";
+  told.code = EventCode::participant_lost;
+  run_.events.push_back(told);
+  EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
+}
+
+TEST_F(InvariantsTest, AHistoryThatDiffersByOneBitIsSeen) {
+  nudge(value("coordinator", "steps", 300, "velocity_floor_2_m_per_s"));
+  EXPECT_FALSE(history_violated(run_, reference_).empty());
+}
+
+TEST_F(InvariantsTest, TheWallMayTakeItsTime) {
+  value("coordinator", "steps", 300, "wall_time_s") += 1.0;
+  EXPECT_TRUE(history_violated(run_, reference_).empty());
+}
+
+}  // namespace
+}  // namespace hybridtest

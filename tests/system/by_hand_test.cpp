@@ -1,0 +1,57 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/recording_checks.hpp"
+#include "tests/support/system_test.hpp"
+
+/// The three programs started one by one, as on three hosts: each with records of its own, brought together later.
+namespace hybridtest {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Optional;
+
+class ByHand : public SystemTest {};
+
+TEST_F(ByHand, ThreeProgramsInAnyOrderMakeATest) {
+  const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
+  const Arguments arguments{"--set", "time.duration_s=2"};
+  StartedProgram site = start_participant("experimental_site", "storey_1", scenario, "at_site", arguments);
+  StartedProgram numerical =
+      start_participant("numerical_substructure", "storey_2", scenario, "at_computer", arguments);
+  StartedProgram coordinator = start_participant("coordinator", "coordinator", scenario, "at_control", arguments);
+  EXPECT_THAT(coordinator.wait(), Optional(kExitCompleted)) << coordinator.standard_error();
+  EXPECT_THAT(site.wait(), Optional(kExitCompleted)) << site.standard_error();
+  EXPECT_THAT(numerical.wait(), Optional(kExitCompleted)) << numerical.standard_error();
+
+  // What the coordinator alone brought home is not the whole test, but it is a valid part of it.
+  const std::filesystem::path together = directory() / "at_control";
+  std::filesystem::copy(recorded("at_site").file("storey_1"), together);
+  std::filesystem::copy(recorded("at_computer").file("storey_2"), together);
+  StartedProgram summary = start_hybridtest({"summary", together.string()}, "summary");
+  ASSERT_THAT(summary.wait(), Optional(kExitCompleted)) << summary.standard_error();
+  EXPECT_THAT(summary.standard_output(), HasSubstr("COMPLETED"));
+  const nlohmann::json values = recorded("at_control").summary();
+  EXPECT_EQ(values["completed_steps"], 2000);
+  EXPECT_EQ(values["participants"].size(), 3U);
+  EXPECT_EQ(values["data_valid"], true) << values["data_faults"];
+
+  StartedProgram simulated = start_simulate(scenario, "simulated", arguments);
+  ASSERT_THAT(simulated.wait(), Optional(kExitCompleted)) << simulated.standard_error();
+  EXPECT_EQ(recorded("at_control").column("coordinator", "steps", "displacement_floor_2_m"),
+            recorded("simulated").column("coordinator", "steps", "displacement_floor_2_m"));
+}
+
+TEST_F(ByHand, TheDirectoryOfARunCanBeRunAgain) {
+  StartedProgram first = start_simulate(shipped_scenario("two_storey_one_site"), "run", {"--set", "time.duration_s=1"});
+  ASSERT_THAT(first.wait(), Optional(kExitCompleted)) << first.standard_error();
+  StartedProgram again = start_simulate(recorded("run").directory() / "scenario.yaml", "again");
+  ASSERT_THAT(again.wait(), Optional(kExitCompleted)) << again.standard_error();
+  EXPECT_EQ(recorded("run").column("coordinator", "steps", "displacement_floor_2_m"),
+            recorded("again").column("coordinator", "steps", "displacement_floor_2_m"));
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,116 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tests/support/system_test.hpp"
+
+/// The same scenario gives the same bytes: over DDS in several processes, simulated in one, and at every
+/// optimisation level.
+namespace hybridtest {
+namespace {
+
+struct Shipped {
+  std::string scenario;
+  std::vector<std::string> sites;
+  std::vector<std::string> numerical;
+};
+
+void PrintTo(const Shipped& shipped, std::ostream* stream) { *stream << shipped.scenario; }
+
+class Determinism : public SystemTest, public ::testing::WithParamInterface<Shipped> {
+ protected:
+  /// Bit for bit, so that NaN equals NaN and 0 does not equal -0.
+  void expect_same_column(const std::string& participant, const std::string& table, const std::string& column) const {
+    const std::vector<double> over_dds = recorded("run").column(participant, table, column);
+    const std::vector<double> simulated = recorded("simulated").column(participant, table, column);
+    ASSERT_EQ(over_dds.size(), simulated.size()) << participant << "/" << table;
+    for (std::size_t row = 0; row < over_dds.size(); ++row) {
+      ASSERT_EQ(std::memcmp(&over_dds[row], &simulated[row], sizeof(double)), 0)
+          << participant << "/" << table << "/" << column << ", row " << row << ": " << over_dds[row] << " and "
+          << simulated[row];
+    }
+  }
+
+  void expect_same_table(const std::string& participant, const std::string& table,
+                         const std::vector<std::string>& but_for = {}) const {
+    const RunFileReader file = recorded("run").open(participant);
+    for (const TableLayout& layout : file.tables()) {
+      if (layout.name != table) continue;
+      for (const Column& column : layout.columns) {
+        if (std::ranges::find(but_for, column.name) != but_for.end()) continue;
+        expect_same_column(participant, table, column.name);
+      }
+    }
+    EXPECT_GT(file.row_count(table), 0U) << participant << "/" << table;
+  }
+};
+
+TEST_P(Determinism, OverDdsAndSimulatedTheRecordsAreBitIdentical) {
+  const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
+  StartedProgram run = start_run(scenario, "run", {"--set", "time.duration_s=4"});
+  StartedProgram simulated = start_simulate(scenario, "simulated", {"--set", "time.duration_s=4"});
+  ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
+  ASSERT_THAT(simulated.wait(), ::testing::Optional(kExitCompleted)) << simulated.standard_error();
+
+  EXPECT_EQ(recorded("run").last_step("coordinator"), 4000.0);
+  expect_same_table("coordinator", "steps", {"wall_time_s"});
+  for (const std::string& site : GetParam().sites) {
+    expect_same_table(site, "steps");
+    expect_same_table(site, "control");
+  }
+  for (const std::string& numerical : GetParam().numerical) expect_same_table(numerical, "steps");
+}
+
+TEST_P(Determinism, ControlAnotherSeedOfTheSensorsIsNoticed) {
+  // Shows that the comparison can fail: noise is part of what is compared.
+  const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
+  StartedProgram one = start_simulate(scenario, "run", {"--set", "time.duration_s=1"});
+  StartedProgram other = start_simulate(
+      scenario, "simulated",
+      {"--set", "time.duration_s=1", "--set", "substructures[" + GetParam().sites.front() + "].rig.sensors.seed=99"});
+  ASSERT_THAT(one.wait(), ::testing::Optional(kExitCompleted)) << one.standard_error();
+  ASSERT_THAT(other.wait(), ::testing::Optional(kExitCompleted)) << other.standard_error();
+  const std::string column = recorded("run").open("coordinator").tables().front().columns.at(4).name;
+  EXPECT_NE(recorded("run").column("coordinator", "steps", column),
+            recorded("simulated").column("coordinator", "steps", column));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shipped, Determinism,
+    ::testing::Values(Shipped{"two_storey_one_site", {"storey_1"}, {"storey_2"}},
+                      Shipped{"two_storey_two_sites", {"first_storey_columns", "second_storey_columns"}, {}},
+                      Shipped{"three_storey_base_isolated", {"isolators"}, {"superstructure"}}),
+    [](const auto& instance) { return instance.param.scenario; });
+
+/// `simulate_digest` prints how it was compiled and a SHA-256 of every record of a simulated test.
+class OptimisationLevel : public SystemTest {
+ protected:
+  [[nodiscard]] std::string digest(const std::string& program_name) const {
+    StartedProgram printed{
+        program(program_name),
+        {"time.duration_s=4", shipped_scenario("two_storey_one_site").string(),
+         shipped_scenario("two_storey_two_sites").string(), shipped_scenario("three_storey_base_isolated").string()},
+        directory() / program_name};
+    EXPECT_THAT(printed.wait(), ::testing::Optional(kExitCompleted)) << printed.standard_error();
+    return printed.standard_output();
+  }
+};
+
+TEST_F(OptimisationLevel, RecordsAreTheSameUnoptimisedAndOptimised) {
+  const std::string plain = digest("simulate_digest_unoptimised");
+  const std::string optimised = digest("simulate_digest");
+  ASSERT_TRUE(plain.starts_with("unoptimised\n")) << plain;
+  if (!optimised.starts_with("optimised\n")) GTEST_SKIP() << "this build is not optimised: nothing to compare with";
+  const auto records = [](const std::string& text) { return text.substr(text.find('\n')); };
+  EXPECT_EQ(records(plain), records(optimised));
+  EXPECT_NE(records(plain).find("storey_1/control"), std::string::npos) << plain;
+  std::cout << optimised;
+}
+
+}  // namespace
+}  // namespace hybridtest

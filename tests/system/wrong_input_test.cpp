@@ -1,0 +1,102 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "tests/support/system_test.hpp"
+
+/// What a user gets wrong is answered with what, where, what was expected, and exit code 2.
+namespace hybridtest {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Optional;
+
+class WrongInput : public SystemTest {
+ protected:
+  /// The program's complaint.
+  [[nodiscard]] std::string refusal(const std::string& program_name, const Arguments& arguments) const {
+    StartedProgram started{
+        program(program_name), arguments, directory() / program_name, {.working_directory = directory()}};
+    EXPECT_THAT(started.wait(), Optional(kExitConfiguration)) << started.standard_error();
+    return started.standard_error();
+  }
+};
+
+TEST_F(WrongInput, EveryErrorOfAScenarioIsListedAtOnceWithItsPlace) {
+  const std::string scenario = system_scenario("many_errors");
+  const auto says_all = AllOf(HasSubstr("many_errors.yaml:5:24: "), HasSubstr("did you mean 'step_s'"),      // stepp_s
+                              HasSubstr("many_errors.yaml:9:"), HasSubstr("many_errors.yaml:10:"),           //
+                              HasSubstr("many_errors.yaml:15:"), HasSubstr("did you mean 'floor_1'"),        // flor_1
+                              HasSubstr("many_errors.yaml:20:"), HasSubstr("did you mean 'second_order'"));  // seconds
+  EXPECT_THAT(refusal("hybridtest", {"check", scenario}), says_all);
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario}), says_all);
+  EXPECT_THAT(refusal("hybridtest", {"simulate", scenario, "--seed", "1"}), says_all);
+  EXPECT_THAT(refusal("coordinator", {"--scenario", scenario}), says_all);
+  EXPECT_FALSE(std::filesystem::exists(directory() / "runs")) << "nothing is written for a test that cannot be";
+}
+
+TEST_F(WrongInput, AMissingFileIsNamed) {
+  EXPECT_THAT(refusal("hybridtest", {"run", "no_such_scenario.yaml"}), HasSubstr("no_such_scenario.yaml"));
+  EXPECT_THAT(refusal("hybridtest", {"check", shipped_scenario("two_storey_one_site"), "--set",
+                                     "excitation.ground_motion=no_such_motion.AT2"}),
+              AllOf(HasSubstr("ground_motion"), HasSubstr("no_such_motion.AT2")));
+}
+
+TEST_F(WrongInput, AnOverrideThatDoesNotFitIsExplained) {
+  const std::string scenario = shipped_scenario("two_storey_one_site");
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario, "--set", "time.stepp_s=0.002"}),
+              AllOf(HasSubstr("stepp_s"), HasSubstr("did you mean 'step_s'")));
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario, "--set", "nonsense"}), HasSubstr("expected key.path=value"));
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario, "--set", "time.step_s=fast"}),
+              AllOf(HasSubstr("--set time.step_s"), HasSubstr("fast")));
+}
+
+TEST_F(WrongInput, AStepBeyondTheStabilityLimitIsRefused) {
+  EXPECT_THAT(refusal("hybridtest", {"run", shipped_scenario("two_storey_one_site"), "--set", "time.step_s=0.2"}),
+              AllOf(HasSubstr("time: the step of 0.2 s is too long"), HasSubstr("at most T_n/pi")));
+}
+
+TEST_F(WrongInput, AnIdThatTheScenarioDoesNotHaveIsRefusedWithThoseItHas) {
+  const std::string scenario = shipped_scenario("two_storey_one_site");
+  EXPECT_THAT(refusal("experimental_site", {"--scenario", scenario, "--id", "storey_9"}),
+              AllOf(HasSubstr("storey_9"), HasSubstr("storey_1, storey_2")));
+  EXPECT_THAT(refusal("experimental_site", {"--scenario", scenario, "--id", "storey_2"}),
+              HasSubstr("numerical_substructure"));
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario, "--remote", "storey_9"}), HasSubstr("storey_9"));
+  EXPECT_THAT(refusal("experimental_site", {"--scenario", scenario}), HasSubstr("--id"));
+}
+
+TEST_F(WrongInput, ACommandLineThatMakesNoSenseIsRefused) {
+  EXPECT_THAT(refusal("hybridtest", {}), HasSubstr("subcommand"));
+  EXPECT_THAT(refusal("hybridtest", {"run"}), HasSubstr("FILE"));
+  EXPECT_THAT(refusal("hybridtest", {"run", shipped_scenario("two_storey_one_site"), "--no-such-option"}),
+              HasSubstr("--no-such-option"));
+  EXPECT_THAT(refusal("hybridtest", {"simulate", shipped_scenario("two_storey_one_site")}), HasSubstr("--seed"));
+  EXPECT_THAT(refusal("hybridtest", {"export", directory().string(), "--csv"}), HasSubstr("no run file"));
+}
+
+TEST_F(WrongInput, ADirectoryThatHoldsARunIsNotWrittenOver) {
+  const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
+  StartedProgram first = start_simulate(scenario, "run", {"--set", "time.duration_s=0.1"});
+  ASSERT_THAT(first.wait(), Optional(kExitCompleted)) << first.standard_error();
+  const std::string before = text_of(recorded("run").file("coordinator"));
+  StartedProgram second = start_run(scenario, "run", {"--set", "time.duration_s=0.1"});
+  ASSERT_THAT(second.wait(), Optional(kExitConfiguration));
+  EXPECT_THAT(second.standard_error(), HasSubstr("has recorded a run in this directory already"));
+  EXPECT_EQ(text_of(recorded("run").file("coordinator")), before);
+}
+
+TEST_F(WrongInput, TheShippedScenariosAreValid) {
+  for (const char* name : {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated"}) {
+    StartedProgram check = start_hybridtest({"check", shipped_scenario(name)}, "check");
+    EXPECT_THAT(check.wait(), Optional(kExitCompleted)) << check.standard_error();
+    EXPECT_THAT(check.standard_output(), AllOf(HasSubstr("critical delay"), HasSubstr("margin left")));
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest
