@@ -205,8 +205,8 @@ void Coordinator::watch_participants(Instant now) noexcept {
   bool somebody_is_lost = false;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
-    const bool is_lost = peer == nullptr || peer->status.state == LifecycleState::lost ||
-                         peer->status.state == LifecycleState::refused;
+    const bool is_lost =
+        peer == nullptr || peer->status.state == LifecycleState::lost || peer->status.state == LifecycleState::refused;
     if (!is_lost) continue;
     report(now, Severity::fault, EventCode::participant_lost, substructure.id);
     presence_.raise(FaultFlags::participant_lost);

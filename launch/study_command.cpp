@@ -1,2 +1,151 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/exit_code.hpp"
 #include "launch/commands.hpp"
-namespace hybridtest { void add_study_command(CLI::App&, CommandAction&) {} }
+#include "launch/studies/compensator_character/character_study.hpp"
+#include "launch/studies/founding_study/founding_report.hpp"
+#include "launch/studies/output_file.hpp"
+#include "launch/studies/parallel_runs.hpp"
+#include "launch/studies/rths_benchmark/rths_page.hpp"
+#include "launch/studies/rths_benchmark/rths_tables.hpp"
+
+namespace hybridtest {
+namespace {
+
+struct StudyOptions {
+  std::filesystem::path directory;
+  unsigned threads = usable_threads();
+};
+
+struct RthsOptions : StudyOptions {
+  int plants = 20;
+  std::uint64_t seed = 1;
+  std::vector<std::string> compensators;
+  std::filesystem::path ground_motions;
+};
+
+struct FoundingOptions : StudyOptions {
+  std::filesystem::path scenarios = std::filesystem::path{HYBRIDTEST_SCENARIOS} / "founding_study";
+};
+
+void say_where(const std::filesystem::path& directory, std::string_view files) {
+  fmt::print("\nWritten to {}: {}\n", directory.string(), files);
+}
+
+int study_rths_benchmark(const RthsOptions& options) {
+  const std::vector<rths::Candidate> candidates = rths::chosen_candidates(options.compensators);
+  const rths::BenchmarkInputs inputs{rths::ground_motion_directory(options.ground_motions)};
+  prepare_output_directory(options.directory);
+
+  fmt::print("The harness against the published values of the released controller:\n\n");
+  const rths::HarnessCheck check = rths::check_harness(inputs, options.threads);
+  fmt::print("{}\n", rths::to_markdown(check));
+  std::fflush(stdout);
+  if (!check.is_confirmed()) return kExitDataInvalid;
+
+  const rths::StudySettings settings{options.plants, options.seed, options.threads};
+  std::vector<rths::StudyRun> runs;
+  {
+    StudyProgress progress{rths::study_size(candidates.size(), settings), stderr};
+    runs = rths::run_study(inputs, candidates, settings, progress);
+  }
+  write_output_file(options.directory / "table.csv", rths::criteria_csv(candidates, runs));
+  write_output_file(options.directory / "tracking.csv", rths::tracking_csv(inputs, candidates, runs));
+  write_output_file(options.directory / "summary.md",
+                    rths::summary_markdown(inputs, check, candidates, runs, settings));
+  write_output_file(options.directory / "errors.svg", rths::error_figure(inputs, candidates, runs));
+  write_output_file(options.directory / "plots.html", rths::page_html(inputs, candidates, runs, settings));
+  for (const rths::Target& target : rths::judge_ours(rths::means_of(inputs, candidates, runs))) {
+    fmt::print("{:7} {}: {} (asked: {})\n", target.is_met ? "met" : "MISSED", target.what, target.found, target.limit);
+  }
+  say_where(options.directory, "summary.md, table.csv, tracking.csv, plots.html, errors.svg");
+  return kExitCompleted;
+}
+
+int study_founding_study(const FoundingOptions& options) {
+  prepare_output_directory(options.directory);
+  std::vector<founding::MethodRun> runs;
+  {
+    StudyProgress progress{founding::kMethods.size(), stderr};
+    runs = founding::run_founding_study(options.scenarios, options.threads, progress);
+  }
+  write_output_file(options.directory / "table.csv", founding::table_csv(runs));
+  write_output_file(options.directory / "summary.md", founding::summary_markdown(runs));
+  write_output_file(options.directory / "plots.html", founding::page_html(runs));
+  for (const founding::Finding& finding : founding::find(runs)) {
+    fmt::print("{:10}{}: {}\n", finding.is_shown ? "shown" : "NOT SHOWN", finding.what, finding.shown_by);
+  }
+  say_where(options.directory, "summary.md, table.csv, plots.html");
+  return kExitCompleted;
+}
+
+int study_compensators(const StudyOptions& options) {
+  prepare_output_directory(options.directory);
+  character::CharacterStudy study;
+  {
+    StudyProgress progress{character::character_study_size(), stderr};
+    study = character::run_character_study(options.threads, progress);
+  }
+  write_output_file(options.directory / "frequency_response.csv", character::frequency_response_csv(study));
+  write_output_file(options.directory / "loop_damping.csv", character::loop_damping_csv(study));
+  write_output_file(options.directory / "noise_gain.csv", character::noise_gain_csv(study));
+  write_output_file(options.directory / "summary.md", character::summary_markdown(study));
+  write_output_file(options.directory / "response_pure_delay.svg", character::pure_delay_figure(study));
+  write_output_file(options.directory / "response_benchmark_actuator.svg", character::benchmark_figure(study));
+  write_output_file(options.directory / "noise_gain.svg", character::noise_figure(study));
+  write_output_file(options.directory / "loop_damping.svg", character::damping_figure(study));
+  say_where(options.directory, "summary.md, three tables (.csv) and four figures (.svg)");
+  return kExitCompleted;
+}
+
+template <class Options>
+CLI::App* add_study(CLI::App& studies, const std::string& name, const std::string& what,
+                    const std::shared_ptr<Options>& options, int (*run)(const Options&), CommandAction& action) {
+  CLI::App* study = studies.add_subcommand(name, what);
+  study->add_option("--out", options->directory, "Directory for the results; files of an earlier study are replaced")
+      ->required();
+  study->add_option("--threads", options->threads, "Runs at a time; the results do not depend on it")
+      ->check(CLI::Range(1U, 1024U))
+      ->capture_default_str();
+  study->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
+  return study;
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, CommandAction& action) {
+  CLI::App* studies = app.add_subcommand("study", "Run many simulated tests side by side and compare them");
+  studies->require_subcommand(1);
+
+  const auto benchmark = std::make_shared<RthsOptions>();
+  CLI::App* rths_benchmark =
+      add_study(*studies, "rths_benchmark", "Every compensator on the virtual RTHS benchmark (Silva et al., 2020)",
+                benchmark, study_rths_benchmark, action);
+  rths_benchmark
+      ->add_option("--ground-motions", benchmark->ground_motions,
+                   "Directory with rths_benchmark_elcentro.csv, _kobe.csv and _morgan.csv")
+      ->default_str("$HYBRIDTEST_GROUND_MOTIONS");
+  rths_benchmark->add_option("--plants", benchmark->plants, "Perturbed plants besides the nominal one")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  rths_benchmark->add_option("--seed", benchmark->seed, "Draws the perturbed plants and the sensor noise")
+      ->capture_default_str();
+  rths_benchmark->add_option("--compensator", benchmark->compensators,
+                             "Only these; a name without +pi takes both arrangements of it");
+
+  const auto founding_study = std::make_shared<FoundingOptions>();
+  add_study(*studies, "founding_study", "The methods of the founding study on its two-storey, two-actuator test",
+            founding_study, study_founding_study, action)
+      ->add_option("--scenarios", founding_study->scenarios, "Directory with the study's scenarios")
+      ->capture_default_str();
+
+  add_study(*studies, "compensators", "Frequency response, noise gain and stability limit of every compensator",
+            std::make_shared<StudyOptions>(), study_compensators, action);
+}
+
+}  // namespace hybridtest

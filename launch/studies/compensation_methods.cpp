@@ -33,9 +33,8 @@ using MakeForceCompensator = std::function<std::unique_ptr<ForceCompensator>(dou
 
 template <class Part>
 auto made_with(typename Part::Parameters (*parameters)(double delay_s)) {
-  return [parameters](double delay_s, double period_s) {
-    return std::make_unique<Part>(parameters(delay_s), period_s);
-  };
+  return
+      [parameters](double delay_s, double period_s) { return std::make_unique<Part>(parameters(delay_s), period_s); };
 }
 
 TimeSeriesParameters time_series(double delay_s) {
@@ -90,10 +89,9 @@ void add_extrapolations(std::vector<CompensationMethod>& methods) {
                                 made_with<LinearAcceleration>([](double delay_s) -> LinearAcceleration::Parameters {
                                   return {delay_s, 0.0};
                                 })));
-  methods.push_back(on_commands("inverse_compensation", kGroup,
-                                made_with<InverseCompensation>([](double delay_s) -> InverseCompensation::Parameters {
-                                  return {delay_s};
-                                })));
+  methods.push_back(on_commands(
+      "inverse_compensation", kGroup,
+      made_with<InverseCompensation>([](double delay_s) -> InverseCompensation::Parameters { return {delay_s}; })));
 }
 
 void add_adaptive(std::vector<CompensationMethod>& methods) {
@@ -116,22 +114,24 @@ void add_adaptive(std::vector<CompensationMethod>& methods) {
 }
 
 void add_force_methods(std::vector<CompensationMethod>& methods) {
-  methods.push_back(on_forces("polynomial_force", made_with<PolynomialForce>([](double delay_s) -> PolynomialParameters {
-                                return {3, delay_s, 0.0};
-                              })));
-  methods.push_back(on_forces("force_correction_quadratic",
-                              made_with<ForceCorrectionQuadratic>(
-                                  [](double delay_s) -> ForceCorrectionQuadratic::Parameters { return {3, delay_s}; })));
+  methods.push_back(
+      on_forces("polynomial_force", made_with<PolynomialForce>([](double delay_s) -> PolynomialParameters {
+                  return {3, delay_s, 0.0};
+                })));
+  methods.push_back(
+      on_forces("force_correction_quadratic",
+                made_with<ForceCorrectionQuadratic>([](double delay_s) -> ForceCorrectionQuadratic::Parameters {
+                  return {3, delay_s};
+                })));
   methods.push_back(on_forces("force_correction", made_with<ForceCorrection>(force_correction)));
   methods.back().is_ours = true;
   methods.back().remark = "force_correction_quadratic without its jumps";
-  methods.push_back({"upper_bound_delay", MethodGroup::force, false, false, "with optimal_pick on the forces",
-                     made_with<UpperBoundDelay>([](double delay_s) -> UpperBoundDelay::Parameters {
-                       return {delay_s + kUpperBoundMarginS, 3, 0.0};
-                     }),
-                     [](double, double period_s) {
-                       return std::make_unique<OptimalPick>(OptimalPick::Parameters{}, period_s);
-                     }});
+  methods.push_back(
+      {"upper_bound_delay", MethodGroup::force, false, false, "with optimal_pick on the forces",
+       made_with<UpperBoundDelay>([](double delay_s) -> UpperBoundDelay::Parameters {
+         return {delay_s + kUpperBoundMarginS, 3, 0.0};
+       }),
+       [](double, double period_s) { return std::make_unique<OptimalPick>(OptimalPick::Parameters{}, period_s); }});
 }
 
 }  // namespace

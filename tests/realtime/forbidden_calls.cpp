@@ -15,6 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -23,6 +24,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 
 // The functions below take the place of the C library's: a definition in the program comes before
 // those of shared libraries, also for calls from within these. They count and go on to the
@@ -93,8 +95,7 @@ bool turn_system_calls_away() {
 std::optional<std::vector<int>> system_calls_of(void (*work)()) {
   constexpr int kDone = 0;
   constexpr int kUnable = 77;
-  void* const shared =
-      mmap(nullptr, sizeof(TriedCalls), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* const shared = mmap(nullptr, sizeof(TriedCalls), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) return std::nullopt;
   tried = new (shared) TriedCalls{};
   const pid_t child = fork();
@@ -173,7 +174,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
   return *memory == nullptr ? ENOMEM : 0;
 }
 void free(void* memory) {
-  count(&ForbiddenCalls::allocations);
+  if (memory != nullptr) count(&ForbiddenCalls::allocations);  // of nothing it does nothing
   __libc_free(memory);
 }
 
@@ -198,8 +199,8 @@ HYBRIDTEST_COUNTED(locks, int, sem_post, (sem_t * semaphore), (semaphore))
 
 HYBRIDTEST_COUNTED(writes, ssize_t, write, (int file, const void* bytes, std::size_t size), (file, bytes, size))
 HYBRIDTEST_COUNTED(writes, ssize_t, writev, (int file, const iovec* parts, int number), (file, parts, number))
-HYBRIDTEST_COUNTED(writes, std::size_t, fwrite,
-                   (const void* bytes, std::size_t size, std::size_t number, FILE* file), (bytes, size, number, file))
+HYBRIDTEST_COUNTED(writes, std::size_t, fwrite, (const void* bytes, std::size_t size, std::size_t number, FILE* file),
+                   (bytes, size, number, file))
 HYBRIDTEST_COUNTED(writes, int, fputs, (const char* text, FILE* file), (text, file))
 HYBRIDTEST_COUNTED(writes, int, fputc, (int letter, FILE* file), (letter, file))
 HYBRIDTEST_COUNTED(writes, int, puts, (const char* text), (text))
@@ -233,8 +234,8 @@ void syslog(int priority, const char* format, ...) {
 HYBRIDTEST_COUNTED(clocks, int, clock_gettime, (clockid_t clock, timespec* time), (clock, time))
 HYBRIDTEST_COUNTED(clocks, time_t, time, (time_t * seconds), (seconds))
 HYBRIDTEST_COUNTED(clocks, int, nanosleep, (const timespec* wanted, timespec* left), (wanted, left))
-HYBRIDTEST_COUNTED(clocks, int, clock_nanosleep,
-                   (clockid_t clock, int flags, const timespec* wanted, timespec* left), (clock, flags, wanted, left))
+HYBRIDTEST_COUNTED(clocks, int, clock_nanosleep, (clockid_t clock, int flags, const timespec* wanted, timespec* left),
+                   (clock, flags, wanted, left))
 
 }  // extern "C"
 

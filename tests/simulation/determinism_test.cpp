@@ -51,9 +51,9 @@ TEST_F(Lockstep, ClocksThatRunFastAndSlowChangeNothing) {
 }
 
 TEST_F(Lockstep, AnotherNoiseSeedIsAnotherHistory) {
-  const Scenario other = shipped_scenario(
-      "two_storey_two_sites",
-      {kPulse, "time.duration_s=0.5", "substructures[first_storey_columns].rig.sensors.seed=8"});
+  const Scenario other =
+      shipped_scenario("two_storey_two_sites",
+                       {kPulse, "time.duration_s=0.5", "substructures[first_storey_columns].rig.sensors.seed=8"});
   EXPECT_FALSE(history_violated(keep_simulation(other, SimulationSettings{}), reference_).empty());
 }
 

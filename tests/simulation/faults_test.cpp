@@ -102,8 +102,8 @@ TEST(KilledSubstructure, TheSiteThatWaitsForItHoldsAndTheCoordinatorNamesWhoDoes
 TEST(KilledCoordinator, TheSiteHoldsWithinTheCommandAgeThenReturnsAndSaysBoth) {
   for (const char* mode : {"lockstep", "paced"}) {
     SCOPED_TRACE(mode);
-    const Scenario scenario = two_storeys({std::string{"time.mode="} + mode, "time.duration_s=1.2",
-                                           "substructures[storey_1].limits.command_age_s=0.4"});
+    const Scenario scenario = two_storeys(
+        {std::string{"time.mode="} + mode, "time.duration_s=1.2", "substructures[storey_1].limits.command_age_s=0.4"});
     Random random{8};
     for (int i = 0; i < 10; ++i) {
       SimulationSettings settings;
@@ -200,8 +200,8 @@ TEST(Interlock, EndsTheTestAndTheSiteReturnsToZero) {
     // From the trip on no period's command grows.
     const auto faults = run.table("storey_1", "control").column_values("faults");
     const auto commands_m = run.table("storey_1", "control").column_values("command_displacement_m");
-    const auto tripped = static_cast<std::size_t>(std::ranges::find_if(faults, [](double f) { return f != 0.0; }) -
-                                                  faults.begin());
+    const auto tripped =
+        static_cast<std::size_t>(std::ranges::find_if(faults, [](double f) { return f != 0.0; }) - faults.begin());
     ASSERT_LT(tripped, faults.size());
     for (std::size_t i = tripped + 1; i < commands_m.size(); ++i) {
       ASSERT_LE(std::abs(commands_m[i]), std::abs(commands_m[i - 1]));
@@ -331,8 +331,8 @@ TEST_F(Paced, AnOutageBeyondTheCommandAgeIsAnInterlock) {
   // It holds until it is told to stop, then returns.
   const auto faults = run.table("storey_1", "control").column_values("faults");
   const auto commands_m = run.table("storey_1", "control").column_values("command_displacement_m");
-  const auto tripped = static_cast<std::size_t>(std::ranges::find_if(faults, [](double f) { return f != 0.0; }) -
-                                                faults.begin());
+  const auto tripped =
+      static_cast<std::size_t>(std::ranges::find_if(faults, [](double f) { return f != 0.0; }) - faults.begin());
   ASSERT_LT(tripped + 1, faults.size());
   EXPECT_NE(commands_m[tripped], 0.0);
   EXPECT_EQ(commands_m.back(), 0.0);

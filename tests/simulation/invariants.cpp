@@ -153,8 +153,8 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
   const StopReason reason = run.result.coordinator.reason;
   const StopReason without_faults = reference.result.coordinator.reason;
   const bool is_paced = scenario.time.mode == CouplingMode::paced;
-  const std::string what = "ended with " + std::string{name(reason)} + ", without faults with " +
-                           std::string{name(without_faults)};
+  const std::string what =
+      "ended with " + std::string{name(reason)} + ", without faults with " + std::string{name(without_faults)};
   // In paced mode waiting changes the motion: a specimen near a limit may pass it or not.
   const bool may_differ = is_paced && (reason == StopReason::interlock || without_faults == StopReason::interlock);
   if (drawn.is_harmless() && reason != without_faults && !may_differ) found.push_back("harmless faults: " + what);
@@ -276,8 +276,8 @@ Violations energy_violated(const KeptSimulation& run, const Scenario& scenario) 
     return 0.5 * velocity.dot(structure.mass_kg * velocity);
   };
   const double begin_j = kinetic_j(half_step_velocity(0));
-  double work_j = 0.0;    // put in, less what damping and restoring force took
-  double scale_j = 0.0;   // what the terms sum up to, regardless of sign
+  double work_j = 0.0;   // put in, less what damping and restoring force took
+  double scale_j = 0.0;  // what the terms sum up to, regardless of sign
   double worst_j = 0.0;
   double displacement_max_m = 0.0;
   double velocity_max_m_per_s = 0.0;
@@ -295,7 +295,8 @@ Violations energy_violated(const KeptSimulation& run, const Scenario& scenario) 
   }
   // Displacements are rounded to eps |u|, so half-step velocities to eps |u|/dt and the kinetic
   // energy to twice that share of |h|; every step adds the rounding of its sums. Both twice over.
-  const double relative = 2.0 * kEpsilon * (4.0 * displacement_max_m / (dt * velocity_max_m_per_s) + static_cast<double>(steps));
+  const double relative =
+      2.0 * kEpsilon * (4.0 * displacement_max_m / (dt * velocity_max_m_per_s) + static_cast<double>(steps));
 
   if (worst_j <= relative * scale_j) return {};
   return {"energy: " + number(worst_j) + " J out of " + number(scale_j) + " J are unaccounted for; rounding explains " +

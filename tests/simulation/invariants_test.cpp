@@ -17,8 +17,7 @@ class InvariantsTest : public testing::Test {
   }
   static void nudge(double& number) { number = std::nextafter(number, std::numeric_limits<double>::infinity()); }
 
-  Scenario scenario_ =
-      shipped_scenario("two_storey_one_site", {kPulse, "time.duration_s=0.3", "excitation.scale=2.0"});
+  Scenario scenario_ = shipped_scenario("two_storey_one_site", {kPulse, "time.duration_s=0.3", "excitation.scale=2.0"});
   DrawnCase drawn_{"two_storey_one_site", {}, {}, false};
   KeptSimulation reference_ = keep_simulation(scenario_, SimulationSettings{});
   KeptSimulation run_ = reference_;

@@ -35,13 +35,13 @@ NodeBench::Seat& NodeBench::join(std::string name, Duration start, Make make) {
 
 NodeBench::Seat& NodeBench::add_coordinator(const Scenario& scenario, Duration start) {
   return join("coordinator", start, [&](Seat& seat) {
-    for (const TableLayout& table : CoordinatorParticipant::tables(scenario)) seat.tables.try_emplace(table.name, table);
+    for (const TableLayout& table : CoordinatorParticipant::tables(scenario))
+      seat.tables.try_emplace(table.name, table);
     return std::make_unique<CoordinatorParticipant>(
-        scenario, ParticipantSurroundings{*seat.transport, *seat.events,
-                                          [&seat](std::string_view table) -> RowSink& {
-                                            return seat.tables.find(table)->second;
-                                          },
-                                          kFirstIncarnation + seats_.size()});
+        scenario,
+        ParticipantSurroundings{*seat.transport, *seat.events,
+                                [&seat](std::string_view table) -> RowSink& { return seat.tables.find(table)->second; },
+                                kFirstIncarnation + seats_.size()});
   });
 }
 

@@ -254,7 +254,8 @@ TEST_F(NodeBenchTest, AnOperatorPausesAndResumesInBothModes) {
     bench.run_until(bench.now() + seconds{20});  // far beyond the command-age limit of 2 s
     EXPECT_EQ(completed(), paused_at);
     EXPECT_LT(completed(), scenario_.time.last_step);
-    const std::vector<double> commands_m = site_->tables.find("control")->second.column_values("command_displacement_m");
+    const std::vector<double> commands_m =
+        site_->tables.find("control")->second.column_values("command_displacement_m");
     EXPECT_NE(commands_m.back(), 0.0);
     operator_says(desk, ControlVerb::resume);
     ASSERT_TRUE(bench.run_to_end(seconds{60}));
@@ -334,8 +335,8 @@ TEST_F(NodeBenchTest, ARecordingWithHolesEndsTheTestAsTheScenarioSays) {
     while (completed() < 100) bench.run_until(bench.now() + milliseconds{1});
     model_->participant->presence().raise(FaultFlags::records_dropped);
     ASSERT_TRUE(bench.run_to_end(seconds{60}));
-    EXPECT_EQ(coordinator_->reason(), std::string_view{on_failure} == "stop" ? StopReason::recording_failed
-                                                                              : StopReason::completed);
+    EXPECT_EQ(coordinator_->reason(),
+              std::string_view{on_failure} == "stop" ? StopReason::recording_failed : StopReason::completed);
     EXPECT_NE(exit_code_for(StopReason::recording_failed), kExitCompleted);
   }
 }

@@ -49,6 +49,7 @@ TEST_F(ByHand, TheDirectoryOfARunCanBeRunAgain) {
   ASSERT_THAT(first.wait(), Optional(kExitCompleted)) << first.standard_error();
   StartedProgram again = start_simulate(recorded("run").directory() / "scenario.yaml", "again");
   ASSERT_THAT(again.wait(), Optional(kExitCompleted)) << again.standard_error();
+  EXPECT_EQ(recorded("run").summary()["scenario_digest"], recorded("again").summary()["scenario_digest"]);
   EXPECT_EQ(recorded("run").column("coordinator", "steps", "displacement_floor_2_m"),
             recorded("again").column("coordinator", "steps", "displacement_floor_2_m"));
 }

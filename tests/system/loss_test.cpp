@@ -109,7 +109,8 @@ TEST_F(Loss, WhenTheCoordinatorOfARunIsKilledTheOthersComeToRestAndTheVerdictSay
   const auto coordinator = std::ranges::find_if(children, is_coordinator);
   ASSERT_NE(coordinator, children.end());
   ASSERT_EQ(::kill(*coordinator, SIGKILL), 0);
-  ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
+  ASSERT_THAT(run.wait(), Optional(kExitDataInvalid)) << run.standard_error();
+  EXPECT_THAT(run.standard_output(), HasSubstr("END UNKNOWN; DATA INVALID"));
 
   const RecordedRun record = recorded("run");
   EXPECT_EQ(record.summary()["data_valid"], false);
@@ -198,7 +199,7 @@ TEST_P(LostCoordinator, SitesHoldWithinTheCommandAgeLimitSaySoAndLeave) {
     const auto overdue = record.events(sites[i], EventCode::command_overdue);
     ASSERT_EQ(overdue.size(), 1U);
     EXPECT_GT(overdue[0].values[0], kCommandAge_s);
-    EXPECT_LE(overdue[0].values[0], kCommandAge_s + 0.2);
+    EXPECT_LE(overdue[0].values[0], kCommandAge_s + 0.5);
     EXPECT_EQ(overdue[0].values[1], kCommandAge_s);
     const auto lost = record.events(sites[i], EventCode::coordinator_lost);
     ASSERT_EQ(lost.size(), 1U);

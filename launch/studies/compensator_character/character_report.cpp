@@ -29,11 +29,13 @@ std::string delay_at(const CharacterStudy& study, const Character& character, Re
   if ((character.*responses).empty()) return "–";
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < study.frequencies_hz.size(); ++i) {
-    if (std::abs(study.frequencies_hz[i] - wanted_hz) < std::abs(study.frequencies_hz[nearest] - wanted_hz)) nearest = i;
+    if (std::abs(study.frequencies_hz[i] - wanted_hz) < std::abs(study.frequencies_hz[nearest] - wanted_hz))
+      nearest = i;
   }
   const std::complex<double> response = (character.*responses)[nearest];
   if (!std::isfinite(response.real())) return "runs away";
-  return fmt::format("{:+.2f} ms, {:.3f}", 1e3 * effective_delay_s(response, study.frequencies_hz[nearest]), std::abs(response));
+  return fmt::format("{:+.2f} ms, {:.3f}", 1e3 * effective_delay_s(response, study.frequencies_hz[nearest]),
+                     std::abs(response));
 }
 
 plot::Axis frequency_axis() { return {.label = "frequency [Hz]", .is_logarithmic = true, .low = 0.5, .high = 20.0}; }
@@ -110,10 +112,13 @@ std::string noise_gain_csv(const CharacterStudy& study) {
 
 std::string summary_markdown(const CharacterStudy& study) {
   std::string text = fmt::format(
-      "# What each compensator is like\n\nEffective delay and amplitude of the force that the structure gets, against that "
-      "which the target would have; noise root mean square out over in; the first omega delay at which a structure with "
+      "# What each compensator is like\n\nEffective delay and amplitude of the force that the structure gets, against "
+      "that "
+      "which the target would have; noise root mean square out over in; the first omega delay at which a structure "
+      "with "
       "{:g} % damping, all of its stiffness behind the actuator, grows.\n\n"
-      "| compensator | pure delay of 20 ms, 1 Hz | 3.5 Hz | 10 Hz | benchmark actuator, 1 Hz | 3.5 Hz | 10 Hz | target noise to "
+      "| compensator | pure delay of 20 ms, 1 Hz | 3.5 Hz | 10 Hz | benchmark actuator, 1 Hz | 3.5 Hz | 10 Hz | target "
+      "noise to "
       "command | displacement noise to command | force noise to force | stable below omega delay |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
       100.0 * study.structure_damping);
@@ -143,10 +148,11 @@ std::string benchmark_figure(const CharacterStudy& study) {
 }
 
 std::string noise_figure(const CharacterStudy& study) {
-  plot::DotFigure figure{.title = "Noise out over noise in, root mean squares",
-                         .axis = {.label = "gain", .is_logarithmic = true},
-                         .marks = {"target to command", "displacement sensor to command", "load cell to structure's force"},
-                         .rows = {}};
+  plot::DotFigure figure{
+      .title = "Noise out over noise in, root mean squares",
+      .axis = {.label = "gain", .is_logarithmic = true},
+      .marks = {"target to command", "displacement sensor to command", "load cell to structure's force"},
+      .rows = {}};
   for (const Character& character : study.characters) {
     const NoiseGain& noise = character.noise;
     figure.rows.push_back(

@@ -38,14 +38,13 @@ class SinePair {
 };
 
 std::complex<double> target_force_n(const StandKind& stand, double omega) {
-  return kAmplitudeM * std::complex<double>{stand.stiffness_n_per_m - stand.mass_kg * omega * omega,
-                                            stand.damping_n_s_per_m * omega};
+  return kAmplitudeM *
+         std::complex<double>{stand.stiffness_n_per_m - stand.mass_kg * omega * omega, stand.damping_n_s_per_m * omega};
 }
 
 }  // namespace
 
-std::complex<double> measured_response(const CompensationMethod& method, const StandKind& stand,
-                                       double frequency_hz) {
+std::complex<double> measured_response(const CompensationMethod& method, const StandKind& stand, double frequency_hz) {
   constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
   const double omega = 2.0 * std::numbers::pi * frequency_hz;
   const double settle_s = std::max(kSettleS, kSettleCycles / frequency_hz);

@@ -11,8 +11,8 @@ namespace hybridtest::character {
 /// From the target's force, that which the specimen ought to have, to the force that the structure gets: 1 where
 /// compensation is perfect. For compensators on commands alone this is actual over target displacement.
 ///
-/// Measured, not computed, so that adaptive methods are what they have become: a sine of 3 mm that begins smoothly, time
-/// to settle, least squares of sine and cosine over whole cycles. Not finite where a method has run away.
+/// Measured, not computed, so that adaptive methods are what they have become: a sine of 3 mm that begins smoothly,
+/// time to settle, least squares of sine and cosine over whole cycles. Not finite where a method has run away.
 [[nodiscard]] std::complex<double> measured_response(const CompensationMethod& method, const StandKind& stand,
                                                      double frequency_hz);
 

@@ -85,7 +85,8 @@ double measured_loop_damping(const CompensationMethod& method, double omega_dela
     const double amplitude = std::sqrt(square / per_cycle) / kAmplitudeM;
     const bool is_enough = !(amplitude < kEnough) || amplitude < 1.0 / kEnough;
     // Fast growth does not wait for the start-up to be over.
-    if (!is_enough && (cycle >= kFirstCycle || amplitude > 1e3)) slope.add(cycle * per_cycle * stand.period_s, std::log(amplitude));
+    if (!is_enough && (cycle >= kFirstCycle || amplitude > 1e3))
+      slope.add(cycle * per_cycle * stand.period_s, std::log(amplitude));
     if (is_enough && slope.count() < 2) return amplitude > 1.0 || std::isnan(amplitude) ? -1.0 : 1.0;
     if (is_enough) break;
   }

@@ -7,8 +7,8 @@
 namespace hybridtest::character {
 
 /// Damping ratio that a structure of one degree of freedom has when all of its stiffness stands behind an actuator that
-/// is late, measured on its free vibration: the slope of the logarithm of its amplitude. Explicit Newmark at 1 kHz, delay
-/// of 20 ms; the method is told the delay as it is.
+/// is late, measured on its free vibration: the slope of the logarithm of its amplitude. Explicit Newmark at 1 kHz,
+/// delay of 20 ms; the method is told the delay as it is.
 ///
 /// The closed form without compensation is the root s of s^2 + 2 zeta omega s + omega^2 exp(-s delay) = 0.
 /// @param omega_delay   natural angular frequency times delay [rad].
@@ -23,6 +23,7 @@ struct StabilityLimit {
   double omega_delay = 0.0;
   bool is_reached = false;
 };
-[[nodiscard]] StabilityLimit stability_limit(const std::vector<double>& omega_delays, const std::vector<double>& dampings);
+[[nodiscard]] StabilityLimit stability_limit(const std::vector<double>& omega_delays,
+                                             const std::vector<double>& dampings);
 
 }  // namespace hybridtest::character

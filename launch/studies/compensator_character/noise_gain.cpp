@@ -23,8 +23,7 @@ struct Spread {
 };
 
 /// Root mean squares of the difference that a disturbance makes, over that of the disturbance.
-Spread spread(const CompensationMethod& method, const StandKind& stand, double Disturbance::* where,
-              double deviation) {
+Spread spread(const CompensationMethod& method, const StandKind& stand, double Disturbance::*where, double deviation) {
   MeasuredLoop disturbed{method, stand};
   MeasuredLoop quiet{method, stand};
   const DrivenTarget target{kAmplitudeM, kFrequencyHz};

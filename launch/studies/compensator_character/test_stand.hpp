@@ -19,8 +19,8 @@ class TestStand {
 struct StandKind {
   const char* name;
   double period_s;
-  double delay_s;          // that a method is told
-  double mass_kg;          // of the specimen: force = m a + c v + k x
+  double delay_s;  // that a method is told
+  double mass_kg;  // of the specimen: force = m a + c v + k x
   double damping_n_s_per_m;
   double stiffness_n_per_m;
   /// The structure gets the force of the sample before and holds it over one, as in the benchmark; otherwise that of

@@ -91,10 +91,10 @@ std::vector<Finding> find(std::span<const MethodRun> runs) {
   const double closest_of_study = std::max(worst_rms(displacement), worst_rms(newmark));
   return {
       {"Without compensation the delay acts as negative damping: the motion grows until an interlock ends the test",
-       fmt::format("largest error of floor 2 by quarters {:.2g}, {:.2g}, {:.2g}, {:.2g} mm; {:.0f} J given by the delay; {}",
-                   1e3 * quarters[0], 1e3 * quarters[1], 1e3 * quarters[2], 1e3 * quarters[3],
-                   -uncompensated.energy_error_j,
-                   uncompensated.interlock.empty() ? "no interlock" : uncompensated.interlock),
+       fmt::format(
+           "largest error of floor 2 by quarters {:.2g}, {:.2g}, {:.2g}, {:.2g} mm; {:.0f} J given by the delay; {}",
+           1e3 * quarters[0], 1e3 * quarters[1], 1e3 * quarters[2], 1e3 * quarters[3], -uncompensated.energy_error_j,
+           uncompensated.interlock.empty() ? "no interlock" : uncompensated.interlock),
        !uncompensated.is_complete && !uncompensated.interlock.empty() && grows(quarters) &&
            uncompensated.energy_error_j < 0.0},
       {"Of the study's four methods, extrapolation of the displacement and Newmark's kinematics stay closest",

@@ -36,12 +36,12 @@ inline constexpr std::array<Method, 7> kMethods{{
 struct MethodRun {
   std::string name;
   StopReason reason = StopReason::none;
-  std::string interlock;  // what tripped, as told to people; empty when none did
-  std::vector<double> time_s;                                    // each step
-  std::array<std::vector<double>, kFloors> displacement_m;       // by floor, each step
-  std::vector<double> period_time_s;                             // each control period
-  std::array<std::vector<double>, kActuators> force_n;           // as the integrator gets it, each control period
-  std::vector<double> energy_error_j;                            // each control period; negative: given by the delay
+  std::string interlock;                                    // what tripped, as told to people; empty when none did
+  std::vector<double> time_s;                               // each step
+  std::array<std::vector<double>, kFloors> displacement_m;  // by floor, each step
+  std::vector<double> period_time_s;                        // each control period
+  std::array<std::vector<double>, kActuators> force_n;      // as the integrator gets it, each control period
+  std::vector<double> energy_error_j;                       // each control period; negative: given by the delay
 };
 
 /// Runs one scenario of the study in this thread under simulated time.

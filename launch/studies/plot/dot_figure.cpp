@@ -30,7 +30,7 @@ Scale scale_of(const DotFigure& figure) {
   return {figure.axis, least, most};
 }
 
-double widest(const DotFigure& figure, std::string DotRow::* text) {
+double widest(const DotFigure& figure, std::string DotRow::*text) {
   std::size_t letters = 0;
   for (const DotRow& row : figure.rows) letters = std::max(letters, (row.*text).size());
   return 14.0 + kLetter * static_cast<double>(letters);

@@ -79,7 +79,7 @@ class PanelPainter {
   }
 
  private:
-  [[nodiscard]] Scale scale_of(const Axis& axis, std::vector<double> Line::* values) const {
+  [[nodiscard]] Scale scale_of(const Axis& axis, std::vector<double> Line::*values) const {
     Extent extent;
     for (const Line& line : panel_.lines) {
       for (const double value : line.*values) extent.include(value, axis.is_logarithmic);

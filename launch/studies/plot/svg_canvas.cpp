@@ -32,8 +32,7 @@ void SvgCanvas::line(Place from, Place to, const Stroke& stroke) {
 void SvgCanvas::curve(std::span<const Place> places, const Stroke& stroke, const Box& clip) {
   if (places.size() < 2) return;
   // Numbered by box, so that two drawings on one page mean the same by the same number.
-  const std::string id =
-      fmt::format("clip_{:.0f}_{:.0f}_{:.0f}_{:.0f}", clip.left, clip.top, clip.width, clip.height);
+  const std::string id = fmt::format("clip_{:.0f}_{:.0f}_{:.0f}_{:.0f}", clip.left, clip.top, clip.width, clip.height);
   if (body_.find("id=\"" + id + "\"") == std::string::npos) {
     body_ += fmt::format(R"(<clipPath id="{}"><rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"/></clipPath>)"
                          "\n",
@@ -75,11 +74,11 @@ void SvgCanvas::text(Place at, std::string_view text, Anchor anchor, double size
 }
 
 void SvgCanvas::vertical_text(Place at, std::string_view text, double size) {
-  body_ += fmt::format(
-      R"-(<text transform="translate({:.1f} {:.1f}) rotate(-90)" font-size="{:g}" text-anchor="middle" )-"
-      R"-(fill="#222">{}</text>)-"
-      "\n",
-      at.x, at.y, size, escaped(text));
+  body_ +=
+      fmt::format(R"-(<text transform="translate({:.1f} {:.1f}) rotate(-90)" font-size="{:g}" text-anchor="middle" )-"
+                  R"-(fill="#222">{}</text>)-"
+                  "\n",
+                  at.x, at.y, size, escaped(text));
 }
 
 std::string SvgCanvas::svg() const { return head_ + body_ + "</svg>\n"; }

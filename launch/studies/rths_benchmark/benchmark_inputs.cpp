@@ -18,9 +18,12 @@ BenchmarkInputs::BenchmarkInputs(const std::filesystem::path& ground_motions) {
     }
   }
   if (!issues.empty()) {
-    issues.push_back({.file = "", .line = 0, .column = 0,
-                      .what = "the benchmark takes its three ground motions from the directory that --ground-motions or "
-                              "HYBRIDTEST_GROUND_MOTIONS names"});
+    issues.push_back({.file = "",
+                      .line = 0,
+                      .column = 0,
+                      .what =
+                          "the benchmark takes its three ground motions from the directory that --ground-motions or "
+                          "HYBRIDTEST_GROUND_MOTIONS names"});
     throw ConfigError{std::move(issues)};
   }
   for (int case_number = 1; case_number <= kCases; ++case_number) {
@@ -33,7 +36,8 @@ std::filesystem::path ground_motion_directory(const std::filesystem::path& given
   const char* from_environment = std::getenv("HYBRIDTEST_GROUND_MOTIONS");
   if (from_environment != nullptr && *from_environment != '\0') return from_environment;
   throw ConfigError{
-      "where are the benchmark's ground motions? Give --ground-motions DIR or set HYBRIDTEST_GROUND_MOTIONS; expected in "
+      "where are the benchmark's ground motions? Give --ground-motions DIR or set HYBRIDTEST_GROUND_MOTIONS; expected "
+      "in "
       "it: rths_benchmark_elcentro.csv, rths_benchmark_kobe.csv, rths_benchmark_morgan.csv"};
 }
 

@@ -37,7 +37,10 @@ ForceCompensatorMaker force_lead(double periods) {
 
 Candidate candidate_of(std::string name, Standing standing, Arrangement arrangement, std::string remark,
                        CompensatorMaker make, ForceCompensatorMaker make_force) {
-  return {std::move(name), standing, arrangement, std::move(remark),
+  return {std::move(name),
+          standing,
+          arrangement,
+          std::move(remark),
           [make = std::move(make), arrangement] { return std::make_unique<CompensatedPath>(make(), arrangement); },
           std::move(make_force)};
 }
@@ -100,9 +103,12 @@ void add_variants(std::vector<Candidate>& candidates) {
 }
 
 Candidate released_controller() {
-  return {"released_controller", Standing::yardstick, Arrangement::straight,
+  return {"released_controller",
+          Standing::yardstick,
+          Arrangement::straight,
           "proportional-integral control with a lead, as released with the benchmark",
-          [] { return std::make_unique<ReleasedController>(); }, kMeasuredForce};
+          [] { return std::make_unique<ReleasedController>(); },
+          kMeasuredForce};
 }
 
 }  // namespace

@@ -34,10 +34,9 @@ double ReleasedController::command(const ControlSample& sample) noexcept {
 }
 
 double CompensatedPath::command(const ControlSample& sample) noexcept {
-  const double command_m = compensator_->command({sample.target_m, sample.target_velocity_m_per_s,
-                                                  sample.target_acceleration_m_per_s2,
-                                                  quantised(saturated(sample.previous_displacement_m)),
-                                                  sample.previous_force_n});
+  const double command_m =
+      compensator_->command({sample.target_m, sample.target_velocity_m_per_s, sample.target_acceleration_m_per_s2,
+                             quantised(saturated(sample.previous_displacement_m)), sample.previous_force_n});
   const double sent_m = saturated(quantised(command_m));
   return arrangement_ == Arrangement::straight ? sent_m : loop_.command(sent_m, sample.measured_displacement_m);
 }

@@ -9,12 +9,12 @@ namespace hybridtest::rths {
 
 /// What the controller of the benchmark knows at one sample.
 struct ControlSample {
-  double target_m = 0.0;                       // x_n1
-  double target_velocity_m_per_s = 0.0;        // of the numerical part
-  double target_acceleration_m_per_s2 = 0.0;   // likewise, with the force of the sample before
-  double measured_displacement_m = 0.0;        // of this sample
-  double previous_displacement_m = 0.0;        // of the sample before
-  double previous_force_n = 0.0;               // likewise
+  double target_m = 0.0;                      // x_n1
+  double target_velocity_m_per_s = 0.0;       // of the numerical part
+  double target_acceleration_m_per_s2 = 0.0;  // likewise, with the force of the sample before
+  double measured_displacement_m = 0.0;       // of this sample
+  double previous_displacement_m = 0.0;       // of the sample before
+  double previous_force_n = 0.0;              // likewise
 };
 
 /// All that stands between the numerical part and the plant, converters included.

@@ -68,8 +68,7 @@ double fitted_delay_s(std::span<const double> follower, std::span<const double> 
 
 Criteria evaluate_criteria(const TestSignals& test, const ReferenceSignals& reference, double period_s) {
   return {{1e3 * correlation_lag_s(test.measured_m, test.target_m, period_s),
-           deviation_error_percent(test.measured_m, test.target_m),
-           peak_error_percent(test.measured_m, test.target_m),
+           deviation_error_percent(test.measured_m, test.target_m), peak_error_percent(test.measured_m, test.target_m),
            deviation_error_percent(test.measured_m, reference.floor_1_m),
            peak_error_percent(test.measured_m, reference.floor_1_m),
            deviation_error_percent(test.floor_2_m, reference.floor_2_m),

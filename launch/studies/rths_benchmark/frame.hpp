@@ -35,7 +35,7 @@ class Frame {
  private:
   using Matrix = std::array<Floors, kFloors>;
 
-  double mass_kg_ = 0.0;          // of each floor of the full structure
+  double mass_kg_ = 0.0;             // of each floor of the full structure
   double mass_of_floor_1_kg_ = 0.0;  // of this part
   Matrix damping_n_s_per_m_{};
   Matrix stiffness_n_per_m_{};

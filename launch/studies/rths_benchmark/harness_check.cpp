@@ -33,7 +33,8 @@ VirtualTest nominal_test(const BenchmarkInputs& inputs, int case_number, std::si
 Criteria run_released(const BenchmarkInputs& inputs, const PublishedRow& row) {
   ReleasedController controller;
   NoForceCompensation no_force_compensation;
-  return run_virtual_test(nominal_test(inputs, row.case_number, row.motion), controller, no_force_compensation).criteria;
+  return run_virtual_test(nominal_test(inputs, row.case_number, row.motion), controller, no_force_compensation)
+      .criteria;
 }
 
 bool diverges_uncompensated(const BenchmarkInputs& inputs, int case_number, std::size_t motion) {
@@ -87,11 +88,13 @@ std::string to_markdown(const HarnessCheck& check) {
     add("here", check.found[row]);
   }
   text += fmt::format(
-      "\nLargest deviation of any value: {:.2f} % (at most {:.0f} %). Without compensation {} of {} runs diverge into the "
+      "\nLargest deviation of any value: {:.2f} % (at most {:.0f} %). Without compensation {} of {} runs diverge into "
+      "the "
       "force limit.\n{}\n",
       100.0 * check.largest_deviation_share, 100.0 * HarnessCheck::kToleranceShare, check.uncompensated_diverged,
       check.uncompensated_runs,
-      check.is_confirmed() ? "The harness is confirmed." : "The harness is NOT confirmed: no study can be built on it.");
+      check.is_confirmed() ? "The harness is confirmed."
+                           : "The harness is NOT confirmed: no study can be built on it.");
   return text;
 }
 

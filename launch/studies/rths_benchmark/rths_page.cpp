@@ -34,7 +34,8 @@ std::string floor_figure(std::span<const CandidateMeans> means) {
                          .rows = {}};
   for (const CandidateMeans& m : means) {
     if (m.lost == m.runs) continue;
-    figure.rows.push_back({m.name, {m.j2, m.reference_floor}, fmt::format("{:.3f}", m.j2), m.standing == Standing::ours});
+    figure.rows.push_back(
+        {m.name, {m.j2, m.reference_floor}, fmt::format("{:.3f}", m.j2), m.standing == Standing::ours});
   }
   return to_svg(figure);
 }
@@ -105,10 +106,11 @@ std::string history_figure(const BenchmarkInputs& inputs, const std::vector<Cand
 
 std::string error_figure(const BenchmarkInputs& inputs, const std::vector<Candidate>& candidates,
                          std::span<const StudyRun> runs) {
-  plot::DotFigure figure{.title = "Errors on the virtual RTHS benchmark, means over the runs that were not lost",
-                         .axis = {.label = "[%]", .is_logarithmic = true},
-                         .marks = {"true tracking error, perturbed plants", "J6, second floor", "J4, measured against reference"},
-                         .rows = {}};
+  plot::DotFigure figure{
+      .title = "Errors on the virtual RTHS benchmark, means over the runs that were not lost",
+      .axis = {.label = "[%]", .is_logarithmic = true},
+      .marks = {"true tracking error, perturbed plants", "J6, second floor", "J4, measured against reference"},
+      .rows = {}};
   for (const CandidateMeans& m : means_of(inputs, candidates, runs)) {
     figure.rows.push_back({m.name,
                            {m.true_perturbed, m.j6, m.j4},
@@ -127,7 +129,8 @@ std::string page_html(const BenchmarkInputs& inputs, const std::vector<Candidate
       {
           {"All compensators", "Lost runs are left out of the means.", error_figure(inputs, candidates, runs)},
           {"J2 and its floor",
-           "A compensator cannot bring J2 below what the displacement sensor's noise makes of it; where it lies lower, the "
+           "A compensator cannot bring J2 below what the displacement sensor's noise makes of it; where it lies lower, "
+           "the "
            "structure moves more than it ought to.",
            floor_figure(means_of(inputs, candidates, runs))},
           {"Distribution over the runs", "Every case, motion and plant.", distribution_figure(candidates, runs)},

@@ -9,8 +9,7 @@ namespace {
 /// Streams of the seed below this are the plants' own.
 constexpr std::uint64_t kNoiseStreams = 1'000'000;
 
-VirtualTest test_of(const BenchmarkInputs& inputs, int case_number, std::size_t motion, int plant,
-                    std::uint64_t seed) {
+VirtualTest test_of(const BenchmarkInputs& inputs, int case_number, std::size_t motion, int plant, std::uint64_t seed) {
   const auto index = static_cast<std::uint64_t>(case_number) * 3 + motion;
   return {.case_number = case_number,
           .motion = inputs.motion(motion),
@@ -49,8 +48,8 @@ std::vector<StudyRun> run_study(const BenchmarkInputs& inputs, const std::vector
 TestHistory run_for_history(const BenchmarkInputs& inputs, const Candidate& candidate, int case_number,
                             std::size_t motion, int plant, const StudySettings& settings) {
   TestHistory history;
-  static_cast<void>(run_virtual_test(test_of(inputs, case_number, motion, plant, settings.seed),
-                                     *candidate.make_path(), *candidate.make_force_compensator(), &history));
+  static_cast<void>(run_virtual_test(test_of(inputs, case_number, motion, plant, settings.seed), *candidate.make_path(),
+                                     *candidate.make_force_compensator(), &history));
   return history;
 }
 

@@ -24,8 +24,7 @@ class Mean {
   int count_ = 0;
 };
 
-CandidateMeans means_of_one(const BenchmarkInputs& inputs, const Candidate& candidate,
-                            std::span<const StudyRun> runs) {
+CandidateMeans means_of_one(const BenchmarkInputs& inputs, const Candidate& candidate, std::span<const StudyRun> runs) {
   CandidateMeans means;
   means.name = candidate.name;
   means.standing = candidate.standing;
@@ -71,14 +70,15 @@ Target at_most(std::string what, double limit, double found, std::string_view un
 }
 
 Target smaller_than_all(std::string_view criterion, const CandidateMeans& ours, std::span<const CandidateMeans> means,
-                        double CandidateMeans::* value) {
+                        double CandidateMeans::*value) {
   const CandidateMeans* next = nullptr;
   for (const CandidateMeans& other : means) {
     const bool is_rival = other.standing == Standing::published || other.standing == Standing::yardstick;
     if (!is_rival || other.lost > 0 || other.runs == 0) continue;
     if (next == nullptr || other.*value < next->*value) next = &other;
   }
-  Target target{fmt::format("{} smaller than every published method that loses no run", criterion), "no other", "", true};
+  Target target{fmt::format("{} smaller than every published method that loses no run", criterion), "no other", "",
+                true};
   if (next == nullptr) {
     target.found = fmt::format("{:.3f} %", ours.*value);
     return target;
@@ -109,8 +109,8 @@ std::vector<Target> judge_ours(std::span<const CandidateMeans> means) {
       at_most("tracking error without sensor noise, nominal plant", 1.0, ours->true_nominal, " %"),
   };
   if (!std::isnan(ours->true_perturbed)) {
-    targets.push_back(at_most("tracking error without sensor noise, mean over perturbed plants", 1.5,
-                              ours->true_perturbed, " %"));
+    targets.push_back(
+        at_most("tracking error without sensor noise, mean over perturbed plants", 1.5, ours->true_perturbed, " %"));
   }
   targets.push_back(at_most("J2 over its floor, mean", 1.15, ours->j2_over_floor, ""));
   targets.push_back(at_most("J6, mean over all runs", 3.0, ours->j6, " %"));

@@ -36,7 +36,8 @@ class NoisySensors {
 
 TestHistory empty_history(std::size_t samples) {
   TestHistory history;
-  for (auto* signal : {&history.target_m, &history.true_m, &history.measured_m, &history.floor_2_m, &history.floor_3_m}) {
+  for (auto* signal :
+       {&history.target_m, &history.true_m, &history.measured_m, &history.floor_2_m, &history.floor_3_m}) {
     signal->reserve(samples);
   }
   return history;
@@ -44,9 +45,8 @@ TestHistory empty_history(std::size_t samples) {
 
 void evaluate(const VirtualTest& test, const TestHistory& history, TestResult& result) {
   const auto& [floor_1_m, floor_2_m, floor_3_m] = test.reference.displacement_m;
-  result.criteria =
-      evaluate_criteria({history.target_m, history.measured_m, history.floor_2_m, history.floor_3_m},
-                        {floor_1_m, floor_2_m, floor_3_m}, kPeriodS);
+  result.criteria = evaluate_criteria({history.target_m, history.measured_m, history.floor_2_m, history.floor_3_m},
+                                      {floor_1_m, floor_2_m, floor_3_m}, kPeriodS);
   result.noise_floor_percent = 100.0 * kDisplacementNoiseM / standard_deviation(history.target_m);
   result.true_tracking_percent = deviation_error_percent(history.true_m, history.target_m);
   result.true_delay_s = fitted_delay_s(history.true_m, history.target_m, kPeriodS);

@@ -27,10 +27,10 @@ struct VirtualTest {
 struct TestResult {
   Criteria criteria;
   double peak_force_n = 0.0;
-  bool is_complete = false;              // false: ended past a multiple of the force limit
-  double noise_floor_percent = 0.0;      // sensor noise over the deviation of this run's x_n1
-  double true_tracking_percent = 0.0;    // J2 of the displacement without sensor noise
-  double true_delay_s = 0.0;             // of the displacement without sensor noise
+  bool is_complete = false;            // false: ended past a multiple of the force limit
+  double noise_floor_percent = 0.0;    // sensor noise over the deviation of this run's x_n1
+  double true_tracking_percent = 0.0;  // J2 of the displacement without sensor noise
+  double true_delay_s = 0.0;           // of the displacement without sensor noise
 
   [[nodiscard]] bool reaches_force_limit() const noexcept { return peak_force_n >= kForceLimitN; }
 };

@@ -331,6 +331,26 @@ TEST(ConfigSection, ASectionOfFallbacksMayBeAbsentAndStandsInTheEffectiveConfigu
   EXPECT_THAT(document.effective(), HasSubstr("timeouts:\n  discovery_s: 30"));
 }
 
+TEST(ConfigSection, AListOfFallbacksMayBeAbsentAndReadsBackTheSame) {
+  const auto effective = [](const std::string& yaml) {
+    Document document = Document::parse(yaml, "test.yaml");
+    Section root = document.root();
+    EXPECT_EQ(root.number("a"), 1.0);
+    for (Section& entry : root.sections_or_empty("parts")) {
+      EXPECT_EQ(entry.text("type", "none"), "none");
+      entry.finish();
+    }
+    root.finish();
+    document.throw_if_errors();
+    return document.effective();
+  };
+  const std::string absent = effective("a: 1\n");
+  EXPECT_THAT(absent, HasSubstr("parts:\n  - type: none"));
+  EXPECT_EQ(effective(absent), absent);
+  EXPECT_EQ(effective("a: 1\nparts: {type: none}\n"), absent);
+  EXPECT_EQ(effective("a: 1\nparts: [{}]\n"), absent);
+}
+
 TEST(ConfigSection, VeryManyErrorsAreCutOff) {
   std::string yaml;
   for (int i = 0; i < 5000; ++i) yaml += "key_" + std::to_string(i) + ": 1\n";

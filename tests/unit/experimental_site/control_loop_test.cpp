@@ -48,9 +48,12 @@ class Bench {
       : settings_{settings},
         rig{std::move(answer)},
         record{ControlLoop::control_layout(settings.dofs)},
-        loop{settings, rig, compensation(settings.dofs, compensates),
+        loop{settings,
+             rig,
+             compensation(settings.dofs, compensates),
              EnergyErrorMonitor{kStiffness_n_per_m * InterfaceMatrix::Identity(settings.dofs, settings.dofs), 0.005},
-             ControlLoopPorts{requests, reports, signals}, record} {}
+             ControlLoopPorts{requests, reports, signals},
+             record} {}
 
   static SiteCompensation compensation(int dofs, bool compensates) {
     SiteCompensation made;
@@ -258,26 +261,25 @@ TEST_P(EveryLimit, TripsInTheControlPeriodThatPassesIt) {
 
 INSTANTIATE_TEST_SUITE_P(
     Limits, EveryLimit,
-    testing::Values(
-        LimitCase{"displacement", FaultFlags::displacement_limit, false,
-                  [](RigFeedback& feedback, RigStatus&) { feedback.displacement_m[0] = -0.1001; }},
-        LimitCase{"force", FaultFlags::force_limit, false,
-                  [](RigFeedback& feedback, RigStatus&) { feedback.force_n[0] = -1.0001e4; }},
-        LimitCase{"tracking_error", FaultFlags::tracking_error, false,
-                  [](RigFeedback& feedback, RigStatus&) { feedback.displacement_m[0] -= 0.0201; }},
-        LimitCase{"energy_error", FaultFlags::energy_error, false,
-                  [](RigFeedback& feedback, RigStatus&) {
-                    feedback.displacement_m[0] -= 0.015;
-                    feedback.force_n[0] = 9.9e3;
-                  }},
-        LimitCase{"force_not_finite", FaultFlags::not_finite, true,
-                  [](RigFeedback& feedback, RigStatus&) { feedback.force_n[0] = kNan; }},
-        LimitCase{"displacement_not_finite", FaultFlags::not_finite, true,
-                  [](RigFeedback& feedback, RigStatus&) {
-                    feedback.displacement_m[0] = std::numeric_limits<double>::infinity();
-                  }},
-        LimitCase{"rig_fault", FaultFlags::rig_fault, true,
-                  [](RigFeedback&, RigStatus& status) { status = RigStatus::fault; }}),
+    testing::Values(LimitCase{"displacement", FaultFlags::displacement_limit, false,
+                              [](RigFeedback& feedback, RigStatus&) { feedback.displacement_m[0] = -0.1001; }},
+                    LimitCase{"force", FaultFlags::force_limit, false,
+                              [](RigFeedback& feedback, RigStatus&) { feedback.force_n[0] = -1.0001e4; }},
+                    LimitCase{"tracking_error", FaultFlags::tracking_error, false,
+                              [](RigFeedback& feedback, RigStatus&) { feedback.displacement_m[0] -= 0.0201; }},
+                    LimitCase{"energy_error", FaultFlags::energy_error, false,
+                              [](RigFeedback& feedback, RigStatus&) {
+                                feedback.displacement_m[0] -= 0.015;
+                                feedback.force_n[0] = 9.9e3;
+                              }},
+                    LimitCase{"force_not_finite", FaultFlags::not_finite, true,
+                              [](RigFeedback& feedback, RigStatus&) { feedback.force_n[0] = kNan; }},
+                    LimitCase{"displacement_not_finite", FaultFlags::not_finite, true,
+                              [](RigFeedback& feedback, RigStatus&) {
+                                feedback.displacement_m[0] = std::numeric_limits<double>::infinity();
+                              }},
+                    LimitCase{"rig_fault", FaultFlags::rig_fault, true,
+                              [](RigFeedback&, RigStatus& status) { status = RigStatus::fault; }}),
     [](const auto& limit) { return limit.param.name; });
 
 TEST(ControlLoop, TargetsBeyondALimitTripAndTheCommandStaysInside) {
@@ -585,8 +587,7 @@ class FaultSequence {
         const double before_m = checked_ == 0 ? 0.0 : bench_.rig.commands[checked_ - 1].displacement_m[k];
         EXPECT_LE(std::abs(command.displacement_m[k]), settings_.limits.displacement_m);
         // Made by adding the reach to the one before: rounded once.
-        EXPECT_LE(std::abs(command.displacement_m[k] - before_m),
-                  reach_m + kEpsilon * settings_.limits.displacement_m);
+        EXPECT_LE(std::abs(command.displacement_m[k] - before_m), reach_m + kEpsilon * settings_.limits.displacement_m);
       }
       EXPECT_TRUE(command.displacement_m.allFinite());
       EXPECT_EQ(command.sample, static_cast<std::int64_t>(checked_));

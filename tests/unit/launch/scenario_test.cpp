@@ -66,7 +66,8 @@ TEST_F(ScenarioTest, ListsEverythingThatIsWrongAtOnceWithItsPlace) {
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("13:18:"), HasSubstr("did you mean 'floor_1'"))));
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("18:"), HasSubstr("yield_force_n"), HasSubstr("\"soft\""))));
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("22:"), HasSubstr("force_n"), HasSubstr(".inf"))));
-  EXPECT_THAT(errors, Contains(AllOf(StartsWith("24:11: substructures[1].kind:"), HasSubstr("did you mean 'numerical'"))));
+  EXPECT_THAT(errors,
+              Contains(AllOf(StartsWith("24:11: substructures[1].kind:"), HasSubstr("did you mean 'numerical'"))));
   for (const std::string& error : errors) EXPECT_TRUE(std::isdigit(error.front())) << "without a place: " << error;
 }
 
@@ -165,7 +166,8 @@ TEST_F(ScenarioTest, ReportsUnknownDuplicateAndMissingKeys) {
 
 TEST_F(ScenarioTest, TheEffectiveScenarioReadsBackToTheSameDigest) {
   const Scenario first = file_.read();
-  EXPECT_THAT(first.effective, AllOf(HasSubstr("command_age_s"), HasSubstr("liveliness_lease_s"), HasSubstr("on_failure")))
+  EXPECT_THAT(first.effective,
+              AllOf(HasSubstr("command_age_s"), HasSubstr("liveliness_lease_s"), HasSubstr("on_failure")))
       << "defaults are filled in";
   const Scenario again = file_.read(first.effective);
   EXPECT_EQ(again.effective, first.effective);
@@ -186,11 +188,14 @@ TEST_F(ScenarioTest, TheDigestIsThatOfTheContentNotOfItsForm) {
   const ScenarioDigest digest = file_.read().digest;
   EXPECT_EQ(file_.read(with("name: sound", "# a comment\nname: \"sound\"  # another")).digest, digest);
   EXPECT_EQ(file_.read(with("20.0e3, floor_2: 20.0e3", "20000, floor_2: 2.0e+4")).digest, digest);
-  EXPECT_EQ(file_.read(with("{mode: lockstep, step_s: 0.001, duration_s: 0.1}",
-                            "{duration_s: 0.1, step_s: 0.001, mode: lockstep}"))
+  EXPECT_EQ(file_
+                .read(with("{mode: lockstep, step_s: 0.001, duration_s: 0.1}",
+                           "{duration_s: 0.1, step_s: 0.001, mode: lockstep}"))
                 .digest,
             digest);
-  EXPECT_EQ(file_.read(with("integrator: {type: central_difference}\n", "", with("name: sound", "name: sound\nintegrator:\n  type: central_difference")))
+  EXPECT_EQ(file_
+                .read(with("integrator: {type: central_difference}\n", "",
+                           with("name: sound", "name: sound\nintegrator:\n  type: central_difference")))
                 .digest,
             digest);
   EXPECT_EQ(file_.read(with("force_n: 150.0e3}", "force_n: 150.0e3, command_age_s: 1.0}")).digest, digest)
@@ -254,7 +259,8 @@ TEST_F(ScenarioTest, OverridesReplaceValuesAndTheLastOneWins) {
 }
 
 TEST_F(ScenarioTest, OverridesThatFitNothingAreListedWithTheNearestName) {
-  const auto errors = file_.errors(kScenarioText, {"time.step=0.002", "substructures[storey_3].id=x", "tim.step_s=1.0"});
+  const auto errors =
+      file_.errors(kScenarioText, {"time.step=0.002", "substructures[storey_3].id=x", "tim.step_s=1.0"});
   ASSERT_EQ(errors.size(), 3U);
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("--set time.step:"), HasSubstr("step_s"))));
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("--set substructures[storey_3].id:"), HasSubstr("storey_1"))));
@@ -268,7 +274,8 @@ TEST_F(ScenarioTest, ALawByItselfIsAModelForOneDegreeOfFreedom) {
   const Scenario scenario = file_.read(with(model, bilinear));
   EXPECT_EQ(scenario.substructures[1].make_model()->initial_stiffness_n_per_m()(0, 0), 3.0e6);
   const std::string two = with("[{dof: floor_2, relative_to: floor_1}]", "[{dof: floor_1}, {dof: floor_2}]");
-  EXPECT_THAT(file_.errors(with(model, bilinear, two)), Contains(HasSubstr("one for each interface degree of freedom")));
+  EXPECT_THAT(file_.errors(with(model, bilinear, two)),
+              Contains(HasSubstr("one for each interface degree of freedom")));
 }
 
 TEST_F(ScenarioTest, EveryMakerMakesAFreshPart) {

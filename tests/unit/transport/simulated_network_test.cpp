@@ -148,8 +148,10 @@ TEST(SimulatedNetwork, AnOutageCutsItsParticipantOffBothWays) {
   const auto from_b = b->event_outbox();
   const auto to_a = a->event_inbox();
   const auto to_c = c->event_inbox();
-  for (const auto& [time, is_cut_off] :
-       {std::pair{milliseconds{9}, false}, {milliseconds{10}, true}, {milliseconds{19}, true}, {milliseconds{20}, false}}) {
+  for (const auto& [time, is_cut_off] : {std::pair{milliseconds{9}, false},
+                                         {milliseconds{10}, true},
+                                         {milliseconds{19}, true},
+                                         {milliseconds{20}, false}}) {
     network.advance_to(Instant{time});
     from_a->send(numbered(1));
     from_b->send(numbered(2));

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "tests/realtime/forbidden_calls.hpp"
+#include "tests/realtime/ring_coupling.hpp"
+
+/// What has a deadline allocates, locks, logs and reads clocks nowhere, from its first to its last
+/// run: joining, arming, stepping, faults and the return to zero included. That the guards see
+/// what they are for is shown beside them, in forbidden_calls_test.cpp.
+namespace hybridtest {
+namespace {
+
+using std::chrono::microseconds;
+
+constexpr ForbiddenCalls kNone{};
+
+std::string text(const ForbiddenCalls& calls) {
+  return std::to_string(calls.allocations) + " allocations, " + std::to_string(calls.locks) + " locks, " +
+         std::to_string(calls.writes) + " writes, " + std::to_string(calls.clocks) + " looks at a clock";
+}
+
+/// A control loop on its own, told what to do by the test.
+class LoopOnRings {
+ public:
+  LoopOnRings(CouplingMode mode, bool compensates)
+      : rig_{noisy_rig(kPeriod)},
+        loop_{wide_limits(mode),
+              *rig_,
+              compensation(compensates, kPeriod),
+              EnergyErrorMonitor{InterfaceMatrix::Constant(1, 1, 4.0e6), 0.01},
+              ControlLoopPorts{requests_, reports_, signals_},
+              record_} {}
+
+  void ask(LoopRequest::Kind kind) noexcept {
+    LoopRequest request;
+    request.kind = kind;
+    requests_.send(request);
+  }
+  void target(Step step, double displacement_m) noexcept {
+    LoopRequest request;
+    request.kind = LoopRequest::Kind::target;
+    request.target.step = step;
+    request.target.model_time_s = RingCoupling::kStep_s * static_cast<double>(step);
+    request.target.displacement_m.setConstant(1, displacement_m);
+    request.target.velocity_m_per_s.setZero(1);
+    request.target.acceleration_m_per_s2.setZero(1);
+    requests_.send(request);
+  }
+  void advance() noexcept {
+    static_cast<void>(loop_.advance(now_));
+    now_ += kPeriod;
+    SignalSample sample;
+    while (signals_.take(sample)) {
+    }
+  }
+  /// Reports that waited. @param fault   set when one of them is a fault.
+  int take_reports(bool& fault) noexcept {
+    int taken = 0;
+    LoopReport report;
+    while (reports_.take(report)) {
+      fault = fault || report.kind == LoopReport::Kind::fault;
+      ++taken;
+    }
+    return taken;
+  }
+  [[nodiscard]] std::size_t rows() const noexcept { return record_.size(); }
+
+ private:
+  static constexpr Duration kPeriod = microseconds{500};
+
+  RingPort<LoopRequest> requests_{64};
+  RingPort<LoopReport> reports_{64};
+  RingPort<SignalSample> signals_{1024};
+  RowRing record_{ControlLoop::control_layout(1).columns.size(), 1U << 15U};
+  std::unique_ptr<SimulatedRig> rig_;
+  ControlLoop loop_;
+  Instant now_{};
+};
+
+/// Ten thousand control periods with late targets, then an interlock and the return to zero.
+struct LoopStory {
+  int measured = 0;
+  bool has_tripped = false;
+};
+
+LoopStory run(LoopOnRings& loop) noexcept {
+  LoopStory story;
+  loop.ask(LoopRequest::Kind::arm);
+  loop.ask(LoopRequest::Kind::start);
+  loop.target(0, 0.0);
+  Step step = 0;
+  int wait = 0;
+  for (int period = 0; period < 10000; ++period) {
+    loop.advance();
+    if (loop.take_reports(story.has_tripped) > 0) {
+      ++story.measured;
+      wait = step % 50 == 0 ? 5 : 0;  // every fiftieth target is late
+    }
+    if (wait-- != 0) continue;
+    ++step;
+    loop.target(step, 0.03 * (1.0 - std::cos(0.01 * static_cast<double>(step))));
+  }
+  loop.target(step + 1, 10.0);  // beyond every limit
+  for (int period = 0; period < 1000; ++period) loop.advance();
+  static_cast<void>(loop.take_reports(story.has_tripped));
+  loop.ask(LoopRequest::Kind::stop);
+  loop.advance();
+  return story;
+}
+
+struct PathCase {
+  CouplingMode mode;
+  bool compensates;
+};
+
+class ControlPath : public testing::TestWithParam<PathCase> {
+ protected:
+  void SetUp() override {
+    if (!can_count_forbidden_calls()) GTEST_SKIP() << "a sanitizer has these functions for itself";
+  }
+};
+
+TEST_P(ControlPath, TheControlLoopMakesNoForbiddenCall) {
+  LoopOnRings loop{GetParam().mode, GetParam().compensates};
+  LoopStory story;
+  ForbiddenCalls calls;
+  {
+    const ForbiddenCallCount count;
+    story = run(loop);
+    calls = count.calls();
+  }
+  EXPECT_EQ(calls, kNone) << text(calls);
+  // It did what it was watched for.
+  EXPECT_GE(story.measured, 1000);
+  EXPECT_TRUE(story.has_tripped);
+  EXPECT_GE(loop.rows(), 5000U);
+}
+
+TEST_P(ControlPath, AWholeTestOnQueuesMakesNoForbiddenCall) {
+  constexpr Step kLastStep = 2000;
+  RingCoupling coupling{GetParam().mode, kLastStep, GetParam().compensates};
+  ForbiddenCalls calls;
+  {
+    const ForbiddenCallCount count;
+    for (int i = 0; i < 20000 && !coupling.is_done(); ++i) coupling.advance(microseconds{500});
+    calls = count.calls();
+  }
+  EXPECT_EQ(calls, kNone) << text(calls);
+  EXPECT_EQ(coupling.report().reason, StopReason::completed);
+  EXPECT_EQ(coupling.report().completed_steps, kLastStep + 1);
+  EXPECT_GE(coupling.control_rows(), 2U * kLastStep);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, ControlPath,
+                         testing::Values(PathCase{CouplingMode::lockstep, false},
+                                         PathCase{CouplingMode::lockstep, true}, PathCase{CouplingMode::paced, false},
+                                         PathCase{CouplingMode::paced, true}),
+                         [](const auto& path) {
+                           return std::string{path.param.mode == CouplingMode::paced ? "paced" : "lockstep"} +
+                                  (path.param.compensates ? "_compensated" : "");
+                         });
+
+/// Made before the child is: what it runs must find everything in place.
+RingCoupling* watched_coupling = nullptr;
+LoopOnRings* watched_loop = nullptr;
+
+TEST(SystemCallsOfTheControlPath, AreNone) {
+  for (const CouplingMode mode : {CouplingMode::lockstep, CouplingMode::paced}) {
+    RingCoupling coupling{mode, 500, true};
+    LoopOnRings loop{mode, true};
+    watched_coupling = &coupling;
+    watched_loop = &loop;
+    const auto calls = system_calls_of([] {
+      static_cast<void>(run(*watched_loop));
+      for (int i = 0; i < 20000 && !watched_coupling->is_done(); ++i) watched_coupling->advance(microseconds{500});
+      // One system call for a test that did not come to its end, so that the parent learns of it.
+      if (!watched_coupling->is_done()) std::abort();
+    });
+    if (!calls) GTEST_SKIP() << "this kernel does not let a process turn away its own system calls";
+    std::string numbers;
+    for (const int call : *calls) numbers += " " + std::to_string(call);
+    EXPECT_TRUE(calls->empty()) << "system calls" << numbers;
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest
