@@ -7,8 +7,6 @@
 
 #include "launch/executor.hpp"
 
-#include "launch/executor.hpp"
-
 namespace hybridtest {
 
 /// What a person sees while a study runs: on a terminal one line that is rewritten, elsewhere a plain line

@@ -353,7 +353,8 @@ TEST_F(Paced, ClocksThatDriftAreMadeUpFor) {
 }
 
 TEST_F(Paced, ALongStepIsNotRepeated) {
-  const Scenario scenario = ideal({"time.duration_s=0.02", "time.time_scale=1000.0"});
+  const Scenario scenario =
+      ideal({"time.duration_s=0.02", "time.time_scale=1000.0", "substructures[storey_1].limits.command_age_s=5.0"});
   const KeptSimulation run = keep_simulation(scenario, SimulationSettings{});
   EXPECT_EQ(run.result.coordinator.reason, StopReason::completed) << run.log();
   EXPECT_EQ(run.count(EventCode::command_repeated), 0U);

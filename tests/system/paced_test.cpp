@@ -53,7 +53,9 @@ TEST_F(Paced, TakesItsTimeAndComesNearTheLockstepAnswer) {
   std::cout << "paced: " << wall_s.back() << " s of wall time; at most " << 1e3 * distance_m
             << " mm from lockstep, peak " << 1e3 * peak_m << " mm; tracking error "
             << summary["substructures"][0]["tracking"] << '\n';
-  EXPECT_LE(distance_m, 0.1 * peak_m);
+  // 1.3 % measured: in lockstep the rig moves one 10 ms step at a time and is measured on arrival, here it moves
+  // on while the next target is on its way. Targets that a busy machine delivers late add some.
+  EXPECT_LE(distance_m, 0.05 * peak_m);
 }
 
 }  // namespace
