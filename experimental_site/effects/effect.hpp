@@ -1,0 +1,40 @@
+#pragma once
+
+namespace hybridtest {
+
+/// Motion of one degree of freedom.
+struct Motion {
+  double displacement_m = 0.0;
+  double velocity_m_per_s = 0.0;
+  double acceleration_m_per_s2 = 0.0;
+};
+
+/// What an effect sees of its stage at one sample, whatever other effects do to it.
+struct StageSample {
+  double time_s = 0.0;   // since the beginning of the record or since arming
+  Motion motion;         // into the stage: command (transfer system) or actuator motion (the others)
+  double force_n = 0.0;  // force of the specimen at the sample before; what loads the actuator
+};
+
+/// An effect of the real world on one stage of a simulated site: command -> actuator (transfer
+/// system), actuator motion -> force (specimen), true -> read value (sensors).
+///
+/// The stages of a site are a base (a transfer system, a law, a perfect sensor) with a list of effects.
+/// In the order of the list each may change the motion that goes into the base, then, in the
+/// same order, what comes out. Stepped once per sample; allocates nothing after construction.
+/// Deterministic: a random one takes its seed as a parameter.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  /// Changes what the base is given.
+  virtual void before(const StageSample& /*sample*/, Motion& /*motion*/) noexcept {}
+  /// Changes what comes out: displacement [m] of a transfer system or displacement sensor, force
+  /// [N], positive when it resists a positive displacement, of a specimen or force sensor.
+  /// @param motion   as the base was given it.
+  virtual void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& /*output*/) noexcept {}
+  /// As new.
+  virtual void reset() noexcept = 0;
+};
+
+}  // namespace hybridtest

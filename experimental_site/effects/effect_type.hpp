@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "experimental_site/effects/effect.hpp"
+
+namespace hybridtest {
+
+/// Where along the chain of a hybrid test an effect acts.
+enum class EffectInterface : std::uint8_t {
+  network,
+  compensator,
+  transfer_system,
+  displacement_sensor,
+  specimen,
+  force_sensor,
+  numerical_substructure,
+};
+
+/// As written in scenarios and diagnoses: `transfer_system`.
+[[nodiscard]] std::string_view name_of(EffectInterface interface) noexcept;
+
+/// What one unit of a parameter is measured in, so that a search can scale it by a recording: a
+/// friction force by the measured force, a clearance by the measured displacement.
+enum class ParameterScale : std::uint8_t {
+  one,             // a ratio or exponent: no scale
+  displacement_m,  // peak displacement
+  velocity_m_per_s,
+  force_n,            // peak force
+  stiffness_n_per_m,  // peak force over peak displacement
+  damping_n_s_per_m,  // peak force over peak velocity
+  mass_kg,            // peak force over peak acceleration
+  time_s,             // a second
+  duration_s,         // length of the recording
+  frequency_hz,
+};
+
+struct EffectParameter {
+  std::string_view name;  // its unit last: `friction_force_n`
+  std::string_view unit;  // "N"; "" for a ratio
+  std::string_view what;  // in half a line
+  // What is accepted in a scenario, both ends included.
+  double low = 0.0;
+  double high = 0.0;
+  // Where a search looks, in units of `scale` of the recording; within low and high.
+  ParameterScale scale = ParameterScale::one;
+  double search_low = 0.0;
+  double search_high = 0.0;
+  // The value at which the effect is absent; NaN when no value of this parameter alone removes it.
+  double neutral = 0.0;
+  // The change of the stage's output is proportional to it, the others held (variable projection).
+  bool is_linear = false;
+};
+
+/// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
+/// augmented model share of an effect.
+struct EffectType {
+  EffectInterface interface {};
+  std::string_view name;      // `coulomb_friction`
+  std::string_view equation;  // one line
+  std::string_view source;    // paper or textbook
+  std::span<const EffectParameter> parameters;
+  /// @param values   one per parameter, in their order, within [low, high].
+  std::unique_ptr<Effect> (*make)(std::span<const double> values, double sample_period_s) = nullptr;
+  /// For a sensor: what makes the true motion of a read one, to drive a specimen by what was
+  /// measured; null where that is not possible (quantization) or has no meaning.
+  std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
+};
+
+/// Every effect there is, in the order of the interfaces.
+[[nodiscard]] std::span<const EffectType> effect_library() noexcept;
+
+/// nullptr when there is none of that name.
+[[nodiscard]] const EffectType* find_effect(EffectInterface interface, std::string_view name) noexcept;
+
+}  // namespace hybridtest
