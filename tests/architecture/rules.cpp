@@ -40,7 +40,7 @@ const std::vector<Part>& parts() {
       {"numerical_substructure", {"core", "mechanics"}},
       {"experimental_site", {"core", "mechanics", "compensation"}},
       {"diagnosis",
-       {"core", "mechanics", "compensation", "coordinator", "experimental_site/rigs",
+       {"core", "mechanics", "compensation", "coordinator", "experimental_site/rigs", "experimental_site/effects",
         "experimental_site/transfer_systems", "experimental_site/sensors"}},
       {"transport", {"core"}},
       {"recording", {"core"}},

@@ -1,0 +1,17 @@
+#include "diagnosis/recording.hpp"
+
+namespace hybridtest {
+
+std::string_view column_name(Channel channel) noexcept {
+  switch (channel) {
+    case Channel::sent_displacement: return "sent_displacement_m";
+    case Channel::target_displacement: return "target_displacement_m";
+    case Channel::command_displacement: return "command_displacement_m";
+    case Channel::measured_displacement: return "measured_displacement_m";
+    case Channel::measured_acceleration: return "measured_acceleration_m_per_s2";
+    case Channel::measured_force: return "measured_force_n";
+  }
+  return "";
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hybridtest {
+
+/// A signal of one degree of freedom of a site, in the order in which it comes about.
+enum class Channel : std::uint8_t {
+  sent_displacement,      // [m] by the coordinator
+  target_displacement,    // [m] at the site, after the network
+  command_displacement,   // [m] to the actuator, after the compensator
+  measured_displacement,  // [m]
+  measured_acceleration,  // [m/s2]
+  measured_force,         // [N] positive when it resists a positive displacement
+};
+inline constexpr std::size_t kChannels = 6;
+
+/// As a column is headed: `measured_force_n`.
+[[nodiscard]] std::string_view column_name(Channel channel) noexcept;
+
+/// The channels that were recorded of one degree of freedom; those that were not are empty.
+struct DofRecording {
+  std::array<std::vector<double>, kChannels> samples;
+
+  [[nodiscard]] const std::vector<double>& of(Channel channel) const noexcept {
+    return samples[static_cast<std::size_t>(channel)];
+  }
+  [[nodiscard]] std::vector<double>& of(Channel channel) noexcept { return samples[static_cast<std::size_t>(channel)]; }
+  [[nodiscard]] bool has(Channel channel) const noexcept { return !of(channel).empty(); }
+};
+
+enum class RecordingRole : std::uint8_t { fit, held_out };
+
+/// A recording that has passed the intake's checks: evenly sampled, finite, without gaps.
+struct Recording {
+  std::string file;    // as the user named it
+  std::string sha256;  // of the file, hexadecimal
+  RecordingRole role = RecordingRole::fit;
+  double sample_period_s = 0.0;
+  std::size_t samples = 0;
+  std::vector<DofRecording> dofs;
+};
+
+}  // namespace hybridtest
