@@ -72,7 +72,7 @@ const std::vector<Library>& libraries() {
       {"HDF5", {"hdf5.h", "H5", "hdf5/", "hdf5_hl.h"}, {"recording", "tests"}},
       {"nlohmann-json", {"nlohmann/"}, {"recording", "tests"}},
       {"spdlog", {"spdlog/"}, {"launch"}},
-      {"fmt", {"fmt/"}, {"launch", "tests", "benchmarks"}},
+      {"fmt", {"fmt/"}, {"launch", "diagnosis", "tests", "benchmarks"}},
       {"CLI11", {"CLI/"}, {"launch", "benchmarks"}},
       {"OpenSSL", {"openssl/"}, {"launch"}},
       {"GoogleTest", {"gtest/", "gmock/"}, {"tests"}},
