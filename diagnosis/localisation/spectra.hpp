@@ -9,8 +9,8 @@ namespace hybridtest {
 /// One-sided spectra of two signals at evenly spaced frequencies, from zero to half the sampling rate.
 struct Spectra {
   double resolution_hz = 0.0;
-  std::size_t averages = 0;  // segments behind every value
-  std::vector<double> input;   // power spectral density, unit squared per Hz
+  std::size_t averages = 0;   // segments behind every value
+  std::vector<double> input;  // power spectral density, unit squared per Hz
   std::vector<double> output;
   std::vector<std::complex<double>> cross;  // of output against input
 

@@ -64,11 +64,12 @@ TEST_F(RunRecording, HoldsTheSitesControlTableAndWhatWasSent) {
   std::size_t compared = 0;
   for (std::size_t i = 0; i < sent.size(); ++i) {
     if (model_time_s[i] <= 0.0 || model_time_s[i] > 3.9) continue;
-    worst_m = std::max(worst_m, std::abs(sent[i]-target[i]));
+    worst_m = std::max(worst_m, std::abs(sent[i] - target[i]));
     ++compared;
   }
   EXPECT_GT(compared, 3000U);
-  printf("%g %g\n",worst_m,peak_m);
+  // Between two steps the site goes on from the velocity it has, the cubic here from the coordinator's.
+  EXPECT_LT(worst_m, 1e-6 * peak_m);
 }
 
 TEST_F(RunRecording, TheExportedControlTableIsTheSameRecording) {
