@@ -48,25 +48,28 @@ TEST_F(RunRecording, HoldsTheSitesControlTableAndWhatWasSent) {
   EXPECT_EQ(dof.of(Channel::command_displacement), site.column("control", "command_displacement_m"));
   EXPECT_EQ(dof.of(Channel::measured_force), site.column("control", "measured_force_n"));
   EXPECT_EQ(recording.samples, site.row_count("control"));
-  EXPECT_NEAR(recording.sample_period_s, 0.001, 1e-9) << "the control rate is rounded up to whole periods of a step";
+  EXPECT_DOUBLE_EQ(recording.sample_period_s, 0.0005) << "1024 Hz, rounded up to whole periods of a step of 1 ms";
 
   std::ifstream file{run_file(directory_.path(), "storey_1"), std::ios::binary};
   const std::string bytes{std::istreambuf_iterator<char>{file}, std::istreambuf_iterator<char>{}};
   EXPECT_EQ(recording.sha256, hex(sha256(bytes)));
 
-  // One control period per step and no network trouble: what arrived is what was sent, to the rounding of time.
+  // No network trouble: what arrived is what was sent.
   const std::vector<double>& sent = dof.of(Channel::sent_displacement);
   const std::vector<double>& target = dof.of(Channel::target_displacement);
   const double peak_m = std::abs(*std::ranges::max_element(sent, {}, [](double value) { return std::abs(value); }));
   ASSERT_GT(peak_m, 1e-3);
   const std::vector<double> model_time_s = site.column("control", "model_time_s");
+  double worst_m = 0.0;
   std::size_t compared = 0;
   for (std::size_t i = 0; i < sent.size(); ++i) {
     if (model_time_s[i] <= 0.0 || model_time_s[i] > 3.9) continue;
-    ASSERT_NEAR(sent[i], target[i], 1e-9 * peak_m) << "at " << model_time_s[i] << " s";
+    worst_m = std::max(worst_m, std::abs(sent[i] - target[i]));
     ++compared;
   }
   EXPECT_GT(compared, 3000U);
+  // Between two steps the site goes on from the velocity it has, the cubic here from the coordinator's.
+  EXPECT_LT(worst_m, 1e-6 * peak_m);
 }
 
 TEST_F(RunRecording, TheExportedControlTableIsTheSameRecording) {
@@ -85,11 +88,11 @@ TEST_F(RunRecording, TheExportedControlTableIsTheSameRecording) {
 TEST_F(RunRecording, OfSeveralSitesOneIsNamed) {
   simulate("two_storey_two_sites", {});
   EXPECT_THAT([&] { (void)read_recording(directory_.path(), RecordingRole::fit); },
-              testing::ThrowsMessage<ConfigError>(testing::HasSubstr("storey_1, storey_2")));
+              testing::ThrowsMessage<ConfigError>(testing::HasSubstr("first_storey_columns, second_storey_columns")));
   EXPECT_THAT([&] { (void)read_recording(directory_.path(), RecordingRole::fit, "storey_9"); },
               testing::ThrowsMessage<ConfigError>(testing::HasSubstr("storey_9: no such site")));
-  const Recording second = read_recording(directory_.path(), RecordingRole::fit, "storey_2");
-  const RunFileReader site{run_file(directory_.path(), "storey_2")};
+  const Recording second = read_recording(directory_.path(), RecordingRole::fit, "second_storey_columns");
+  const RunFileReader site{run_file(directory_.path(), "second_storey_columns")};
   EXPECT_EQ(second.dofs[0].of(Channel::measured_force), site.column("control", "measured_force_n"));
 }
 
