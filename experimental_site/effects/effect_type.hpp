@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -45,7 +46,8 @@ struct EffectParameter {
   // What is accepted in a scenario, both ends included.
   double low = 0.0;
   double high = 0.0;
-  // Where a search looks, in units of `scale` of the recording; within low and high.
+  // Where a search looks, in units of `scale` of the recording; within low and high. Both the
+  // same: nothing to search, the fallback is used.
   ParameterScale scale = ParameterScale::one;
   double search_low = 0.0;
   double search_high = 0.0;
@@ -53,6 +55,8 @@ struct EffectParameter {
   double neutral = 0.0;
   // The change of the stage's output is proportional to it, the others held (variable projection).
   bool is_linear = false;
+  // What a scenario that leaves it out gets; NaN when it has to be given.
+  double fallback = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
@@ -64,9 +68,10 @@ struct EffectType {
   std::string_view source;    // paper or textbook
   std::span<const EffectParameter> parameters;
   /// @param values   one per parameter, in their order, within [low, high].
+  /// null for what changes the coordinator's own model.
   std::unique_ptr<Effect> (*make)(std::span<const double> values, double sample_period_s) = nullptr;
-  /// For a sensor: what makes the true motion of a read one, to drive a specimen by what was
-  /// measured; null where that is not possible (quantization) or has no meaning.
+  /// For a sensor: an effect whose before() makes the true motion of a read one, to drive a specimen
+  /// by what was measured; null where that is not possible (quantization) or has no meaning.
   std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
 };
 
