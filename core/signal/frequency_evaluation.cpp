@@ -1,4 +1,4 @@
-#include "recording/summary/frequency_evaluation.hpp"
+#include "core/signal/frequency_evaluation.hpp"
 
 #include <algorithm>
 #include <cmath>
