@@ -36,9 +36,19 @@ inline constexpr double kDetectionGain = 5.0;
 inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
 /// Of the gap: with less left than this nobody looks for a further effect.
-inline constexpr double kNothingLeft = 0.01;
+inline constexpr double kNothingLeft = 0.002;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;
+
+/// A gap below this share of its floor [rms over rms] is none.
+inline constexpr double kGapOverFloor = 0.3;
+/// An interface is at fault when its residual exceeds its floor by this factor.
+inline constexpr double kFaultOverFloor = 1.15;
+/// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
+inline constexpr double kNamedLeaves = 0.0625;
+inline constexpr double kPartialLeaves = 0.3;
+/// A set holds the most probable effects until they are this probable together.
+inline constexpr double kCredible = 0.9;
 
 }  // namespace hybridtest::tuning

@@ -19,8 +19,8 @@ constexpr double kRidge = 1e-9;
 
 /// What fit and held-out residuals are linear in around the optimum.
 struct Linearisation {
-  Eigen::MatrixXd columns;                 // change of the prediction per searched, linear, nuisance parameter
-  std::vector<std::size_t> free;           // of them, those not held at a bound
+  Eigen::MatrixXd columns;        // change of the prediction per searched, linear, nuisance parameter
+  std::vector<std::size_t> free;  // of them, those not held at a bound
 };
 
 Linearisation linearise(const VariableProjection& projection, const Eigen::VectorXd& places,
@@ -65,17 +65,16 @@ Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
   return normal;
 }
 
-void hold_out(const VariableProjection& projection, const IdentificationProblem& problem,
-              const Linearisation& linear, const Eigen::VectorXd& residual, FitOutcome& outcome) {
+void hold_out(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
+              const Eigen::VectorXd& residual, FitOutcome& outcome) {
   const Eigen::MatrixXd normal = linear.columns.transpose() * linear.columns;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const std::size_t position = projection.touched()[t];
     const FitSegment& fit = problem.segments[position];
     const double unweighted = 1.0 / (fit.weight * fit.weight);
     SegmentResult& result = outcome.segments[position];
-    result.mean_square =
-        unweighted * residual.segment(projection.first_row(t), fit.measured.size()).squaredNorm() /
-        static_cast<double>(fit.measured.size());
+    result.mean_square = unweighted * residual.segment(projection.first_row(t), fit.measured.size()).squaredNorm() /
+                         static_cast<double>(fit.measured.size());
     for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b) {
       const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
@@ -99,8 +98,7 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
     for (const double value : effect.values) result.back().push_back({.value = value});
   }
   const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, projection.rows() - linear.columns.cols()));
-  const double variance =
-      solution.residual.squaredNorm() / (freedom * effective_share(solution.residual));
+  const double variance = solution.residual.squaredNorm() / (freedom * effective_share(solution.residual));
   const Eigen::MatrixXd covariance =
       variance * regularised(linear.columns.transpose() * linear.columns)
                      .ldlt()
@@ -113,9 +111,9 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
     if (index < plan.searched.size()) {
       const SearchedParameter& searched = plan.searched[index];
       const double place = places[static_cast<Eigen::Index>(index)];
-      const double per_place = (searched.at(std::min(1.0, place + kDifferenceStep)) -
-                                searched.at(std::max(0.0, place - kDifferenceStep))) /
-                               (2.0 * kDifferenceStep);
+      const double per_place =
+          (searched.at(std::min(1.0, place + kDifferenceStep)) - searched.at(std::max(0.0, place - kDifferenceStep))) /
+          (2.0 * kDifferenceStep);
       result[searched.effect][searched.parameter].standard_error = deviation * std::abs(per_place);
     } else if (index - plan.searched.size() < plan.linear.size()) {
       const LinearParameter& parameter = plan.linear[index - plan.searched.size()];

@@ -24,8 +24,8 @@ double longest_cycle_s(const Segment& segment) {
 
 std::vector<Eigen::Index> blocks_of(const FitSegment& fit) {
   const double duration_s = fit.segment.period_s * static_cast<double>(fit.segment.input.size());
-  const double blocks = std::clamp(std::floor(duration_s / longest_cycle_s(fit.segment)), tuning::kFewestBlocks,
-                                   tuning::kMostBlocks);
+  const double blocks =
+      std::clamp(std::floor(duration_s / longest_cycle_s(fit.segment)), tuning::kFewestBlocks, tuning::kMostBlocks);
   std::vector<Eigen::Index> begins;
   for (double block = 0.0; block <= blocks; ++block) {
     begins.push_back(static_cast<Eigen::Index>(std::round(static_cast<double>(fit.measured.size()) * block / blocks)));

@@ -14,13 +14,13 @@ namespace hybridtest {
 struct FitSegment {
   Segment segment;
   std::size_t averaged = 1;
-  Eigen::VectorXd measured;           // averaged
-  Eigen::VectorXd baseline;           // likewise, of the model as the user gave it
-  Eigen::MatrixXd nuisance;           // changes that a slightly wrong model makes; see nuisance_types
+  Eigen::VectorXd measured;                       // averaged
+  Eigen::VectorXd baseline;                       // likewise, of the model as the user gave it
+  Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
   std::vector<const EffectType*> nuisance_types;  // one per column
-  double weight = 1.0;                // one over what counts as a standard deviation here
-  double floor = 0.0;                 // noise of `measured`, after averaging
-  std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
+  double weight = 1.0;                            // one over what counts as a standard deviation here
+  double floor = 0.0;                             // noise of `measured`, after averaging
+  std::vector<Eigen::Index> block_begins;         // held-out blocks, one more than there are
 
   [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
 };

@@ -36,6 +36,7 @@ struct SearchPlan {
   bool linear_ones_remove_all = false;  // without them every effect is absent
 };
 
-[[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects);
+[[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
+                                     const std::vector<const EffectType*>& effects);
 
 }  // namespace hybridtest

@@ -16,14 +16,10 @@ constexpr std::array kDisplacementChain{Channel::sent_displacement, Channel::tar
 
 EffectInterface interface_ending_in(Channel channel) noexcept {
   switch (channel) {
-    case Channel::target_displacement:
-      return network;
-    case Channel::command_displacement:
-      return compensator;
-    case Channel::measured_force:
-      return specimen;
-    default:
-      return transfer_system;
+    case Channel::target_displacement: return network;
+    case Channel::command_displacement: return compensator;
+    case Channel::measured_force: return specimen;
+    default: return transfer_system;
   }
 }
 
@@ -37,9 +33,8 @@ double root_mean_square(std::span<const double> values) {
 /// sizes, which for a specimen is its secant stiffness.
 double input_floor(const DofRecording& dof, Channel from, Channel to, double noise_share) {
   const double size = root_mean_square(dof.of(from));
-  return size > 0.0
-             ? root_mean_square(dof.of(to)) / size * white_noise_level(dof.of(from)) * std::sqrt(noise_share)
-             : 0.0;
+  return size > 0.0 ? root_mean_square(dof.of(to)) / size * white_noise_level(dof.of(from)) * std::sqrt(noise_share)
+                    : 0.0;
 }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
@@ -58,8 +53,7 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
   }
-  const double from_input =
-      to == Channel::measured_force ? input_floor(dof, from, to, polynomial.noise_share()) : 0.0;
+  const double from_input = to == Channel::measured_force ? input_floor(dof, from, to, polynomial.noise_share()) : 0.0;
   segment.floor = std::hypot(white_noise_level(segment.measured), from_input);
   return segment;
 }
@@ -67,19 +61,14 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
 bool passes(const Segment& segment, EffectInterface stage) noexcept {
   const auto lies_between = [&](Channel in, Channel out) { return segment.from <= in && segment.to >= out; };
   switch (stage) {
-    case network:
-      return lies_between(Channel::sent_displacement, Channel::target_displacement);
-    case compensator:
-      return lies_between(Channel::target_displacement, Channel::command_displacement);
-    case transfer_system:
-      return segment.to == Channel::measured_displacement;
+    case network: return lies_between(Channel::sent_displacement, Channel::target_displacement);
+    case compensator: return lies_between(Channel::target_displacement, Channel::command_displacement);
+    case transfer_system: return segment.to == Channel::measured_displacement;
     case displacement_sensor:
       return segment.to == Channel::measured_displacement || segment.from == Channel::measured_displacement;
     case specimen:
-    case force_sensor:
-      return segment.to == Channel::measured_force;
-    case numerical_substructure:
-      return false;
+    case force_sensor: return segment.to == Channel::measured_force;
+    case numerical_substructure: return false;
   }
   return false;
 }

@@ -14,24 +14,16 @@ double ratio_or_one(double numerator, double denominator) noexcept {
 
 double SignalScales::of(ParameterScale scale) const noexcept {
   switch (scale) {
-    case ParameterScale::displacement_m:
-      return ratio_or_one(displacement_m, 1.0);
-    case ParameterScale::velocity_m_per_s:
-      return ratio_or_one(velocity_m_per_s, 1.0);
-    case ParameterScale::force_n:
-      return ratio_or_one(force_n, 1.0);
-    case ParameterScale::stiffness_n_per_m:
-      return ratio_or_one(force_n, displacement_m);
-    case ParameterScale::damping_n_s_per_m:
-      return ratio_or_one(force_n, velocity_m_per_s);
-    case ParameterScale::mass_kg:
-      return ratio_or_one(force_n, acceleration_m_per_s2);
-    case ParameterScale::duration_s:
-      return ratio_or_one(duration_s, 1.0);
+    case ParameterScale::displacement_m: return ratio_or_one(displacement_m, 1.0);
+    case ParameterScale::velocity_m_per_s: return ratio_or_one(velocity_m_per_s, 1.0);
+    case ParameterScale::force_n: return ratio_or_one(force_n, 1.0);
+    case ParameterScale::stiffness_n_per_m: return ratio_or_one(force_n, displacement_m);
+    case ParameterScale::damping_n_s_per_m: return ratio_or_one(force_n, velocity_m_per_s);
+    case ParameterScale::mass_kg: return ratio_or_one(force_n, acceleration_m_per_s2);
+    case ParameterScale::duration_s: return ratio_or_one(duration_s, 1.0);
     case ParameterScale::one:
     case ParameterScale::time_s:
-    case ParameterScale::frequency_hz:
-      break;
+    case ParameterScale::frequency_hz: break;
   }
   return 1.0;
 }

@@ -16,8 +16,8 @@ struct Bounds {
   double high = std::numeric_limits<double>::infinity();
 };
 
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right, const std::vector<bool>& held,
-                              const Eigen::VectorXd& fixed) {
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
+                              const std::vector<bool>& held, const Eigen::VectorXd& fixed) {
   Eigen::MatrixXd matrix = normal;
   Eigen::VectorXd vector = right;
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
@@ -133,7 +133,8 @@ Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places, con
   return stacked(settings(places, solution)) + nuisance_ * solution.coefficients.tail(nuisance_.cols());
 }
 
-std::vector<EffectSetting> VariableProjection::settings(const Eigen::VectorXd& places, const Projected& solution) const {
+std::vector<EffectSetting> VariableProjection::settings(const Eigen::VectorXd& places,
+                                                        const Projected& solution) const {
   std::vector<EffectSetting> effects = searched_at(places);
   for (std::size_t i = 0; i < plan_.linear.size(); ++i) {
     const LinearParameter& linear = plan_.linear[i];

@@ -16,7 +16,8 @@ namespace {
 
 /// A random effect leaves no path that a fit could follow.
 bool is_random(const EffectType& effect) {
-  return std::ranges::any_of(effect.parameters, [](const EffectParameter& parameter) { return parameter.name == "seed"; });
+  return std::ranges::any_of(effect.parameters,
+                             [](const EffectParameter& parameter) { return parameter.name == "seed"; });
 }
 
 std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) {
@@ -64,8 +65,8 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem) {
   std::vector<const EffectType*> effects;
   for (const EffectType& effect : effect_library()) {
-    const bool touches = std::ranges::any_of(
-        problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
+    const bool touches =
+        std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
     if (touches && effect.make != nullptr && !is_random(effect)) effects.push_back(&effect);
   }
   return effects;

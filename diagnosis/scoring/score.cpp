@@ -19,11 +19,9 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
 }
 
 GapEnergy gap_energy(const FitSegment& segment, const SegmentResult& result) {
-  const double variance =
-      segment.measured.squaredNorm() / static_cast<double>(segment.measured.size());
+  const double variance = segment.measured.squaredNorm() / static_cast<double>(segment.measured.size());
   if (variance <= 0.0) return {};
-  return {.total = result.held_out_mean_square(segment) / variance,
-          .floor = segment.floor * segment.floor / variance};
+  return {.total = result.held_out_mean_square(segment) / variance, .floor = segment.floor * segment.floor / variance};
 }
 
 GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& outcome) {

@@ -48,7 +48,7 @@ LocalPolynomial::LocalPolynomial(std::size_t half_width, double sample_period_s)
   for (Eigen::Index row = 0; row < points; ++row) {
     const double t = place(row);
     Eigen::Matrix<double, 3, kCoefficients> evaluate;
-    evaluate << 1.0, t, t * t, t * t * t, t * t * t * t,                                //
+    evaluate << 1.0, t, t * t, t * t * t, t * t * t * t,                                      //
         0.0, 1.0 / unit_s, 2.0 * t / unit_s, 3.0 * t * t / unit_s, 4.0 * t * t * t / unit_s,  //
         0.0, 0.0, 2.0 / (unit_s * unit_s), 6.0 * t / (unit_s * unit_s), 12.0 * t * t / (unit_s * unit_s);
     weights_.middleRows(3 * row, 3) = evaluate * fit;
@@ -94,8 +94,7 @@ std::size_t widest_faithful_half_width(std::span<const double> values) {
   // Rounding of the values themselves.
   constexpr double kRounding = 1e-24;
   constexpr std::array<std::size_t, 9> kHalfWidths{3, 4, 5, 7, 10, 14, 20, 28, 40};
-  const double allowed =
-      kFaithful * implied_variance(values, kHalfWidths.front()) + kRounding * mean_square(values);
+  const double allowed = kFaithful * implied_variance(values, kHalfWidths.front()) + kRounding * mean_square(values);
   std::size_t widest = kHalfWidths.front();
   for (const std::size_t half_width : kHalfWidths) {
     if (2 * half_width + 1 > values.size() || implied_variance(values, half_width) > allowed) break;

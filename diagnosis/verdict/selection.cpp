@@ -25,7 +25,8 @@ std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& without, const FitOutcome& with) {
   const double gain = held_out_score(problem, with) - held_out_score(problem, without);
   const double left = gap_energy(problem, with).excess();
-  return gain > tuning::kAnotherEffectGain && left < tuning::kAnotherEffectLeaves * gap_energy(problem, without).excess();
+  return gain > tuning::kAnotherEffectGain &&
+         left < tuning::kAnotherEffectLeaves * gap_energy(problem, without).excess();
 }
 
 /// The best pair that one of the leading effects is part of.
