@@ -51,7 +51,8 @@ std::vector<ListedEffect> read_effects(Section& section, const std::vector<Effec
 
 const std::vector<EffectInterface>& site_interfaces() {
   using enum EffectInterface;
-  static const std::vector<EffectInterface> interfaces{transfer_system, displacement_sensor, specimen, force_sensor};
+  static const std::vector<EffectInterface> interfaces{network,  compensator, transfer_system, displacement_sensor,
+                                                       specimen, force_sensor};
   return interfaces;
 }
 

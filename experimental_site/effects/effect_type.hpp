@@ -37,6 +37,9 @@ enum class ParameterScale : std::uint8_t {
   time_s,             // a second
   duration_s,         // length of the recording
   frequency_hz,
+  damping_n_s2_per_m2,  // peak force over the square of the peak velocity
+  stiffness_n_per_m3,   // peak force over the cube of the peak displacement
+  compliance_m_per_n,   // peak displacement over peak force
 };
 
 struct EffectParameter {

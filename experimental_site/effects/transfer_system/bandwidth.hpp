@@ -4,6 +4,7 @@
 #include <array>
 
 #include "experimental_site/effects/effect_type.hpp"
+#include "experimental_site/effects/first_order_lag.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
 
 namespace hybridtest {
@@ -44,10 +45,16 @@ class Bandwidth final : public Effect {
   void reset() noexcept override;
 
  private:
+  bool is_resonant_ = false;
+  // Real poles: the difference of two lags.
+  FirstOrderLag slow_;
+  FirstOrderLag fast_;
+  double slow_share_ = 1.0;
+  double fast_share_ = 0.0;
+  // Otherwise: displacement and T times the velocity.
   Eigen::Matrix2d transition_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d from_previous_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d from_newest_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d output_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
   double previous_m_ = 0.0;
 };
