@@ -212,6 +212,8 @@ SimulatedRig::SensorNoise read_sensors(Section section) {
   return noise;
 }
 
+}  // namespace
+
 RigReading read_simulated_rig(Section& section, int dofs) {
   std::vector<TransferSystemReading> transfer_systems;
   for (const Section& entry : section.sections("transfer_system", true)) {
@@ -233,8 +235,6 @@ RigReading read_simulated_rig(Section& section, int dofs) {
   };
   return reading;
 }
-
-}  // namespace
 
 Maker<Law> read_law(Section section) { return read_type(section, laws()); }
 
@@ -262,14 +262,6 @@ Maker<SubstructureModel> read_model(Section section, int dofs, const std::filesy
   }
   section.finish();
   return maker;
-}
-
-RigReading read_rig(Section section, int dofs) {
-  static_cast<void>(section.choice("type", {"simulated"}));
-  RigReading reading = read_simulated_rig(section, dofs);
-  reading.type = "simulated";
-  section.finish();
-  return reading;
 }
 
 std::string read_integrator_type(Section section) {
