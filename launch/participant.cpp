@@ -99,6 +99,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   const ControlLoopSettings settings = loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
   rig_ = substructure.make_rig(control_period_s);
+  if (!substructure.site.rig_tables.empty()) rig_->record_to(surroundings.sink);
   rig_->connect();
   // A twentieth of the displacement limit: smaller motion does not scale the energy error.
   EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
@@ -115,7 +116,9 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
 
 std::vector<TableLayout> SiteParticipant::tables(const SubstructureScenario& substructure) {
   const int dofs = static_cast<int>(substructure.interface.size());
-  return {SiteLink::steps_layout(dofs), ControlLoop::control_layout(dofs)};
+  std::vector<TableLayout> tables{SiteLink::steps_layout(dofs), ControlLoop::control_layout(dofs)};
+  tables.insert(tables.end(), substructure.site.rig_tables.begin(), substructure.site.rig_tables.end());
+  return tables;
 }
 
 std::unique_ptr<Participant> make_substructure_participant(const Scenario& scenario,

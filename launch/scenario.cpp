@@ -204,13 +204,19 @@ std::vector<Reading> read_each(Section& section, std::string_view key, std::size
   return readings;
 }
 
-void read_site(Section& section, const TimeScenario& time, SubstructureScenario& substructure) {
+void read_site(Section& section, const TimeScenario& time, const std::filesystem::path& directory,
+               SubstructureScenario& substructure) {
   const auto dofs = substructure.interface.size();
   SiteScenario& site = substructure.site;
   substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
-  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs));
+  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory);
   site.rig_type = rig.type;
+  site.rig_is_elsewhere = rig.is_elsewhere;
+  site.rig_tables = std::move(rig.tables);
   site.transfer_delay_s = rig.transfer_delay_s;
+  if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
+    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
+  }
   substructure.make_rig = std::move(rig.make);
   site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
 
@@ -247,7 +253,7 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   if (is_numerical) {
     substructure.make_model = read_model(section.section("model"), dofs, directory);
   } else {
-    read_site(section, scenario.time, substructure);
+    read_site(section, scenario.time, directory, substructure);
   }
   section.finish();
   return substructure;

@@ -42,8 +42,10 @@ struct SiteScenario {
   SiteLimits limits;
   double return_time_s = 0.0;
   std::string rig_type;
-  double compensated_delay_s = 0.0;  // what the compensator makes up for, for the preflight
-  double transfer_delay_s = 0.0;     // low-frequency delay of a simulated rig, for the preflight
+  bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
+  std::vector<TableLayout> rig_tables;  // that the rig records by itself
+  double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
+  double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
 };
 
 struct SubstructureScenario {
