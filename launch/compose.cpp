@@ -1,19 +1,10 @@
 #include "launch/compose.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "coordinator/central_difference.hpp"
 #include "coordinator/explicit_newmark.hpp"
-#include "experimental_site/rigs/elastic_specimen.hpp"
-#include "experimental_site/rigs/law_specimen.hpp"
-#include "experimental_site/rigs/simulated_rig.hpp"
-#include "experimental_site/transfer_systems/delay.hpp"
-#include "experimental_site/transfer_systems/first_order.hpp"
-#include "experimental_site/transfer_systems/ideal.hpp"
-#include "experimental_site/transfer_systems/second_order.hpp"
+#include "launch/compose_simulated_rig.hpp"
 #include "launch/named_type.hpp"
 #include "mechanics/bilinear.hpp"
 #include "mechanics/bouc_wen.hpp"
@@ -142,101 +133,15 @@ Maker<SubstructureModel> read_shear_building(Section& section, int dofs) {
   return [storeys, base] { return std::make_unique<ShearBuilding>(make_all(storeys), base); };
 }
 
-using TransferSystemMaker = std::function<std::unique_ptr<TransferSystem>(double control_period_s)>;
-
-struct TransferSystemReading {
-  TransferSystemMaker make;
-  double delay_s = 0.0;  // at low frequency
-};
-
-TransferSystemReading read_ideal(Section&) {
-  return {[](double) { return std::make_unique<Ideal>(); }, 0.0};
-}
-
-TransferSystemReading read_delay(Section& section) {
-  const double delay_s = section.number("delay_s", {.low = 0.0, .high = 10.0});
-  return {[delay_s](double period_s) { return std::make_unique<Delay>(from_seconds(delay_s), from_seconds(period_s)); },
-          delay_s};
-}
-
-TransferSystemReading read_first_order(Section& section) {
-  const double time_constant_s = section.has("time_constant_s")
-                                     ? section.number("time_constant_s", kPositive)
-                                     : 1.0 / (2.0 * std::numbers::pi * section.number("bandwidth_hz", kPositive));
-  return {[time_constant_s](double period_s) {
-            return std::make_unique<FirstOrder>(time_constant_s, from_seconds(period_s));
-          },
-          time_constant_s};
-}
-
-TransferSystemReading read_second_order(Section& section) {
-  const SecondOrder::Parameters parameters{
-      .natural_frequency_hz = section.number("natural_frequency_hz", kPositive),
-      .damping_ratio = section.number("damping_ratio", {.low = 0.0, .high = 10.0, .low_open = true}),
-      .delay = from_seconds(section.number("delay_s", {.low = 0.0, .high = 10.0}, 0.0)),
-  };
-  return {
-      [parameters](double period_s) { return std::make_unique<SecondOrder>(parameters, from_seconds(period_s)); },
-      parameters.damping_ratio / (std::numbers::pi * parameters.natural_frequency_hz) + to_seconds(parameters.delay)};
-}
-
-TransferSystemReading read_transfer_system(Section section) {
-  return read_type<TransferSystemReading>(section, {{"ideal", read_ideal},
-                                                    {"delay", read_delay},
-                                                    {"first_order", read_first_order},
-                                                    {"second_order", read_second_order}});
-}
-
-std::function<std::unique_ptr<Specimen>()> read_specimen(Section& rig, int dofs) {
-  std::vector<Section> sections = rig.sections("specimen", true);
-  if (sections.size() == 1 && sections.front().has("stiffness_matrix_n_per_m")) {
-    Section& section = sections.front();
-    static_cast<void>(section.choice("type", {"elastic"}));
-    const auto size = static_cast<std::size_t>(dofs);
-    const Eigen::MatrixXd stiffness = section.matrix("stiffness_matrix_n_per_m", size, size);
-    section.finish();
-    return [stiffness] { return std::make_unique<ElasticSpecimen>(stiffness); };
-  }
-  std::vector<Maker<Law>> makers;
-  for (const Section& section : sections) makers.push_back(read_law(section));
-  expect_count(rig, "specimen", makers.size(), dofs);
-  return [makers] { return std::make_unique<LawSpecimen>(make_all(makers)); };
-}
-
-SimulatedRig::SensorNoise read_sensors(Section section) {
-  SimulatedRig::SensorNoise noise;
-  noise.displacement_noise_m = section.number("displacement_noise_m", kNotNegative, 0.0);
-  noise.force_noise_n = section.number("force_noise_n", kNotNegative, 0.0);
-  noise.seed = static_cast<std::uint64_t>(section.integer("seed", 0, std::int64_t{1} << 53, 0));
-  section.finish();
-  return noise;
-}
-
-RigReading read_simulated_rig(Section& section, int dofs) {
-  std::vector<TransferSystemReading> transfer_systems;
-  for (const Section& entry : section.sections("transfer_system", true)) {
-    transfer_systems.push_back(read_transfer_system(entry));
-  }
-  if (transfer_systems.size() == 1) transfer_systems.resize(static_cast<std::size_t>(dofs), transfer_systems.front());
-  expect_count(section, "transfer_system", transfer_systems.size(), dofs);
-  const auto specimen = read_specimen(section, dofs);
-  const SimulatedRig::SensorNoise noise = read_sensors(section.section_or_empty("sensors"));
-
-  RigReading reading;
-  for (const auto& transfer_system : transfer_systems) {
-    reading.transfer_delay_s = std::max(reading.transfer_delay_s, transfer_system.delay_s);
-  }
-  reading.make = [transfer_systems, specimen, noise](double period_s) {
-    std::vector<std::unique_ptr<TransferSystem>> made;
-    for (const auto& transfer_system : transfer_systems) made.push_back(transfer_system.make(period_s));
-    return std::make_unique<SimulatedRig>(std::move(made), specimen(), noise, from_seconds(period_s));
-  };
-  return reading;
-}
-
 }  // namespace
 
 Maker<Law> read_law(Section section) { return read_type(section, laws()); }
+
+Maker<Law> read_specimen_law(Section section) {
+  std::vector<NamedType<Maker<Law>>> types{{"none", [](Section&) { return Maker<Law>{}; }}};
+  types.insert(types.end(), laws().begin(), laws().end());
+  return read_type(section, types);
+}
 
 Maker<SubstructureModel> read_model(Section section, int dofs, const std::filesystem::path& directory) {
   std::vector<std::string> names{"elastic", "springs", "shear_building"};
@@ -267,7 +172,6 @@ Maker<SubstructureModel> read_model(Section section, int dofs, const std::filesy
 RigReading read_rig(Section section, int dofs) {
   static_cast<void>(section.choice("type", {"simulated"}));
   RigReading reading = read_simulated_rig(section, dofs);
-  reading.type = "simulated";
   section.finish();
   return reading;
 }

@@ -27,6 +27,8 @@ template <class Part>
 using Maker = std::function<std::unique_ptr<Part>()>;
 
 [[nodiscard]] Maker<Law> read_law(config::Section section);
+/// A law or `none`, which is an empty maker: a specimen without a force of its own.
+[[nodiscard]] Maker<Law> read_specimen_law(config::Section section);
 
 /// The model of a numerical substructure with `dofs` interface degrees of freedom.
 [[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, int dofs,

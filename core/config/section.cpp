@@ -127,6 +127,8 @@ void report_unknown_names(SectionState& state, const Node& mapping, std::string_
 
 bool Section::has(std::string_view key) const { return state_->find(key) != nullptr; }
 
+bool Section::has_optional(std::string_view key) { return state_->read(key) != nullptr; }
+
 std::string Section::path() const { return state_->path(); }
 
 double Section::number(std::string_view key, Range range, std::optional<double> fallback) {
@@ -365,6 +367,12 @@ void Section::error(std::string_view key, std::string what) {
   // A key that an override gave a value to still stands in the file; its value does not.
   const bool at_key = node != nullptr && !node->place.source->is_override;
   state_->report(at_key ? node->key_place : node != nullptr ? node->place : state_->place(), path, what);
+}
+
+std::string Section::effective(std::string_view key) const {
+  std::string yaml;
+  state_->write(yaml, 0, key);
+  return yaml;
 }
 
 void Section::finish() { state_->report_unknown_keys(); }

@@ -44,6 +44,8 @@ struct DocumentState;
 class Section {
  public:
   [[nodiscard]] bool has(std::string_view key) const;
+  /// The same of an optional key, which from then on is one that the advice on unknown keys names.
+  [[nodiscard]] bool has_optional(std::string_view key);
   /// `substructures[0].rig`, for messages.
   [[nodiscard]] std::string path() const;
 
@@ -84,6 +86,10 @@ class Section {
   /// As sections(key, true), but when the key is absent a list of one empty section, from which the
   /// fallbacks go into effective() as a list of one.
   [[nodiscard]] std::vector<Section> sections_or_empty(std::string_view key);
+
+  /// What was read of this section, or of that key of it, as a document of its own; see
+  /// Document::effective().
+  [[nodiscard]] std::string effective(std::string_view key = {}) const;
 
   /// Reports at the key (or, with an empty or absent key, at the section itself).
   void error(std::string_view key, std::string what);

@@ -103,11 +103,12 @@ void SectionState::record_section(std::string_view key, std::shared_ptr<SectionS
 
 void SectionState::record_sections(std::string_view key, Children sections) { keep(key, std::move(sections)); }
 
-void SectionState::write(std::string& out, std::size_t indentation) const {
+void SectionState::write(std::string& out, std::size_t indentation, std::string_view only) const {
   constexpr std::size_t kStep = 2;
   const std::string margin(indentation, ' ');
   for (const Record& record : records_) {
     if (std::holds_alternative<Nothing>(record.value)) continue;
+    if (!only.empty() && record.key != only) continue;
     out += margin + written_text(record.key) + ':';
     if (const auto* const yaml = std::get_if<std::string>(&record.value)) {
       out += ' ' + *yaml + '\n';

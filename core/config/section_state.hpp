@@ -59,7 +59,8 @@ class SectionState {
   /// Keys that were asked for though the section is missing.
   [[nodiscard]] const std::vector<std::string>& needed() const noexcept { return needed_; }
   /// Appends the effective configuration; nothing when it is empty.
-  void write(std::string& out, std::size_t indentation) const;
+  /// @param only   that key of it; all when empty.
+  void write(std::string& out, std::size_t indentation, std::string_view only = {}) const;
 
  private:
   struct Nothing {};

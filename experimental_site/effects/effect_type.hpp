@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -36,6 +37,9 @@ enum class ParameterScale : std::uint8_t {
   time_s,             // a second
   duration_s,         // length of the recording
   frequency_hz,
+  damping_n_s2_per_m2,  // peak force over the square of the peak velocity
+  stiffness_n_per_m3,   // peak force over the cube of the peak displacement
+  compliance_m_per_n,   // peak displacement over peak force
 };
 
 struct EffectParameter {
@@ -45,7 +49,8 @@ struct EffectParameter {
   // What is accepted in a scenario, both ends included.
   double low = 0.0;
   double high = 0.0;
-  // Where a search looks, in units of `scale` of the recording; within low and high.
+  // Where a search looks, in units of `scale` of the recording; within low and high. Both the
+  // same: nothing to search, the fallback is used.
   ParameterScale scale = ParameterScale::one;
   double search_low = 0.0;
   double search_high = 0.0;
@@ -53,6 +58,8 @@ struct EffectParameter {
   double neutral = 0.0;
   // The change of the stage's output is proportional to it, the others held (variable projection).
   bool is_linear = false;
+  // What a scenario that leaves it out gets; NaN when it has to be given.
+  double fallback = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
@@ -64,9 +71,10 @@ struct EffectType {
   std::string_view source;    // paper or textbook
   std::span<const EffectParameter> parameters;
   /// @param values   one per parameter, in their order, within [low, high].
+  /// null for what changes the coordinator's own model.
   std::unique_ptr<Effect> (*make)(std::span<const double> values, double sample_period_s) = nullptr;
-  /// For a sensor: what makes the true motion of a read one, to drive a specimen by what was
-  /// measured; null where that is not possible (quantization) or has no meaning.
+  /// For a sensor: an effect whose before() makes the true motion of a read one, to drive a specimen
+  /// by what was measured; null where that is not possible (quantization) or has no meaning.
   std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
 };
 

@@ -18,9 +18,16 @@ class StageEffects {
   /// @param base   called once with the motion as changed; returns the base's output.
   template <class Base>
   [[nodiscard]] double step(const StageSample& sample, Base&& base) noexcept {
+    const Motion motion = before(sample);
+    return after(sample, motion, base(motion));
+  }
+  /// The two halves of step(), for a base that several stages share.
+  [[nodiscard]] Motion before(const StageSample& sample) noexcept {
     Motion motion = sample.motion;
     for (const auto& effect : effects_) effect->before(sample, motion);
-    double output = base(motion);
+    return motion;
+  }
+  [[nodiscard]] double after(const StageSample& sample, const Motion& motion, double output) noexcept {
     for (const auto& effect : effects_) effect->after(sample, motion, output);
     return output;
   }

@@ -11,7 +11,7 @@ namespace hybridtest {
 /// One law per actuator, none coupled to another.
 class LawSpecimen final : public Specimen {
  public:
-  /// @param laws   1 to kMaxInterfaceDofs; none null.
+  /// @param laws   1 to kMaxInterfaceDofs; null: no force.
   /// @throws ConfigError for another number.
   explicit LawSpecimen(std::vector<std::unique_ptr<Law>> laws);
 

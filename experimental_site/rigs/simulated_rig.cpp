@@ -12,37 +12,60 @@ namespace hybridtest {
 
 static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "exchange() must not lock");
 
+SimulatedRig::Effects SimulatedRig::effects_of(const SiteModel& model, double control_period_s) {
+  const auto at = [&](EffectInterface interface) { return effects_at(model, interface, control_period_s); };
+  return {.network = at(EffectInterface::network),
+          .compensator = at(EffectInterface::compensator),
+          .transfer_system = at(EffectInterface::transfer_system),
+          .displacement_sensor = at(EffectInterface::displacement_sensor),
+          .specimen = at(EffectInterface::specimen),
+          .force_sensor = at(EffectInterface::force_sensor)};
+}
+
 SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer_systems,
-                           std::unique_ptr<Specimen> specimen, const SensorNoise& noise, Duration control_period)
-    : transfer_systems_{std::move(transfer_systems)},
-      specimen_{std::move(specimen)},
+                           std::unique_ptr<Specimen> specimen, const SensorNoise& noise, Duration control_period,
+                           std::vector<Effects> effects)
+    : specimen_{std::move(specimen)},
       control_period_s_{checked("control_period_s", to_seconds(control_period), config::kPositive)} {
   HYBRIDTEST_ASSERT(specimen_ != nullptr);
-  for (const auto& transfer_system : transfer_systems_) HYBRIDTEST_ASSERT(transfer_system != nullptr);
   const int dofs = specimen_->dofs();
-  if (transfer_systems_.size() != static_cast<std::size_t>(dofs)) {
-    throw ConfigError{std::to_string(transfer_systems_.size()) +
+  if (std::cmp_not_equal(transfer_systems.size(), dofs)) {
+    throw ConfigError{std::to_string(transfer_systems.size()) +
                       " transfer systems; expected one for each of the specimen's " + std::to_string(dofs) +
                       " degrees of freedom"};
   }
+  HYBRIDTEST_ASSERT(effects.empty() || effects.size() == transfer_systems.size());
+  effects.resize(transfer_systems.size());
   const double displacement_noise_m = checked("displacement_noise_m", noise.displacement_noise_m, config::kNotNegative);
   const double force_noise_n = checked("force_noise_n", noise.force_noise_n, config::kNotNegative);
   std::uint64_t stream = noise.first_stream;
-  for (int i = 0; i < dofs; ++i, stream += 2) {
-    sensors_.push_back({.displacement = NoisySensor{displacement_noise_m, Random{noise.seed, stream}},
-                        .force = NoisySensor{force_noise_n, Random{noise.seed, stream + 1}}});
+  for (std::size_t i = 0; i < transfer_systems.size(); ++i, stream += 2) {
+    Effects& of = effects[i];
+    actuators_.push_back({.network = NetworkStage{std::move(of.network)},
+                          .compensator = CompensatorStage{nullptr, std::move(of.compensator)},
+                          .transfer = TransferStage{std::move(transfer_systems[i]), std::move(of.transfer_system),
+                                                    std::move(of.displacement_sensor)},
+                          .specimen_effects = std::move(of.specimen),
+                          .force_sensor_effects = std::move(of.force_sensor),
+                          .displacement_sensor = NoisySensor{displacement_noise_m, Random{noise.seed, stream}},
+                          .force_sensor = NoisySensor{force_noise_n, Random{noise.seed, stream + 1}}});
   }
-  displacement_m_ = previous_displacement_m_ = velocity_m_per_s_ = force_n_ = InterfaceVector::Zero(dofs);
+  displacement_m_ = velocity_m_per_s_ = force_n_ = InterfaceVector::Zero(dofs);
 }
 
 void SimulatedRig::connect() {
-  for (const auto& transfer_system : transfer_systems_) transfer_system->reset();
   specimen_->reset();
-  for (Sensors& sensors : sensors_) {
-    sensors.displacement.reset();
-    sensors.force.reset();
+  for (Actuator& actuator : actuators_) {
+    actuator.network.reset();
+    actuator.compensator.reset();
+    actuator.transfer.reset();
+    actuator.specimen_effects.reset();
+    actuator.force_sensor_effects.reset();
+    actuator.displacement_sensor.reset();
+    actuator.force_sensor.reset();
+    actuator.motion = {};
   }
-  displacement_m_.setZero();
+  force_n_.setZero();
   phase_ = Phase::connected;
 }
 
@@ -61,16 +84,19 @@ RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& fe
   if (feedback.displacement_m.size() != specimen_->dofs() || feedback.force_n.size() != specimen_->dofs())
     return RigStatus::fault;
 
-  previous_displacement_m_ = displacement_m_;
-  if (phase == Phase::armed) move(command.displacement_m);
-  velocity_m_per_s_ = (displacement_m_ - previous_displacement_m_) / control_period_s_;
-  specimen_->impose(displacement_m_, velocity_m_per_s_, force_n_);
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const auto dof = static_cast<Eigen::Index>(i);
+    const StageSample sample{
+        .time_s = command.time_s, .motion = {.displacement_m = command.displacement_m[dof]}, .force_n = force_n_[dof]};
+    move(actuators_[i], sample, phase == Phase::armed);
+  }
+  load_specimen(command.time_s);
   if (!displacement_m_.allFinite() || !force_n_.allFinite()) return RigStatus::fault;
 
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    const auto actuator = static_cast<Eigen::Index>(i);
-    feedback.displacement_m[actuator] = sensors_[i].displacement.read(displacement_m_[actuator]);
-    feedback.force_n[actuator] = sensors_[i].force.read(force_n_[actuator]);
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const auto dof = static_cast<Eigen::Index>(i);
+    feedback.displacement_m[dof] = actuators_[i].displacement_sensor.read(actuators_[i].read_m);
+    feedback.force_n[dof] = actuators_[i].force_sensor.read(read_force(actuators_[i], command.time_s, force_n_[dof]));
   }
   return RigStatus::healthy;
 }
@@ -81,11 +107,43 @@ bool SimulatedRig::is_usable(const InterfaceVector& command_m) const noexcept {
   return command_m.size() == specimen_->dofs() && command_m.allFinite();
 }
 
-void SimulatedRig::move(const InterfaceVector& command_m) noexcept {
-  for (std::size_t i = 0; i < transfer_systems_.size(); ++i) {
-    const auto actuator = static_cast<Eigen::Index>(i);
-    displacement_m_[actuator] = transfer_systems_[i]->step(command_m[actuator]);
+void SimulatedRig::move(Actuator& actuator, const StageSample& command, bool is_armed) noexcept {
+  StageSample sample = command;
+  const Motion before = actuator.motion;
+  if (is_armed) {
+    sample.motion.displacement_m = actuator.network.step(sample);
+    sample.motion.displacement_m = actuator.compensator.step(sample);
+    actuator.read_m = actuator.transfer.step(sample);
+  } else {
+    actuator.read_m = actuator.transfer.read(sample);
   }
+  Motion& motion = actuator.motion;
+  motion.displacement_m = actuator.transfer.displacement_m();
+  motion.velocity_m_per_s = (motion.displacement_m - before.displacement_m) / control_period_s_;
+  motion.acceleration_m_per_s2 = (motion.velocity_m_per_s - before.velocity_m_per_s) / control_period_s_;
+}
+
+/// The specimen couples its degrees of freedom, the effects on it do not.
+void SimulatedRig::load_specimen(double time_s) noexcept {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const auto dof = static_cast<Eigen::Index>(i);
+    const StageSample sample{.time_s = time_s, .motion = actuators_[i].motion, .force_n = force_n_[dof]};
+    actuators_[i].given = actuators_[i].specimen_effects.before(sample);
+    displacement_m_[dof] = actuators_[i].given.displacement_m;
+    velocity_m_per_s_[dof] = actuators_[i].given.velocity_m_per_s;
+  }
+  InterfaceVector before_n = force_n_;
+  specimen_->impose(displacement_m_, velocity_m_per_s_, force_n_);
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const auto dof = static_cast<Eigen::Index>(i);
+    const StageSample sample{.time_s = time_s, .motion = actuators_[i].motion, .force_n = before_n[dof]};
+    force_n_[dof] = actuators_[i].specimen_effects.after(sample, actuators_[i].given, force_n_[dof]);
+  }
+}
+
+double SimulatedRig::read_force(Actuator& actuator, double time_s, double force_n) noexcept {
+  const StageSample sample{.time_s = time_s, .motion = actuator.motion, .force_n = force_n};
+  return actuator.force_sensor_effects.step(sample, [force_n](const Motion&) { return force_n; });
 }
 
 }  // namespace hybridtest

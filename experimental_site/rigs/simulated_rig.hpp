@@ -7,6 +7,8 @@
 
 #include "core/time.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "experimental_site/rigs/site_model.hpp"
+#include "experimental_site/rigs/site_stages.hpp"
 #include "experimental_site/rigs/specimen.hpp"
 #include "experimental_site/sensors/noisy_sensor.hpp"
 #include "experimental_site/transfer_systems/transfer_system.hpp"
@@ -14,7 +16,9 @@
 namespace hybridtest {
 
 /// A laboratory in software: each actuator moves its degree of freedom of the specimen as its
-/// transfer system lets it, and is measured with noise.
+/// transfer system lets it, and is measured with noise. Effects of the library act where they belong;
+/// those of network and compensator on the command before the transfer system, as they would on its
+/// way to a real one. Velocity and acceleration of an actuator are its backward differences.
 ///
 /// Once stopped it holds where it stands and still measures. connect() puts everything back to
 /// new, noise included, so that a run can be repeated; arm() needs a connect() since the last
@@ -23,19 +27,27 @@ namespace hybridtest {
 /// before connect(). With a fault the feedback is the last good one.
 class SimulatedRig final : public Rig {
  public:
-  struct SensorNoise {
-    double displacement_noise_m = 0.0;  // [m] standard deviation, not negative
-    double force_noise_n = 0.0;         // [N] standard deviation, not negative
-    std::uint64_t seed = 0;
-    std::uint64_t first_stream = 0;  // two streams per actuator from here on: displacement, force
+  using SensorNoise = hybridtest::SensorNoise;
+
+  /// Of one actuator, see SiteModel.
+  struct Effects {
+    StageEffects network;
+    StageEffects compensator;
+    StageEffects transfer_system;
+    StageEffects displacement_sensor;
+    StageEffects specimen;
+    StageEffects force_sensor;
   };
+  /// @throws ConfigError as the effects.
+  [[nodiscard]] static Effects effects_of(const SiteModel& model, double control_period_s);
 
   /// @param transfer_systems   one per actuator, as many as the specimen has dofs; none null.
   /// @param specimen           not null.
   /// @param control_period     from one exchange() to the next; positive.
+  /// @param effects            one per actuator, or none at all.
   /// @throws ConfigError for values outside these ranges.
   SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer_systems, std::unique_ptr<Specimen> specimen,
-               const SensorNoise& noise, Duration control_period);
+               const SensorNoise& noise, Duration control_period, std::vector<Effects> effects = {});
 
   void connect() override;
   /// @throws std::runtime_error without a connect() before, or when stopped since then.
@@ -46,22 +58,30 @@ class SimulatedRig final : public Rig {
  private:
   enum class Phase : std::uint8_t { disconnected, connected, armed, stopped };
 
-  /// An actuator's transducers.
-  struct Sensors {
-    NoisySensor displacement;
-    NoisySensor force;
+  /// One degree of freedom, from its command to its transducers.
+  struct Actuator {
+    NetworkStage network;
+    CompensatorStage compensator;
+    TransferStage transfer;
+    StageEffects specimen_effects;
+    StageEffects force_sensor_effects;
+    NoisySensor displacement_sensor;
+    NoisySensor force_sensor;
+    Motion motion{};
+    Motion given{};  // to the specimen, as its effects changed it
+    double read_m = 0.0;
   };
 
   [[nodiscard]] bool is_usable(const InterfaceVector& command_m) const noexcept;
-  void move(const InterfaceVector& command_m) noexcept;
+  void move(Actuator& actuator, const StageSample& command, bool is_armed) noexcept;
+  void load_specimen(double time_s) noexcept;
+  [[nodiscard]] double read_force(Actuator& actuator, double time_s, double force_n) noexcept;
 
-  std::vector<std::unique_ptr<TransferSystem>> transfer_systems_;
   std::unique_ptr<Specimen> specimen_;
-  std::vector<Sensors> sensors_;
+  std::vector<Actuator> actuators_;
   double control_period_s_;
   std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() touches
-  InterfaceVector displacement_m_;
-  InterfaceVector previous_displacement_m_;
+  InterfaceVector displacement_m_;                 // and below: as the specimen is given them
   InterfaceVector velocity_m_per_s_;
   InterfaceVector force_n_;
 };

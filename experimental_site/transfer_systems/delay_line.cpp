@@ -1,6 +1,7 @@
 #include "experimental_site/transfer_systems/delay_line.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -20,6 +21,15 @@ DelayLine::DelayLine(Duration delay, Duration control_period) {
   static_cast<void>(checked("delay_s", to_seconds(delay), up_to_limit));
   whole_intervals_ = static_cast<std::size_t>(delay / control_period);
   fraction_ = to_seconds(delay % control_period) / to_seconds(control_period);
+  samples_.assign(whole_intervals_ + 2, 0.0);
+}
+
+DelayLine::DelayLine(double delay_s, double period_s) {
+  static_cast<void>(checked("control_period_s", period_s, config::kPositive));
+  const config::Range up_to_limit{.low = 0.0, .high = static_cast<double>(kMaxIntervals) * period_s};
+  const double intervals = checked("delay_s", delay_s, up_to_limit) / period_s;
+  whole_intervals_ = static_cast<std::size_t>(intervals);
+  fraction_ = intervals - std::floor(intervals);
   samples_.assign(whole_intervals_ + 2, 0.0);
 }
 

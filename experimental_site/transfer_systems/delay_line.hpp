@@ -15,6 +15,8 @@ class DelayLine {
   /// @param control_period  the interval; positive.
   /// @throws ConfigError for values outside these ranges.
   DelayLine(Duration delay, Duration control_period);
+  /// The same in seconds, not rounded to nanoseconds.
+  DelayLine(double delay_s, double period_s);
 
   /// Takes the newest sample.
   void push(double value) noexcept;

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "compensation/compensator.hpp"
+#include "experimental_site/effects/effect_type.hpp"
+#include "experimental_site/effects/stage.hpp"
+#include "experimental_site/transfer_systems/transfer_system.hpp"
+#include "mechanics/law.hpp"
+
+namespace hybridtest {
+
+/// One effect of the library with its parameters.
+struct EffectSetting {
+  const EffectType* type = nullptr;
+  std::vector<double> values;  // one per parameter, in their order
+};
+
+struct SensorNoise {
+  double displacement_noise_m = 0.0;  // [m] standard deviation, not negative
+  double force_noise_n = 0.0;         // [N] standard deviation, not negative
+  std::uint64_t seed = 0;
+  std::uint64_t first_stream = 0;  // two streams per actuator from here on: displacement, force
+};
+
+/// What is known of one degree of freedom of a site: the value that a scenario's simulated rig and the
+/// diagnosis of a recording share.
+struct SiteModel {
+  /// @param delay_change_s   added to the model's own delay, from -removable_delay_s to 0.
+  std::function<std::unique_ptr<TransferSystem>(double sample_period_s, double delay_change_s)> make_transfer_system;
+  double removable_delay_s = 0.0;                  // the transfer system's own pure delay
+  std::function<std::unique_ptr<Law>()> make_law;  // empty: the specimen has no force
+  std::function<std::unique_ptr<Compensator>(double sample_period_s)> make_compensator;  // empty: none
+  SensorNoise noise;
+  std::vector<EffectSetting> effects;
+};
+
+/// The effects of `model` at one interface, in their order.
+/// @throws ConfigError as the effects.
+[[nodiscard]] StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s);
+
+/// Sum of what the `delay` effects of the transfer system take off its own delay; zero or negative.
+/// @throws ConfigError when that is more than there is.
+[[nodiscard]] double delay_change_s(const SiteModel& model);
+
+}  // namespace hybridtest

@@ -1,0 +1,51 @@
+#include "experimental_site/effects/transfer_system/bandwidth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "tests/unit/effects/effect_bench.hpp"
+
+namespace hybridtest {
+namespace {
+
+double through(const Motion& motion) { return motion.displacement_m; }
+
+TEST(Bandwidth, AnswersASineAsItsTransferFunction) {
+  constexpr double kOmega = 2.0 * 3.141592653589793 * 4.0;
+  constexpr double kTime_s = 0.012;
+  for (const double ratio : {0.0, 1e-9, 0.1, 0.2, 0.25, 0.6, 3.0}) {
+    Bandwidth effect{std::vector{kTime_s, ratio}, kBenchPeriod_s};
+    const auto outputs = response(effect, sine(1.0, kOmega), 4000, through);
+    const std::complex<double> s{0.0, kOmega};
+    const auto gain = 1.0 / (1.0 + kTime_s * s + ratio * kTime_s * kTime_s * s * s);
+    for (std::size_t i = 2000; i < outputs.size(); ++i) {  // 40 time constants of the slowest case later
+      const double expected =
+          std::abs(gain) * std::sin(kOmega * kBenchPeriod_s * static_cast<double>(i) + std::arg(gain));
+      // Straight lines between samples: (omega dt)^2 / 12 of the amplitude.
+      ASSERT_NEAR(outputs[i], expected, 6e-5 * std::abs(gain)) << "ratio " << ratio;
+    }
+  }
+}
+
+TEST(Bandwidth, IsContinuousWhereItsFormulaChanges) {
+  const auto last = [](double time_constant_s, double ratio) {
+    Bandwidth effect{std::vector{time_constant_s, ratio}, kBenchPeriod_s};
+    return response(effect, sine(1.0, 30.0), 300, through).back();
+  };
+  EXPECT_NEAR(last(0.02, 0.2), last(0.02, 0.2 + 1e-9), 1e-8);
+  EXPECT_NEAR(last(0.999e-6, 0.1), last(1.001e-6, 0.1), 1e-7);
+  EXPECT_NEAR(last(0.0, 0.0), std::sin(30.0 * 0.299), 1e-15);
+}
+
+TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
+  const auto effect = made(EffectInterface::transfer_system, "delay", {0.0025});
+  const Driver ramp{[](double t) { return t; }, [](double) { return 1.0; }, [](double) { return 0.0; }};
+  const auto outputs = response(*effect, ramp, 20, through);
+  for (std::size_t i = 3; i < outputs.size(); ++i) {
+    EXPECT_NEAR(outputs[i], kBenchPeriod_s * (static_cast<double>(i) - 2.5), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest
