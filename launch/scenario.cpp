@@ -3,7 +3,6 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "coordinator/damping.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
@@ -169,26 +168,6 @@ void read_interface(Section& section, const std::vector<std::string>& dofs, Subs
   }
 }
 
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g s", seconds);
-  return text;
-}
-
-SiteLimits read_limits(Section section) {
-  SiteLimits limits;
-  limits.displacement_m = section.number("displacement_m", config::kPositive);
-  limits.velocity_m_per_s = section.number("velocity_m_per_s", config::kPositive);
-  limits.force_n = section.number("force_n", config::kPositive);
-  if (section.has("tracking_error_m")) limits.tracking_error_m = section.number("tracking_error_m", config::kPositive);
-  if (section.has("energy_error_ratio")) {
-    limits.energy_error_ratio = section.number("energy_error_ratio", config::kPositive);
-  }
-  limits.command_age_s = section.number("command_age_s", {.low = 0.01, .high = 86400.0}, 1.0);
-  section.finish();
-  return limits;
-}
-
 /// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
 template <class Reading>
 std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
@@ -232,13 +211,7 @@ void read_site(Section& section, const TimeScenario& time, const std::filesystem
     for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
     return made;
   };
-  site.limits = read_limits(section.section("limits"));
-  if (time.mode == CouplingMode::paced && site.limits.command_age_s <= site_step_s) {
-    section.error("limits", "command_age_s of " + seconds_text(site.limits.command_age_s) +
-                                " is no longer than a step, step_s times time_scale, of " + seconds_text(site_step_s) +
-                                ": every command would be overdue");
-  }
-  site.return_time_s = section.number("return_time_s", {.low = 0.0, .high = 3600.0}, 2.0);
+  site.loop = read_loop(section, time.mode, site_step_s);
 }
 
 SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
