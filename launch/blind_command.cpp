@@ -59,7 +59,7 @@ struct BlindOptions {
 int make(const BlindOptions& options) {
   blind::MakeSettings settings = options.make;
   settings.key = options.key.empty() ? beside(settings.directory, ".key.json") : options.key;
-  make_batch(settings, hexadecimal_sha256, in_parallel(options.threads));
+  blind::make_batch(settings, hexadecimal_sha256, in_parallel(options.threads));
   fmt::print("{} cases in {}, the key in {}\n", settings.cases, settings.directory.string(), settings.key.string());
   return kExitCompleted;
 }
@@ -78,7 +78,7 @@ void diagnose_case(const blind::CaseFiles& files, const fs::path& out, std::uint
 
 int run(const BlindOptions& options) {
   const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
-  const blind::RunOutcome outcome = run_batch(
+  const blind::RunOutcome outcome = blind::run_batch(
       options.batch, answers,
       [&](const blind::CaseFiles& files, const fs::path& out) { diagnose_case(files, out, options.seed); },
       hexadecimal_sha256, in_parallel(options.threads));
@@ -90,7 +90,7 @@ int run(const BlindOptions& options) {
 int score(const BlindOptions& options) {
   const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
   const fs::path key = options.key.empty() ? beside(options.batch, ".key.json") : options.key;
-  const blind::BatchScore scored = score_batch(options.batch, answers, key, hexadecimal_sha256);
+  const blind::BatchScore scored = blind::score_batch(options.batch, answers, key, hexadecimal_sha256);
   fmt::print("{}", scored.text);
   write_output_file(answers / "score.json", scored.json);
   fmt::print("\nWritten to {}\n", (answers / "score.json").string());

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -56,8 +58,7 @@ std::string diagnosis(const std::string& verdict, const std::vector<Cause>& caus
   return json.dump();
 }
 
-template <class Answering>
-Score scored(Answering answering) {
+Score scored(const std::function<std::optional<Answer>(const KeyCase&)>& answering) {
   std::vector<MarkedCase> marked;
   for (const KeyCase& key : forty_cases()) marked.push_back(mark(key, answering(key)));
   return score_of(marked);
@@ -160,8 +161,8 @@ TEST(Score, WhatNoiseHidesIsRightlyCalledNothingAndIsNoClearCase) {
 
 TEST(Score, TextAndJsonTellWhichTargetsAreMissed) {
   const Score score = scored([](const KeyCase& key) {
-    return key.truth == TruthClass::none ? read_answer(diagnosis("named", {{"specimen", "inertia"}}, 0.7))
-                                         : right_answer(key);
+    if (key.truth != TruthClass::none) return right_answer(key);
+    return read_answer(diagnosis("named", {{"specimen", "inertia"}}, 0.7));
   });
   const std::string text = score_text(score);
   EXPECT_THAT(text, HasSubstr("MISSED (at most 0.05)"));
