@@ -11,8 +11,10 @@
 #include "core/config/section.hpp"
 #include "experimental_site/energy_error.hpp"
 #include "launch/compose.hpp"
+#include "launch/numerical_effects.hpp"
 #include "launch/participant.hpp"
 #include "launch/scenario_digest.hpp"
+#include "numerical_substructure/scaled_model.hpp"
 
 namespace hybridtest {
 namespace {
@@ -285,6 +287,21 @@ void try_out(const Scenario& scenario, SubstructureScenario& substructure) {
   static_cast<void>(EnergyErrorMonitor{substructure.initial_stiffness_n_per_m, 1.0});
 }
 
+/// Errors of the part that is computed; the damping that comes of the stiffness is that of the right one.
+void apply(const NumericalErrors& errors, Scenario& scenario) {
+  scenario.structure.mass_kg *= errors.mass;
+  scenario.structure.damping_n_s_per_m *= errors.damping;
+  if (errors.stiffness == 1.0) return;
+  for (SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::numerical_substructure) continue;
+    substructure.make_model = [make = substructure.make_model, factor = errors.stiffness] {
+      return std::make_unique<ScaledModel>(make(), factor);
+    };
+    substructure.initial_stiffness_n_per_m *= errors.stiffness;
+  }
+  scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+}
+
 /// Reports what a part finds wrong with its parameters at the section they came from.
 template <class Work>
 void report_at(Section section, Work work) {
@@ -331,6 +348,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   for (Section& section : substructures) {
     scenario.substructures.push_back(read_substructure(section, scenario, document.directory()));
   }
+  const NumericalErrors errors = read_numerical_errors(root);
   read_timeouts(root, scenario.timeouts);
   Section recording = root.section_or_empty("recording");
   scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
@@ -350,12 +368,13 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     scenario.structure.damping_n_s_per_m.resize(scenario.structure.size(), scenario.structure.size());
     require_consistent(scenario.structure);
     scenario.structure.damping_n_s_per_m = damping(scenario.structure);
+    apply(errors, scenario);
   });
   document.throw_if_errors();
-  report_at(root.section("time"),
-            [&] { require_stable_step(vibration_modes(scenario.structure), scenario.time.step_s); });
+  const double integrator_step_s = scenario.time.step_s * errors.step;
+  report_at(root.section("time"), [&] { require_stable_step(vibration_modes(scenario.structure), integrator_step_s); });
   scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
-                              step_s = scenario.time.step_s] { return make_integrator(type, structure, step_s); };
+                              step_s = integrator_step_s] { return make_integrator(type, structure, step_s); };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();
