@@ -25,7 +25,9 @@ int main(int argc, char** argv) {
   hybridtest::add_effects_command(app, action);
   hybridtest::add_export_command(app, action);
   hybridtest::add_summary_command(app, action);
+  hybridtest::add_diagnose_command(app, action);
   hybridtest::add_study_command(app, action);
+  hybridtest::add_blind_command(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/assert.hpp"
-#include "recording/summary/frequency_evaluation.hpp"
+#include "core/signal/frequency_evaluation.hpp"
 
 namespace hybridtest {
 namespace {

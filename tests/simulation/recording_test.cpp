@@ -1,71 +1,16 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-#include <memory>
-
 #include "core/random.hpp"
-#include "launch/participant.hpp"
-#include "launch/run_directory.hpp"
-#include "recording/recorder.hpp"
 #include "recording/summary/run_summary.hpp"
 #include "tests/simulation/drawn_case.hpp"
 #include "tests/simulation/kept_simulation.hpp"
+#include "tests/simulation/recorded_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
 /// Runs recorded into files through rings that are sometimes too small for what comes between
 /// two drains: whatever was dropped, the verdict knows.
 namespace hybridtest {
 namespace {
-
-class RecordedSimulation {
- public:
-  RecordedSimulation(const Scenario& scenario, const std::filesystem::path& directory, std::size_t ring_rows)
-      : scenario_{scenario}, directory_{directory}, ring_rows_{ring_rows} {
-    make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario));
-    for (const SubstructureScenario& substructure : scenario.substructures) {
-      make(substructure.id, substructure.role, substructure_tables(substructure));
-    }
-  }
-
-  StopReason run(const SimulationSettings& settings) {
-    SimulationObserver observer;
-    observer.sink = [&](const std::string& participant, const TableLayout& table) -> RowSink& {
-      return recorders_.at(participant)->sink(table.name);
-    };
-    observer.event = [&](const Event& event) { recorders_.at(event.source.text())->events().send(event); };
-    observer.progress = [&](const CoordinatorReport&) {
-      for (auto& [id, recorder] : recorders_) recorder->drain();
-      return false;
-    };
-    const SimulationResult result = simulate(scenario_, settings, observer);
-    recorders_.at(std::string{kCoordinatorId})
-        ->sink("test")
-        .append(test_row(scenario_, result.coordinator, exit_code_for(result.coordinator.reason)));
-    for (auto& [id, recorder] : recorders_) {
-      recorder->close();
-      dropped_ += recorder->dropped();
-    }
-    return result.coordinator.reason;
-  }
-
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
-
- private:
-  void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
-    if (role == Role::coordinator) tables.push_back(test_layout());
-    std::vector<RecordedTable> recorded;
-    for (const TableLayout& table : tables) recorded.push_back({table, ring_rows_});
-    recorders_[id] =
-        std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, 1), recorded);
-  }
-
-  const Scenario& scenario_;
-  std::filesystem::path directory_;
-  std::size_t ring_rows_;
-  std::map<std::string, std::unique_ptr<Recorder>> recorders_;
-  std::uint64_t dropped_ = 0;
-};
 
 TEST(Recording, NoRunPassesWithADroppedRecord) {
   int whole = 0;

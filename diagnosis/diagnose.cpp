@@ -1,0 +1,226 @@
+#include "diagnosis/diagnose.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/localisation/gap_signals.hpp"
+#include "diagnosis/localisation/spectra.hpp"
+#include "diagnosis/scoring/score.hpp"
+#include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/cause_shares.hpp"
+#include "diagnosis/verdict/judgement.hpp"
+#include "diagnosis/verdict/next_experiment.hpp"
+#include "diagnosis/verdict/selection.hpp"
+#include "diagnosis/verdict/shrink.hpp"
+#include "diagnosis/verdict/where.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::RankedCause;
+using report::Verdict;
+
+/// A model without a law or an effect at the specimen makes no statement about its force.
+bool is_modelled(const SiteModel& model, const Segment& segment) {
+  if (segment.to != Channel::measured_force || model.make_law) return true;
+  return std::ranges::any_of(
+      model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
+}
+
+std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Recording> recordings, RecordingRole role,
+                                      std::size_t dof) {
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
+    for (Segment& segment : segments_of(recordings[i], dof, i)) {
+      if (is_modelled(model, segment)) segments.push_back(std::move(segment));
+    }
+  }
+  return segments;
+}
+
+RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates) {
+  constexpr double kTwoSided95 = 1.96;
+  RankedCause cause;
+  cause.interface = name_of(effect.type->interface);
+  cause.effect = effect.type->name;
+  cause.equation = effect.type->equation;
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    const EffectParameter& parameter = effect.type->parameters[i];
+    report::ReportedParameter reported;
+    reported.name = parameter.name;
+    reported.unit = parameter.unit;
+    reported.value = estimates[i].value;
+    reported.is_at_bound = estimates[i].at_bound;
+    const double half = kTwoSided95 * estimates[i].standard_error;
+    if (half > 0.0) reported.ci95 = report::Interval{reported.value - half, reported.value + half};
+    cause.parameters.push_back(std::move(reported));
+  }
+  return cause;
+}
+
+/// The verdict's causes first, then what else was considered.
+std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
+                              const Judgement& judgement) {
+  constexpr std::size_t kMostAlternatives = 8;
+  std::vector<RankedCause> ranking;
+  const bool has_causes =
+      judgement.verdict == Verdict::named || judgement.verdict == Verdict::set || judgement.verdict == Verdict::partial;
+  std::vector<const EffectType*> listed;
+  if (has_causes) {
+    const std::vector<double> shares = cause_shares(problem, selection.baseline, selection.chosen);
+    for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+      RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
+      cause.is_cause = true;
+      cause.share = shares[i];
+      listed.push_back(selection.chosen.effects[i].type);
+      ranking.push_back(std::move(cause));
+    }
+    std::ranges::stable_sort(ranking, std::greater{}, &RankedCause::share);
+  }
+  for (std::size_t i = 0; i < selection.library.size() && ranking.size() < kMostAlternatives; ++i) {
+    const Candidate& candidate = selection.library[i];
+    const auto known = std::ranges::find(listed, candidate.type);
+    const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
+    if (known != listed.end()) {
+      const auto entry = std::ranges::find_if(ranking, [&](const RankedCause& cause) {
+        return cause.effect == candidate.type->name && cause.interface == name_of(candidate.type->interface);
+      });
+      entry->probability = selection.probabilities[i];
+      entry->is_indistinguishable = judgement.verdict == Verdict::set;
+      continue;
+    }
+    RankedCause cause = ranked(candidate.fit.effects.front(), candidate.fit.parameters.front());
+    cause.probability = selection.probabilities[i];
+    cause.is_indistinguishable = in_set && has_causes;
+    cause.is_cause = cause.is_indistinguishable && judgement.verdict == Verdict::set;
+    ranking.push_back(std::move(cause));
+  }
+  std::ranges::stable_sort(ranking,
+                           [](const RankedCause& a, const RankedCause& b) { return a.is_cause && !b.is_cause; });
+  // A second cause was not competing with the first one: it stands by the share of the evidence for it.
+  if (selection.chosen.effects.size() > 1 && has_causes) {
+    for (RankedCause& cause : ranking) {
+      if (cause.is_cause) cause.probability = 1.0 - judgement.gap_left;
+    }
+  }
+  return ranking;
+}
+
+report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment, const Recording& recording,
+                                  const Diagnosis& diagnosis, std::size_t dof) {
+  report::InterfaceSeries series;
+  series.interface = name_of(segment.interface);
+  series.dof = dof;
+  series.recording = recording.file;
+  series.is_held_out = recording.role == RecordingRole::held_out;
+  series.sample_period_s = segment.period_s;
+  series.unit = segment.to == Channel::measured_force ? "N" : "m";
+  for (const Motion& motion : segment.input) series.input_m.push_back(motion.displacement_m);
+  series.measured = segment.measured;
+  series.model = predict(model, segment);
+  const bool touched = std::ranges::any_of(diagnosis.causes,
+                                           [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
+  if (touched) series.augmented = predict(model, segment, diagnosis.causes);
+  return series;
+}
+
+GapPlace place_of(const report::InterfaceSeries& series) {
+  constexpr std::size_t kWindows = 24;
+  constexpr double kMostOfIt = 0.5;
+  std::vector<double> residual(series.measured.size());
+  std::ranges::transform(series.measured, series.model, residual.begin(), std::minus{});
+  const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
+  GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}};
+  place.time_windows = windows_holding(gap_over_time(signals, std::min(kWindows, signals.size())), kMostOfIt);
+  const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
+  place.bands = bands_holding(gap_over_frequency(signals, spectra), kMostOfIt);
+  return place;
+}
+
+std::string next_experiment(const Selection& selection, const Judgement& judgement,
+                            const std::vector<report::InterfaceGap>& where) {
+  if (judgement.verdict == Verdict::set) {
+    std::vector<const EffectType*> members;
+    for (const std::size_t i : judgement.indistinguishable) members.push_back(selection.library[i].type);
+    return experiment_that_splits(members);
+  }
+  if (judgement.verdict != Verdict::unknown && judgement.verdict != Verdict::partial) return {};
+  for (const EffectInterface interface :
+       {EffectInterface::network, EffectInterface::compensator, EffectInterface::transfer_system,
+        EffectInterface::displacement_sensor, EffectInterface::specimen, EffectInterface::force_sensor}) {
+    if (!where.empty() && where.front().interface == name_of(interface)) return experiment_for_unknown(interface);
+  }
+  return {};
+}
+
+void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
+  const auto sees = [&](Channel to) {
+    return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
+  };
+  if (!sees(Channel::measured_force)) {
+    diagnosis.report.notes.emplace_back(
+        "No measured displacement with a measured force and a specimen model for it: the specimen is not judged.");
+  }
+  if (!sees(Channel::measured_displacement)) {
+    diagnosis.report.notes.emplace_back("No command with a measured displacement: the transfer system is not judged.");
+  }
+  for (const RankedCause& cause : diagnosis.report.ranking) {
+    for (const report::ReportedParameter& parameter : cause.parameters) {
+      if (cause.is_cause && parameter.is_at_bound) {
+        diagnosis.report.notes.push_back(cause.effect + ": " + parameter.name + " is at the end of its search range.");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings, const DiagnoseSettings& settings) {
+  Diagnosis diagnosis;
+  report::DiagnosisReport& report = diagnosis.report;
+  report.site = settings.site;
+  report.model_file = settings.model_file;
+  for (const Recording& recording : recordings) {
+    report.recordings.push_back({recording.file, recording.sha256, recording.role,
+                                 recording.sample_period_s * static_cast<double>(recording.samples),
+                                 recording.sample_period_s});
+  }
+  const std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
+  if (segments.empty()) {
+    report.verdict = Verdict::not_excited;
+    report.next_experiment =
+        "Record command and measured displacement, or measured displacement and measured force, of one test.";
+    report.notes.emplace_back("No two neighbouring channels of the chain were recorded that the model speaks about.");
+    return diagnosis;
+  }
+  const IdentificationProblem problem = make_problem(model, segments);
+  std::vector<Segment> thin;
+  for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
+  const IdentificationProblem coarse = make_problem(model, std::move(thin));
+  const Selection selection = select_effects(problem, coarse, settings.threads, settings.progress);
+  const Judgement judgement = judge(problem, selection);
+  report.verdict = judgement.verdict;
+  report.ranking = rank(problem, selection, judgement);
+  const bool has_causes = std::ranges::any_of(report.ranking, &RankedCause::is_cause);
+  if (has_causes) diagnosis.causes = selection.chosen.effects;
+  report.where = locate(problem, selection.baseline, has_causes ? selection.chosen : selection.baseline, settings.seed);
+  report.next_experiment = next_experiment(selection, judgement, report.where);
+
+  std::vector<Segment> judged = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
+  if (judged.empty()) {
+    judged = segments;
+    if (has_causes) {
+      report.notes.emplace_back("No recording was held out: how far the gap shrinks is measured on those fitted.");
+    }
+  }
+  if (has_causes) report.interface_shrink = shrink_on(model, diagnosis.causes, judged, settings.seed);
+  for (const Segment& segment : judged) {
+    report.series.push_back(series_of(model, segment, recordings[segment.recording], diagnosis, settings.dof));
+    diagnosis.places.push_back(place_of(report.series.back()));
+  }
+  add_notes(diagnosis, segments);
+  return diagnosis;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,201 @@
+#include "diagnosis/identification/effect_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "diagnosis/identification/bounded_search.hpp"
+#include "diagnosis/identification/variable_projection.hpp"
+
+namespace hybridtest {
+namespace {
+
+/// Step of the numeric derivatives at the optimum, as a share of the search range.
+constexpr double kDifferenceStep = 1e-3;
+/// Nearer than this to the end of its range a parameter is said to have hit it.
+constexpr double kAtBound = 1e-3;
+constexpr double kRidge = 1e-9;
+
+/// What fit and held-out residuals are linear in around the optimum.
+struct Linearisation {
+  Eigen::MatrixXd columns;        // change of the prediction per searched, linear, nuisance parameter
+  std::vector<std::size_t> free;  // of them, those not held at a bound
+};
+
+Linearisation linearise(const VariableProjection& projection, const Eigen::VectorXd& places,
+                        const Projected& solution) {
+  const auto searched = places.size();
+  Linearisation result;
+  result.columns.resize(projection.rows(), searched + solution.columns.cols());
+  const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, solution) : Eigen::VectorXd{};
+  for (Eigen::Index i = 0; i < searched; ++i) {
+    Eigen::VectorXd moved = places;
+    const double step = places[i] < 0.5 ? kDifferenceStep : -kDifferenceStep;
+    moved[i] += step;
+    result.columns.col(i) = (projection.predicted(moved, solution) - here) / step;
+    const bool at_bound = places[i] < kAtBound || places[i] > 1.0 - kAtBound;
+    if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
+  }
+  result.columns.rightCols(solution.columns.cols()) = solution.columns;
+  for (std::size_t i = 0; i < solution.held.size(); ++i) {
+    if (!solution.held[i]) result.free.push_back(static_cast<std::size_t>(searched) + i);
+  }
+  Eigen::MatrixXd kept(result.columns.rows(), static_cast<Eigen::Index>(result.free.size()));
+  for (std::size_t i = 0; i < result.free.size(); ++i) {
+    kept.col(static_cast<Eigen::Index>(i)) = result.columns.col(static_cast<Eigen::Index>(result.free[i]));
+  }
+  result.columns = std::move(kept);
+  return result;
+}
+
+/// Samples that a residual of such neighbours is worth: N (1 - r) / (1 + r).
+double effective_share(const Eigen::VectorXd& residual) {
+  const Eigen::Index n = residual.size();
+  if (n < 3) return 1.0;
+  const double total = residual.squaredNorm();
+  if (total <= 0.0) return 1.0;
+  const double r = std::clamp(residual.head(n - 1).dot(residual.tail(n - 1)) / total, 0.0, 0.999);
+  return (1.0 - r) / (1.0 + r);
+}
+
+Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
+  normal.diagonal() *= 1.0 + kRidge;
+  normal.diagonal().array() += std::numeric_limits<double>::min();
+  return normal;
+}
+
+void hold_out(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
+              const Eigen::VectorXd& residual, FitOutcome& outcome) {
+  const Eigen::MatrixXd normal = linear.columns.transpose() * linear.columns;
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const std::size_t position = projection.touched()[t];
+    const FitSegment& fit = problem.segments[position];
+    const double unweighted = 1.0 / (fit.weight * fit.weight);
+    SegmentResult& result = outcome.segments[position];
+    result.mean_square = unweighted * residual.segment(projection.first_row(t), fit.measured.size()).squaredNorm() /
+                         static_cast<double>(fit.measured.size());
+    for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b) {
+      const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
+      const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
+      Eigen::VectorXd block = residual.segment(first, size);
+      if (linear.columns.cols() > 0) {
+        const auto inside = linear.columns.middleRows(first, size);
+        const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
+        block += inside * rest.ldlt().solve(inside.transpose() * block);
+      }
+      result.held_out_squares[b] = unweighted * block.squaredNorm();
+    }
+  }
+}
+
+std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& projection,
+                                                      const Eigen::VectorXd& places, const Projected& solution,
+                                                      const Linearisation& linear, const FitOutcome& outcome) {
+  std::vector<std::vector<ParameterEstimate>> result;
+  for (const EffectSetting& effect : outcome.effects) {
+    result.emplace_back();
+    for (const double value : effect.values) result.back().push_back({.value = value});
+  }
+  const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, projection.rows() - linear.columns.cols()));
+  const double variance = solution.residual.squaredNorm() / (freedom * effective_share(solution.residual));
+  const Eigen::MatrixXd covariance =
+      variance * regularised(linear.columns.transpose() * linear.columns)
+                     .ldlt()
+                     .solve(Eigen::MatrixXd::Identity(linear.columns.cols(), linear.columns.cols()));
+  const SearchPlan& plan = projection.plan();
+  for (std::size_t i = 0; i < linear.free.size(); ++i) {
+    const auto diagonal = static_cast<Eigen::Index>(i);
+    const double deviation = std::sqrt(std::max(0.0, covariance(diagonal, diagonal)));
+    const std::size_t index = linear.free[i];
+    if (index < plan.searched.size()) {
+      const SearchedParameter& searched = plan.searched[index];
+      const double place = places[static_cast<Eigen::Index>(index)];
+      const double per_place =
+          (searched.at(std::min(1.0, place + kDifferenceStep)) - searched.at(std::max(0.0, place - kDifferenceStep))) /
+          (2.0 * kDifferenceStep);
+      result[searched.effect][searched.parameter].standard_error = deviation * std::abs(per_place);
+    } else if (index - plan.searched.size() < plan.linear.size()) {
+      const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
+      result[parameter.effect][parameter.parameter].standard_error = deviation * std::abs(parameter.unit);
+    }
+  }
+  for (std::size_t i = 0; i < plan.searched.size(); ++i) {
+    const double place = places[static_cast<Eigen::Index>(i)];
+    result[plan.searched[i].effect][plan.searched[i].parameter].at_bound = place < kAtBound || place > 1.0 - kAtBound;
+  }
+  for (std::size_t i = 0; i < plan.linear.size(); ++i) {
+    result[plan.linear[i].effect][plan.linear[i].parameter].at_bound = solution.held[i];
+  }
+  return result;
+}
+
+/// Of segments that the effects leave alone: the baseline's residual.
+SegmentResult untouched(const FitSegment& fit) {
+  SegmentResult result;
+  const Eigen::VectorXd residual = fit.measured - fit.baseline;
+  result.mean_square = residual.squaredNorm() / static_cast<double>(residual.size());
+  for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b) {
+    result.held_out_squares.push_back(
+        residual.segment(fit.block_begins[b], fit.block_begins[b + 1] - fit.block_begins[b]).squaredNorm());
+  }
+  return result;
+}
+
+FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                    const std::vector<EffectSetting>& start, int starts, bool with_nuisance) {
+  const VariableProjection projection{problem, plan_search(problem, effects), with_nuisance};
+  const SearchPlan& plan = projection.plan();
+  Eigen::VectorXd first(start.empty() ? 0 : static_cast<Eigen::Index>(plan.searched.size()));
+  for (Eigen::Index i = 0; i < first.size(); ++i) {
+    const SearchedParameter& searched = plan.searched[static_cast<std::size_t>(i)];
+    first[i] = searched.place_of(start[searched.effect].values[searched.parameter]);
+  }
+  const Eigen::VectorXd places = search_best(projection, first, starts);
+  const Projected solution = projection.solve(places);
+  const Linearisation linear = linearise(projection, places, solution);
+
+  FitOutcome outcome;
+  outcome.effects = projection.settings(places, solution);
+  outcome.with_nuisance = with_nuisance;
+  for (auto i = static_cast<Eigen::Index>(plan.linear.size()); i < solution.coefficients.size(); ++i) {
+    outcome.nuisance.push_back(solution.coefficients[i]);
+  }
+  std::ranges::transform(problem.segments, std::back_inserter(outcome.segments), untouched);
+  hold_out(projection, problem, linear, solution.residual, outcome);
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    SegmentResult& result = outcome.segments[projection.touched()[t]];
+    result.touched = true;
+    result.change = fit.measured - fit.baseline -
+                    solution.residual.segment(projection.first_row(t), fit.measured.size()) / fit.weight;
+  }
+  outcome.parameters = estimates(projection, places, solution, linear, outcome);
+  return outcome;
+}
+
+}  // namespace
+
+double SegmentResult::held_out_mean_square(const FitSegment& segment) const {
+  return std::accumulate(held_out_squares.begin(), held_out_squares.end(), 0.0) /
+         static_cast<double>(segment.measured.size());
+}
+
+FitOutcome fit_effects(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                       bool with_nuisance) {
+  const auto searched = static_cast<Eigen::Index>(plan_search(problem, effects).searched.size());
+  return fit_from(problem, effects, {}, starts_for(searched), with_nuisance);
+}
+
+FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
+                         bool with_nuisance) {
+  std::vector<const EffectType*> effects;
+  std::ranges::transform(start, std::back_inserter(effects), &EffectSetting::type);
+  return fit_from(problem, effects, start, 0, with_nuisance);
+}
+
+FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance) {
+  return fit_from(problem, {}, {}, 0, with_nuisance);
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "diagnosis/identification/segment.hpp"
+#include "experimental_site/rigs/site_stages.hpp"
+
+namespace hybridtest {
+namespace {
+
+/// Before the record everything stood where it stands at its first sample, for so long.
+constexpr double kRestBefore_s = 0.5;
+
+/// The displacement stages that lie between the channels of a segment, one behind the other.
+class DisplacementChain {
+ public:
+  DisplacementChain(const SiteModel& model, const Segment& segment) {
+    if (segment.from == Channel::sent_displacement) network_.emplace(model, segment.period_s);
+    if (segment.from <= Channel::target_displacement && segment.to >= Channel::command_displacement) {
+      compensator_.emplace(model, segment.period_s);
+    }
+    if (segment.to == Channel::measured_displacement) transfer_.emplace(model, segment.period_s);
+  }
+
+  [[nodiscard]] double step(StageSample sample, double measured_m) noexcept {
+    double displacement_m = sample.motion.displacement_m;
+    if (network_) sample.motion.displacement_m = displacement_m = network_->step(sample);
+    if (compensator_) sample.motion.displacement_m = displacement_m = compensator_->step(sample, measured_m);
+    if (transfer_) displacement_m = transfer_->step(sample);
+    return displacement_m;
+  }
+
+ private:
+  std::optional<NetworkStage> network_;
+  std::optional<CompensatorStage> compensator_;
+  std::optional<TransferStage> transfer_;
+};
+
+/// Calls `step(sample, i)` for the rest before the record and then for each of its samples.
+template <class Step>
+void drive(const Segment& segment, Step&& step) {
+  StageSample sample;
+  sample.motion.displacement_m = segment.input.front().displacement_m;
+  if (!segment.load_n.empty()) sample.force_n = segment.load_n.front();
+  const auto rest = static_cast<std::size_t>(std::ceil(kRestBefore_s / segment.period_s));
+  for (std::size_t i = 0; i < rest; ++i) step(sample, 0);
+  for (std::size_t i = 0; i < segment.input.size(); ++i) {
+    sample.time_s = static_cast<double>(i) * segment.period_s;
+    sample.motion = segment.input[i];
+    if (!segment.load_n.empty()) sample.force_n = segment.load_n[i == 0 ? 0 : i - 1];
+    step(sample, i);
+  }
+}
+
+std::vector<double> predict_displacement(const SiteModel& model, const Segment& segment) {
+  DisplacementChain chain{model, segment};
+  std::vector<double> predicted(segment.input.size());
+  const bool measures = segment.to == Channel::measured_displacement;
+  drive(segment, [&](const StageSample& sample, std::size_t i) {
+    const double measured_m = measures ? segment.measured[i == 0 ? 0 : i - 1] : sample.motion.displacement_m;
+    predicted[i] = chain.step(sample, measured_m);
+  });
+  return predicted;
+}
+
+std::vector<double> predict_force(const SiteModel& model, const Segment& segment) {
+  SensorInverse inverse{model, segment.period_s};
+  SpecimenStage specimen{model, segment.period_s};
+  std::vector<double> predicted(segment.input.size());
+  double force_n = 0.0;
+  drive(segment, [&](StageSample sample, std::size_t i) {
+    sample.motion = inverse.step(sample);
+    sample.force_n = force_n;
+    predicted[i] = specimen.step(sample);
+    force_n = specimen.force_n();
+  });
+  return predicted;
+}
+
+}  // namespace
+
+std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
+  SiteModel extended = model;
+  for (const EffectSetting& effect : added) {
+    if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
+  }
+  return segment.to == Channel::measured_force ? predict_force(extended, segment)
+                                               : predict_displacement(extended, segment);
+}
+
+}  // namespace hybridtest

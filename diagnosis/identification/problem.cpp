@@ -1,0 +1,106 @@
+#include "diagnosis/identification/problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+namespace {
+
+using enum EffectInterface;
+
+/// Longest time from one upward crossing of the mean to the next, which a held-out block has to exceed.
+double longest_cycle_s(const Segment& segment) {
+  double mean_m = 0.0;
+  for (const Motion& motion : segment.input) mean_m += motion.displacement_m;
+  mean_m /= static_cast<double>(segment.input.size());
+  std::size_t crossings = 0;
+  for (std::size_t i = 1; i < segment.input.size(); ++i) {
+    if (segment.input[i - 1].displacement_m < mean_m && segment.input[i].displacement_m >= mean_m) ++crossings;
+  }
+  return segment.period_s * static_cast<double>(segment.input.size()) / static_cast<double>(crossings + 1);
+}
+
+std::vector<Eigen::Index> blocks_of(const FitSegment& fit) {
+  const double duration_s = fit.segment.period_s * static_cast<double>(fit.segment.input.size());
+  const double blocks =
+      std::clamp(std::floor(duration_s / longest_cycle_s(fit.segment)), tuning::kFewestBlocks, tuning::kMostBlocks);
+  std::vector<Eigen::Index> begins;
+  for (double block = 0.0; block <= blocks; ++block) {
+    begins.push_back(static_cast<Eigen::Index>(std::round(static_cast<double>(fit.measured.size()) * block / blocks)));
+  }
+  return begins;
+}
+
+double root_mean_square(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
+}
+
+void add_nuisance(FitSegment& fit, EffectInterface interface, std::string_view effect, const Eigen::VectorXd& column) {
+  const EffectType* const type = find_effect(interface, effect);
+  if (type == nullptr || column.squaredNorm() == 0.0) return;
+  fit.nuisance.conservativeResize(fit.measured.size(), fit.nuisance.cols() + 1);
+  fit.nuisance.col(fit.nuisance.cols() - 1) = column;
+  fit.nuisance_types.push_back(type);
+}
+
+void add_nuisances(FitSegment& fit) {
+  fit.nuisance.resize(fit.measured.size(), 0);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fit.measured.size());
+  if (fit.segment.to == Channel::measured_force) {
+    std::vector<double> displacement_m(fit.segment.input.size());
+    std::ranges::transform(fit.segment.input, displacement_m.begin(), &Motion::displacement_m);
+    add_nuisance(fit, specimen, "stiffness_error", fit.average(displacement_m));
+    add_nuisance(fit, force_sensor, "bias", ones);
+    return;
+  }
+  if (fit.segment.to != Channel::measured_displacement) return;
+  const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  const Eigen::Index last = fit.baseline.size() - 1;
+  Eigen::VectorXd later = Eigen::VectorXd::Zero(fit.baseline.size());
+  for (Eigen::Index i = 1; i < last; ++i) later[i] = (fit.baseline[i - 1] - fit.baseline[i + 1]) / (2.0 * period_s);
+  add_nuisance(fit, transfer_system, "gain", fit.baseline);
+  add_nuisance(fit, transfer_system, "delay", later);
+  add_nuisance(fit, displacement_sensor, "bias", ones);
+}
+
+FitSegment prepare(const SiteModel& model, Segment segment) {
+  FitSegment fit;
+  fit.segment = std::move(segment);
+  fit.averaged = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::floor(1.0 / (tuning::kFitRate_hz * fit.segment.period_s))));
+  fit.measured = fit.average(fit.segment.measured);
+  fit.baseline = fit.average(predict(model, fit.segment));
+  fit.floor = fit.segment.floor / std::sqrt(static_cast<double>(fit.averaged));
+  const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
+  fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
+  fit.block_begins = blocks_of(fit);
+  add_nuisances(fit);
+  return fit;
+}
+
+}  // namespace
+
+Eigen::VectorXd FitSegment::average(std::span<const double> values) const {
+  const auto size = static_cast<Eigen::Index>(values.size() / averaged);
+  const Eigen::Map<const Eigen::MatrixXd> columns{values.data(), static_cast<Eigen::Index>(averaged), size};
+  return columns.colwise().mean().transpose();
+}
+
+IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments) {
+  IdentificationProblem problem;
+  problem.model = model;
+  problem.scales = scales_of(segments);
+  for (Segment& segment : segments) problem.segments.push_back(prepare(model, std::move(segment)));
+  return problem;
+}
+
+Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
+                        std::span<const EffectSetting> added) {
+  const bool touched =
+      std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
+  return touched ? segment.average(predict(problem.model, segment.segment, added)) : segment.baseline;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/signal_scales.hpp"
+
+namespace hybridtest {
+
+/// A segment as fits see it: averaged over `averaged` neighbouring samples, which keeps what a
+/// hybrid test excites and leaves out noise above.
+struct FitSegment {
+  Segment segment;
+  std::size_t averaged = 1;
+  Eigen::VectorXd measured;                       // averaged
+  Eigen::VectorXd baseline;                       // likewise, of the model as the user gave it
+  Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
+  std::vector<const EffectType*> nuisance_types;  // one per column
+  double weight = 1.0;                            // one over what counts as a standard deviation here
+  double floor = 0.0;                             // noise of `measured`, after averaging
+  std::vector<Eigen::Index> block_begins;         // held-out blocks, one more than there are
+
+  [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
+};
+
+/// What every candidate is fitted to.
+struct IdentificationProblem {
+  SiteModel model;
+  std::vector<FitSegment> segments;
+  SignalScales scales;
+};
+
+/// @param segments   of recordings of the role fit.
+[[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
+
+/// Averaged prediction with effects added; the baseline where none touches the segment.
+[[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
+                                      std::span<const EffectSetting> added);
+
+}  // namespace hybridtest

@@ -1,0 +1,117 @@
+#include "diagnosis/identification/segment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include "diagnosis/signals/local_polynomial.hpp"
+
+namespace hybridtest {
+namespace {
+
+using enum EffectInterface;
+
+constexpr std::array kDisplacementChain{Channel::sent_displacement, Channel::target_displacement,
+                                        Channel::command_displacement, Channel::measured_displacement};
+
+EffectInterface interface_ending_in(Channel channel) noexcept {
+  switch (channel) {
+    case Channel::target_displacement: return network;
+    case Channel::command_displacement: return compensator;
+    case Channel::measured_force: return specimen;
+    default: return transfer_system;
+  }
+}
+
+double root_mean_square(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
+}
+
+/// Noise of the input that smoothing leaves, as it arrives in the output; by the ratio of the signals'
+/// sizes, which for a specimen is its secant stiffness.
+double input_floor(const DofRecording& dof, Channel from, Channel to, double noise_share) {
+  const double size = root_mean_square(dof.of(from));
+  return size > 0.0 ? root_mean_square(dof.of(to)) / size * white_noise_level(dof.of(from)) * std::sqrt(noise_share)
+                    : 0.0;
+}
+
+Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
+                        Channel to) {
+  Segment segment;
+  segment.from = from;
+  segment.to = to;
+  segment.interface = interface_ending_in(to);
+  segment.recording = position;
+  segment.period_s = recording.sample_period_s;
+  const LocalPolynomial polynomial{widest_faithful_half_width(dof.of(from)), recording.sample_period_s};
+  segment.input = polynomial.motion(dof.of(from));
+  segment.measured = dof.of(to);
+  if (to != Channel::measured_force) {
+    // Commands are exact; smoothing is for their derivatives.
+    for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
+    if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
+  }
+  const double from_input = to == Channel::measured_force ? input_floor(dof, from, to, polynomial.noise_share()) : 0.0;
+  segment.floor = std::hypot(white_noise_level(segment.measured), from_input);
+  return segment;
+}
+
+bool passes(const Segment& segment, EffectInterface stage) noexcept {
+  const auto lies_between = [&](Channel in, Channel out) { return segment.from <= in && segment.to >= out; };
+  switch (stage) {
+    case network: return lies_between(Channel::sent_displacement, Channel::target_displacement);
+    case compensator: return lies_between(Channel::target_displacement, Channel::command_displacement);
+    case transfer_system: return segment.to == Channel::measured_displacement;
+    case displacement_sensor:
+      return segment.to == Channel::measured_displacement || segment.from == Channel::measured_displacement;
+    case specimen:
+    case force_sensor: return segment.to == Channel::measured_force;
+    case numerical_substructure: return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool Segment::touched_by(const EffectType& effect) const noexcept {
+  if (!passes(*this, effect.interface)) return false;
+  return effect.interface != displacement_sensor || to == Channel::measured_displacement ||
+         effect.make_inverse != nullptr;
+}
+
+Segment thinned(const Segment& segment, double rate_hz) {
+  const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
+  if (stride == 1 || passes(segment, compensator)) return segment;
+  const auto every = [stride](const auto& values) {
+    std::remove_cvref_t<decltype(values)> kept;
+    for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
+    return kept;
+  };
+  Segment result = segment;
+  result.period_s = segment.period_s * static_cast<double>(stride);
+  result.input = every(segment.input);
+  result.load_n = every(segment.load_n);
+  result.measured = every(segment.measured);
+  return result;
+}
+
+std::vector<Segment> segments_of(const Recording& recording, std::size_t dof_index, std::size_t position) {
+  const DofRecording& dof = recording.dofs[dof_index];
+  std::vector<Segment> segments;
+  const Channel* previous = nullptr;
+  for (const Channel& channel : kDisplacementChain) {
+    if (!dof.has(channel)) continue;
+    if (previous != nullptr) segments.push_back(segment_between(recording, position, dof, *previous, channel));
+    previous = &channel;
+  }
+  if (dof.has(Channel::measured_displacement) && dof.has(Channel::measured_force)) {
+    segments.push_back(
+        segment_between(recording, position, dof, Channel::measured_displacement, Channel::measured_force));
+  }
+  return segments;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/recording.hpp"
+#include "experimental_site/effects/effect.hpp"
+#include "experimental_site/effects/effect_type.hpp"
+#include "experimental_site/rigs/site_model.hpp"
+
+namespace hybridtest {
+
+/// The part of the chain between two neighbouring recorded channels of one degree of freedom: driven
+/// with what was measured in front of it, so that an error does not travel downstream.
+struct Segment {
+  Channel from = Channel::command_displacement;
+  Channel to = Channel::measured_displacement;
+  EffectInterface interface {};  // that a gap here is put down to until an effect says otherwise
+  std::size_t recording = 0;     // position in the list that was given
+  double period_s = 0.0;
+  std::vector<Motion> input;     // quiet motion of `from`, one per sample
+  std::vector<double> load_n;    // measured force at the sample before; empty: unknown
+  std::vector<double> measured;  // `to` as recorded
+  // Standard deviation of what white noise in both channels makes of the residual, per sample.
+  double floor = 0.0;
+
+  /// An effect at that interface changes what this segment predicts.
+  [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
+};
+
+/// Everything that one degree of freedom of a recording can judge, along the chain.
+[[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
+
+/// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
+/// left. A segment with a compensator between its channels, whose command depends on its own rate,
+/// stays as it is.
+[[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
+
+/// What the site predicts for `to`, in free simulation over the whole segment.
+/// @param added   effects beyond the model's own, behind them.
+/// @throws ConfigError for parameters that an effect refuses.
+[[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
+                                          std::span<const EffectSetting> added = {});
+
+}  // namespace hybridtest

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "diagnosis/intake/raw_recording.hpp"
+
+namespace hybridtest {
+
+/// No site moves further or faster; a column of metres that does is in another unit.
+inline constexpr double kLargestPlausibleDisplacement_m = 10.0;
+inline constexpr double kLargestPlausibleSpeed_m_per_s = 10.0;
+
+/// Suspects columns of another unit than their header says.
+///
+/// The displacements of a degree of freedom describe one motion: where one spans 1000, 100 or 39.37
+/// times what another spans, it is in millimetres, centimetres or inches. Alone, a displacement is
+/// suspected when it passes the largest plausible one or moves faster than the largest plausible
+/// speed over 20 ms. Whether a force is in newtons cannot be told from a recording alone.
+/// @param raw   values finite. @param period_s   positive.
+void check_units(const RawRecording& raw, double period_s, FindingList& findings);
+
+}  // namespace hybridtest

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/localisation/gap_signals.hpp"
+
+namespace hybridtest {
+
+enum class FloorSource : std::uint8_t { repeated_recordings, repeated_cycles, rest, high_frequencies };
+/// In plain words: `repeated cycles`.
+[[nodiscard]] std::string_view name_of(FloorSource source) noexcept;
+
+/// What no model could reproduce: the part of a residual that does not come back.
+struct RepeatabilityFloor {
+  double rms = 0.0;  // in the unit of the residual
+  FloorSource source = FloorSource::high_frequencies;
+};
+
+/// Of two recordings of the same test: half the variance of the difference of their residuals is what
+/// either has alone. Nothing when their inputs differ by more than a hundredth (root mean square).
+[[nodiscard]] std::optional<RepeatabilityFloor> floor_of_repetition(const GapSignals& first, const GapSignals& second);
+
+/// Of cycles that repeat their input: the spread of the residual around the mean cycle, taken from
+/// stretches of one lag that fits best. Nothing when the input does not come back, within a fiftieth,
+/// over at least half of the recording.
+[[nodiscard]] std::optional<RepeatabilityFloor> floor_of_cycles(const GapSignals& signals);
+
+/// Of stretches at rest (rest_stretches()): the residual's spread around its mean in each. Nothing without any.
+[[nodiscard]] std::optional<RepeatabilityFloor> floor_at_rest(const GapSignals& signals);
+
+/// Of the fastest fluctuation, second differences, as if it were white: a lower limit to the floor, an upper one
+/// to white noise. @param signals   at least three samples.
+[[nodiscard]] RepeatabilityFloor floor_of_high_frequencies(const GapSignals& signals);
+
+/// The best of these that the recording offers: repeated cycles, else the larger of rest and high frequencies.
+[[nodiscard]] RepeatabilityFloor repeatability_floor(const GapSignals& signals);
+
+}  // namespace hybridtest

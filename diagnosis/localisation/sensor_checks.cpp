@@ -1,0 +1,105 @@
+#include "diagnosis/localisation/sensor_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "diagnosis/localisation/gap_signals.hpp"
+#include "diagnosis/localisation/rest_stretches.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr std::size_t kClippedRun = 3;
+constexpr double kLargestLag_s = 0.05;
+constexpr double kLeastCorrelation = 0.5;
+
+double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+std::size_t clipped(std::span<const double> values, double extreme) {
+  std::size_t count = 0;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i <= values.size(); ++i) {
+    if (i < values.size() && values[i] == extreme) {
+      ++run;
+      continue;
+    }
+    if (run >= kClippedRun) count += run;
+    run = 0;
+  }
+  return count;
+}
+
+/// Correlation of the changes of both with the force `lag` samples behind.
+double change_correlation(std::span<const double> x, std::span<const double> f, std::ptrdiff_t lag) {
+  double xf = 0.0;
+  double xx = 0.0;
+  double ff = 0.0;
+  const auto size = static_cast<std::ptrdiff_t>(x.size());
+  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(1, 1 - lag); i < std::min(size, size - lag); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const auto late = static_cast<std::size_t>(i + lag);
+    const double dx = x[at] - x[at - 1];
+    const double df = f[late] - f[late - 1];
+    xf += dx * df;
+    xx += dx * dx;
+    ff += df * df;
+  }
+  return xx > 0.0 && ff > 0.0 ? xf / std::sqrt(xx * ff) : 0.0;
+}
+
+}  // namespace
+
+ChannelCheck check_channel(std::span<const double> values) {
+  ChannelCheck check;
+  if (values.size() < 2) return check;
+  std::size_t repeated = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step == 0.0) {
+      ++repeated;
+    } else if (check.quantum == 0.0 || step < check.quantum) {
+      check.quantum = step;
+    }
+  }
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto size = static_cast<double>(values.size());
+  check.repeated_share = static_cast<double>(repeated) / size;
+  if (*low < *high) check.clipped_share = static_cast<double>(clipped(values, *low) + clipped(values, *high)) / size;
+  return check;
+}
+
+std::optional<RestReading> read_at_rest(std::span<const double> values, std::span<const double> motion_m,
+                                        double period_s) {
+  const std::vector<RestStretch> stretches = rest_stretches(motion_m, period_s);
+  if (stretches.empty()) return {};
+  const auto part = [&](const RestStretch& stretch) { return values.subspan(stretch.begin, stretch.count); };
+  RestReading reading{.first = mean(part(stretches.front())), .last = mean(part(stretches.back()))};
+  const double apart_s = static_cast<double>(stretches.back().begin - stretches.front().begin) * period_s;
+  if (apart_s > 0.0) reading.drift_per_s = (reading.last - reading.first) / apart_s;
+  double squares = 0.0;
+  for (const RestStretch& stretch : stretches) squares += variance(part(stretch));
+  reading.rms = std::sqrt(squares / static_cast<double>(stretches.size()));
+  return reading;
+}
+
+std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
+                                  double period_s) {
+  const auto most = static_cast<std::ptrdiff_t>(std::lround(kLargestLag_s / period_s));
+  if (most < 1 || displacement_m.size() < 4 * static_cast<std::size_t>(most)) return {};
+  std::vector<double> found;
+  for (std::ptrdiff_t lag = -most; lag <= most; ++lag) {
+    found.push_back(std::abs(change_correlation(displacement_m, force_n, lag)));
+  }
+  const auto best = std::ranges::max_element(found);
+  if (*best < kLeastCorrelation || best == found.begin() || best + 1 == found.end()) return {};
+  const double curvature = *(best - 1) - 2.0 * *best + *(best + 1);
+  const double shift = curvature < 0.0 ? 0.5 * (*(best - 1) - *(best + 1)) / curvature : 0.0;
+  return (static_cast<double>((best - found.begin()) - most) + shift) * period_s;
+}
+
+}  // namespace hybridtest

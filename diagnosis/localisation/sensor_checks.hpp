@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace hybridtest {
+
+/// What one channel tells of its sensor alone.
+struct ChannelCheck {
+  double quantum = 0.0;         // smallest step between neighbours; 0 for a channel that never changes
+  double repeated_share = 0.0;  // of samples that equal the one before
+  double clipped_share = 0.0;   // of samples that sit, three or more in a row, at the very extremes
+};
+[[nodiscard]] ChannelCheck check_channel(std::span<const double> values);
+
+/// What a channel reads while the motion rests.
+struct RestReading {
+  double first = 0.0;        // mean over the first stretch at rest: the tare
+  double last = 0.0;         // mean over the last one
+  double drift_per_s = 0.0;  // between the two; 0 where there is one stretch
+  double rms = 0.0;          // of the noise within the stretches
+};
+/// @param motion_m   stretches of at least 0.2 s within a thousandth of its span count as rest.
+/// @return nothing without any.
+[[nodiscard]] std::optional<RestReading> read_at_rest(std::span<const double> values, std::span<const double> motion_m,
+                                                      double period_s);
+
+/// By how much the force is behind the displacement: the lag at which their changes (dF against dx) go
+/// together best, in magnitude, refined by a parabola through three lags. A specimen that resists with
+/// velocity or mass leads or lags by itself: only with a stiff specimen is this the sensors' skew.
+/// @return [s]; nothing when the best correlation is under 0.5 or lies at the end of the search of ± 50 ms.
+[[nodiscard]] std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
+                                                double period_s);
+
+}  // namespace hybridtest

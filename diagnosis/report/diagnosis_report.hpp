@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/recording.hpp"
+
+/// What the page of a diagnosis shows: the fields of diagnosis.json, and the curves behind them.
+namespace hybridtest::report {
+
+/// 95 % interval.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+enum class Verdict : std::uint8_t { none, named, set, partial, unknown, not_excited };
+/// As in diagnosis.json: `not_excited`.
+[[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
+
+struct ReportedRecording {
+  std::string file;
+  std::string sha256;
+  RecordingRole role = RecordingRole::fit;
+  double duration_s = 0.0;
+  double sample_period_s = 0.0;
+};
+
+/// One interface of the chain. Root mean squares are relative to that of the measured output.
+struct InterfaceGap {
+  std::string interface;  // `transfer_system`
+  bool is_judged = false;
+  std::string why_not{};     // where it is not: the channel that is missing, or what it would need
+  bool is_at_fault = false;  // its gap stands above its floor
+  double share = 0.0;        // of the whole gap, 0 to 1
+  Interval share_ci95{};
+  double nrmse = 0.0;
+  double floor_nrmse = 0.0;
+};
+
+struct ReportedParameter {
+  std::string name;  // `friction_force_n`
+  std::string unit;
+  double value = 0.0;
+  std::optional<Interval> ci95{};
+  bool is_at_bound = false;
+};
+
+/// One effect in the ranking; the verdict's causes come first.
+struct RankedCause {
+  std::string interface;
+  std::string effect;
+  std::string equation{};             // one line, from the library
+  double probability = 0.0;           // 0 to 1
+  double share = 0.0;                 // of what all causes explain; 0 for an alternative
+  bool is_cause = false;              // of the verdict; else an alternative
+  bool is_indistinguishable = false;  // from the first one, on these recordings
+  std::vector<ReportedParameter> parameters{};
+};
+
+/// How far a gap shrinks when the causes are added to the model, on data not used to find them.
+struct Shrink {
+  double nrmse_before = 0.0;
+  double nrmse_after = 0.0;
+  double floor_nrmse = 0.0;
+  double variance_removed = 0.0;  // 0 to 1
+  std::optional<Interval> ci95{};
+  std::optional<double> explainable_fraction{};  // (E0 - E1) / (E0 - floor)
+  double unknown_share = 0.0;                    // of the gap before: repeatable, and explained by nothing
+};
+
+/// The same in the response of a whole hybrid test.
+struct ResponseShrink {
+  double nrmse_before = 0.0;
+  double nrmse_after = 0.0;
+  double peak_error_before = 0.0;  // relative to the peak
+  double peak_error_after = 0.0;
+  std::optional<double> energy_error_before{};  // relative to the energy put in
+  std::optional<double> energy_error_after{};
+};
+
+/// What went in and came out of one interface, as recorded and as modelled: the curves of the page.
+/// All of one length, evenly sampled.
+struct InterfaceSeries {
+  std::string interface;
+  std::size_t dof = 0;    // 0-based
+  std::string recording;  // its file
+  bool is_held_out = false;
+  double sample_period_s = 0.0;
+  std::string unit;                 // of the output: "m" or "N"
+  std::vector<double> input_m{};    // what drove it: command of a transfer system, measured displacement of a specimen
+  std::vector<double> measured{};   // output
+  std::vector<double> model{};      // output of the user's model
+  std::vector<double> augmented{};  // output with the causes added; empty when there is no cause
+};
+
+struct DiagnosisReport {
+  std::string site;  // name of the model, for the heading
+  std::string model_file;
+  std::vector<ReportedRecording> recordings;
+  Verdict verdict = Verdict::not_excited;
+  std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share
+  std::vector<RankedCause> ranking;
+  std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause
+  std::optional<ResponseShrink> response_shrink;
+  std::string why_no_response;          // where there is none
+  std::string next_experiment;          // empty when nothing is left to tell apart
+  std::vector<std::string> notes;       // what a reader must know: bounds that were hit, channels that were missing
+  std::vector<InterfaceSeries> series;  // at least of the interface at fault; its first one is drawn large
+};
+
+}  // namespace hybridtest::report

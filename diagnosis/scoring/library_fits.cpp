@@ -1,0 +1,143 @@
+#include "diagnosis/scoring/library_fits.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "core/config/error.hpp"
+#include "diagnosis/scoring/random_network.hpp"
+#include "diagnosis/scoring/score.hpp"
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+namespace {
+
+std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) {
+  std::vector<Candidate> candidates;
+  for (std::optional<Candidate>& candidate : fitted) {
+    if (candidate && std::isfinite(candidate->score)) candidates.push_back(std::move(*candidate));
+  }
+  std::ranges::stable_sort(candidates, std::greater{}, &Candidate::score);
+  return candidates;
+}
+
+std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
+                                 double nuisance_score) try {
+  Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
+  alone.score = held_out_score(problem, alone.fit);
+  Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
+  const double score = held_out_score(problem, beside.fit);
+  beside.score = score - tuning::kNuisanceCost;
+  // Beside the nuisances an effect has to explain something that they do not.
+  const bool needed = score > nuisance_score + tuning::kNuisanceCost;
+  return needed && beside.score > alone.score ? beside : alone;
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// The same fit at the full rate.
+std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
+  Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
+  candidate.score = held_out_score(problem, candidate.fit) - (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  return candidate;
+} catch (const ConfigError&) {
+  return {};
+}
+
+}  // namespace
+
+void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
+                          const FitProgress& progress) {
+  std::atomic<std::size_t> next = 0;
+  std::size_t done = 0;
+  std::mutex mutex;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      work(i);
+      const std::scoped_lock lock{mutex};
+      if (progress) progress(++done, count);
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < std::min(threads, count); ++i) others.emplace_back(run);
+  run();
+}
+
+std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem) {
+  std::vector<const EffectType*> effects;
+  for (const EffectType& effect : effect_library()) {
+    const bool touches =
+        std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
+    if (touches && effect.make != nullptr && !is_random(effect)) effects.push_back(&effect);
+  }
+  return effects;
+}
+
+std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                   std::size_t threads, const FitProgress& progress) {
+  const std::vector<const EffectType*> effects = judged_effects(problem);
+  const double nuisance_score = held_out_score(coarse, fit_nothing(coarse, true));
+  std::vector<std::optional<Candidate>> fitted(effects.size());
+  for_each_in_parallel(
+      effects.size(), threads, [&](std::size_t i) { fitted[i] = fit_one(coarse, *effects[i], nuisance_score); },
+      progress);
+  std::vector<Candidate> candidates = best_first(std::move(fitted));
+  if (candidates.empty()) return candidates;
+  // The coarse record has fewer samples: scores are compared with those of the full one relative to no effect.
+  const double offset =
+      held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
+  const double best = candidates.front().score;
+  std::vector<std::optional<Candidate>> refined(candidates.size());
+  for_each_in_parallel(candidates.size(), threads, [&](std::size_t i) {
+    const Candidate& found = candidates[i];
+    if (found.score > best - tuning::kFarBehind) {
+      refined[i] = refine(problem, found);
+    } else {
+      refined[i] = found;
+      refined[i]->score += offset;
+    }
+  });
+  return best_first(std::move(refined));
+}
+
+std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                  const std::vector<EffectSetting>& base, std::size_t threads) {
+  std::vector<const EffectType*> effects = judged_effects(problem);
+  std::erase_if(effects, [&](const EffectType* effect) {
+    return std::ranges::any_of(base, [&](const EffectSetting& setting) { return setting.type == effect; });
+  });
+  IdentificationProblem extended = coarse;
+  extended.model.effects.insert(extended.model.effects.end(), base.begin(), base.end());
+  for (FitSegment& fit : extended.segments) fit.baseline = predict(coarse, fit, base);
+  std::vector<std::optional<Candidate>> screened(effects.size());
+  for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
+    try {
+      Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
+      candidate.score = held_out_score(extended, candidate.fit);
+      screened[i] = std::move(candidate);
+    } catch (const ConfigError&) {
+      screened[i].reset();
+    }
+  });
+  std::vector<Candidate> promising = best_first(std::move(screened));
+  if (promising.size() > tuning::kRefittedPairs) promising.resize(tuning::kRefittedPairs);
+  std::vector<std::optional<Candidate>> refitted(promising.size());
+  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
+    std::vector<EffectSetting> start = base;
+    start.push_back(promising[i].fit.effects.front());
+    try {
+      const FitOutcome together = refit_effects(coarse, start, false);
+      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
+      candidate.score = held_out_score(problem, candidate.fit);
+      refitted[i] = std::move(candidate);
+    } catch (const ConfigError&) {
+      refitted[i].reset();
+    }
+  });
+  return best_first(std::move(refitted));
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+
+/// Every number of the diagnosis that was chosen and not derived, with what it was chosen for.
+namespace hybridtest::tuning {
+
+/// Rate at which predictions are compared [Hz]. Ten samples per cycle of the fastest motion that
+/// servo-hydraulic actuators follow (about 25 Hz).
+inline constexpr double kFitRate_hz = 250.0;
+
+/// Share of the signal that no model is expected to reproduce: keeps noise-free records from being
+/// judged by rounding, and weighs interfaces against each other.
+inline constexpr double kModelAllowance = 0.003;
+
+/// Held-out blocks per recording; as many as cycles allow within these.
+inline constexpr double kFewestBlocks = 5.0;
+inline constexpr double kMostBlocks = 12.0;
+
+/// How far a search goes: its steps, the relative gain below which it stops, and how many of the
+/// starts it follows.
+inline constexpr int kSearchIterations = 12;
+inline constexpr double kSearchTolerance = 1e-5;
+inline constexpr std::size_t kRefinedStarts = 2;
+
+/// Independent samples that a second of a structured residual is worth.
+inline constexpr double kIndependentPerSecond = 5.0;
+/// What leaving the model's slightly wrong parameters free costs a candidate [nats].
+inline constexpr double kNuisanceCost = 3.0;
+/// An effect so far behind the best one on the coarse record is not looked at again [nats].
+inline constexpr double kFarBehind = 25.0;
+/// How many of the screened second effects are refitted together with the first.
+inline constexpr std::size_t kRefittedPairs = 4;
+
+/// Gain over the model as it is above which there is something to explain [nats].
+inline constexpr double kDetectionGain = 5.0;
+/// A further effect is taken when it gains so much [nats] and leaves less than this share of what was left.
+inline constexpr double kAnotherEffectGain = 6.0;
+inline constexpr double kAnotherEffectLeaves = 0.6;
+/// Of the gap: with less left than this nobody looks for a further effect.
+inline constexpr double kNothingLeft = 0.002;
+inline constexpr double kLittleLeft = 0.03;
+/// How many of the best single effects a second one is looked for beside, and the most effects together.
+inline constexpr std::size_t kLeadersPaired = 2;
+inline constexpr std::size_t kMostEffects = 4;
+
+/// A gap below this share of its floor [rms over rms] is none.
+inline constexpr double kGapOverFloor = 0.3;
+/// An interface is at fault when its residual exceeds its floor by this factor.
+inline constexpr double kFaultOverFloor = 1.15;
+/// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
+inline constexpr double kNamedLeaves = 0.0625;
+inline constexpr double kPartialLeaves = 0.3;
+/// A set holds the most probable effects until they are this probable together.
+inline constexpr double kCredible = 0.9;
+
+}  // namespace hybridtest::tuning

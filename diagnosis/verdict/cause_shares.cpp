@@ -1,0 +1,56 @@
+#include "diagnosis/verdict/cause_shares.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "diagnosis/scoring/score.hpp"
+
+namespace hybridtest {
+namespace {
+
+/// Gap explained by the effects whose bits are set.
+std::vector<double> explained_by_subset(const IdentificationProblem& problem, const FitOutcome& baseline,
+                                        const FitOutcome& chosen) {
+  const std::size_t subsets = std::size_t{1} << chosen.effects.size();
+  const double total = gap_energy(problem, baseline).total;
+  std::vector<double> explained(subsets, 0.0);
+  explained.back() = std::max(0.0, total - gap_energy(problem, chosen).total);
+  for (std::size_t subset = 1; subset + 1 < subsets; ++subset) {
+    std::vector<EffectSetting> effects;
+    for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
+      if ((subset >> i & 1U) != 0) effects.push_back(chosen.effects[i]);
+    }
+    explained[subset] = std::max(0.0, total - gap_energy(problem, refit_effects(problem, effects, false)).total);
+  }
+  return explained;
+}
+
+double factorial(int n) { return std::tgamma(n + 1.0); }
+
+}  // namespace
+
+std::vector<double> cause_shares(const IdentificationProblem& problem, const FitOutcome& baseline,
+                                 const FitOutcome& chosen) {
+  const auto n = static_cast<int>(chosen.effects.size());
+  std::vector<double> shares(chosen.effects.size(), 1.0 / std::max(1, n));
+  if (n < 2) return shares;
+  const std::vector<double> explained = explained_by_subset(problem, baseline, chosen);
+  if (explained.back() <= 0.0) return shares;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    double value = 0.0;
+    for (std::size_t subset = 0; subset < explained.size(); ++subset) {
+      if ((subset >> i & 1U) != 0) continue;
+      const int before = std::popcount(subset);
+      value += factorial(before) * factorial(n - before - 1) / factorial(n) *
+               (explained[subset | std::size_t{1} << i] - explained[subset]);
+    }
+    shares[i] = std::max(0.0, value);
+  }
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share = sum > 0.0 ? share / sum : 1.0 / n;
+  return shares;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,116 @@
+#include "launch/diagnose_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "core/config/error.hpp"
+#include "diagnosis/report/diagnosis_json.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+
+double largest_gap(const Diagnosis& diagnosis) {
+  double largest = 0.0;
+  for (const report::InterfaceGap& gap : diagnosis.report.where) largest = std::max(largest, gap.nrmse);
+  return largest;
+}
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out{file, std::ios::binary};
+  out << text;
+  if (!out.flush()) throw ConfigError{file.string() + ": cannot be written"};
+}
+
+std::string in_words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::none: return "no gap above the floor";
+    case Verdict::named: return "the cause is named";
+    case Verdict::set: return "one of several effects that these recordings cannot tell apart";
+    case Verdict::partial: return "a cause is named, and part of the gap comes back that it does not explain";
+    case Verdict::unknown: return "the gap comes back, and no effect of the library explains it";
+    case Verdict::not_excited: return "the recordings cannot tell";
+  }
+  return {};
+}
+
+std::string parameters_in_words(const report::RankedCause& cause) {
+  std::string text;
+  for (const report::ReportedParameter& parameter : cause.parameters) {
+    text += fmt::format("      {:<32} {:.5g}", parameter.name, parameter.value);
+    if (parameter.ci95) text += fmt::format("  [{:.5g}, {:.5g}]", parameter.ci95->low, parameter.ci95->high);
+    if (parameter.is_at_bound) text += "  at the end of its range";
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
+                            DiagnoseSettings settings) {
+  settings.site = model.name;
+  settings.model_file = model.file.string();
+  std::size_t dofs = model.dofs.size();
+  for (const Recording& recording : recordings) dofs = std::min(dofs, recording.dofs.size());
+  SiteDiagnosis worst;
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
+    settings.dof = dof;
+    Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
+    if (dofs > 1) diagnosis.report.notes.push_back(fmt::format("Speaks of degree of freedom {} of {}.", dof + 1, dofs));
+    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof};
+  }
+  return worst;
+}
+
+void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
+                     const std::filesystem::path& directory) {
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
+  write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
+  std::vector<ListedEffect> causes;
+  for (const EffectSetting& cause : diagnosis.diagnosis.causes) {
+    causes.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(diagnosis.dof)} : std::nullopt});
+  }
+  write_file(directory / "augmented_model.yaml", model.with_effects(causes));
+}
+
+std::string summary_of(const SiteDiagnosis& site) {
+  const report::DiagnosisReport& report = site.diagnosis.report;
+  std::string text = fmt::format("{}: {}\n", report::name_of(report.verdict), in_words(report.verdict));
+  if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
+  for (const report::InterfaceGap& gap : report.where) {
+    text +=
+        fmt::format("    {:<22} {:>5.1f} % [{:>5.1f}, {:>5.1f}] {:>9.4f} {:>10.4f}\n", gap.interface, 100.0 * gap.share,
+                    100.0 * gap.share_ci95.low, 100.0 * gap.share_ci95.high, gap.nrmse, gap.floor_nrmse);
+  }
+  bool causes = true;
+  for (const report::RankedCause& cause : report.ranking) {
+    if (&cause == &report.ranking.front() && cause.is_cause) text += "\n  causes\n";
+    if (causes && !cause.is_cause) {
+      text += "\n  also considered\n";
+      causes = false;
+    }
+    if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
+    text += fmt::format("    {}: {}, probability {:.3f}\n", cause.interface, cause.effect, cause.probability);
+    if (cause.is_cause) text += parameters_in_words(cause);
+  }
+  if (report.interface_shrink) {
+    const report::Shrink& shrink = *report.interface_shrink;
+    text += fmt::format("\n  gap there, NRMSE         {:.4f} before, {:.4f} after, floor {:.4f}\n", shrink.nrmse_before,
+                        shrink.nrmse_after, shrink.floor_nrmse);
+    text += fmt::format("  variance removed         {:.2f} %", 100.0 * shrink.variance_removed);
+    if (shrink.ci95) text += fmt::format(" [{:.2f}, {:.2f}]", 100.0 * shrink.ci95->low, 100.0 * shrink.ci95->high);
+    text += '\n';
+  }
+  if (!report.next_experiment.empty()) text += "\n  next: " + report.next_experiment + "\n";
+  for (const std::string& note : report.notes) text += "  note: " + note + "\n";
+  return text;
+}
+
+}  // namespace hybridtest

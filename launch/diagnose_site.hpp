@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "launch/site_model_file.hpp"
+
+namespace hybridtest {
+
+/// A diagnosis of a site, and the degree of freedom it speaks of.
+struct SiteDiagnosis {
+  Diagnosis diagnosis;
+  std::size_t dof = 0;  // 0-based
+};
+
+/// Diagnoses every degree of freedom that model and recordings share; the answer is that of the largest gap.
+/// @param settings   its `dof`, `site` and `model_file` are filled in here.
+[[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
+                                          DiagnoseSettings settings);
+
+/// Writes diagnosis.json and, where there are causes, augmented_model.yaml.
+/// @throws ConfigError when the directory cannot be written to.
+void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
+                     const std::filesystem::path& directory);
+
+/// The answer in words, for a person.
+[[nodiscard]] std::string summary_of(const SiteDiagnosis& diagnosis);
+
+}  // namespace hybridtest

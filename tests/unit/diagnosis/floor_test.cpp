@@ -1,0 +1,67 @@
+#include "diagnosis/localisation/floor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/diagnosis/made_signals.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr std::size_t kSamples = 20'000;
+constexpr double kNoise = 40.0;
+/// Three standard errors of a root mean square over 20 000 samples of white noise: 3/sqrt(2 n) = 1.5 %.
+constexpr double kTolerance = 0.015 * kNoise;
+
+/// A gap that comes back in every cycle, of 500, under noise that does not.
+std::vector<double> repeatable_gap(const std::vector<double>& motion, std::uint64_t stream) {
+  auto residual = white_noise(kSamples, kNoise, stream);
+  for (std::size_t i = 0; i < kSamples; ++i) residual[i] += 500.0 * motion[i] * motion[i];
+  return residual;
+}
+
+TEST(Floor, OfRepeatedCyclesIsTheNoiseAndNotTheGap) {
+  const auto motion = sampled(kSamples, [](double t) { return sine(1.0, t); });
+  const auto residual = repeatable_gap(motion, 1);
+  const auto floor = floor_of_cycles({kMadePeriod_s, motion, residual, residual});
+  ASSERT_TRUE(floor.has_value());
+  // Each of the 19 differences counts once more than it is independent.
+  EXPECT_NEAR(floor->rms, kNoise, 1.5 * kTolerance);
+  EXPECT_EQ(floor->source, FloorSource::repeated_cycles);
+}
+
+TEST(Floor, OfCyclesNeedsCyclesThatRepeat) {
+  const auto sweep = sampled(kSamples, [](double t) { return std::sin(t * t); });
+  EXPECT_FALSE(floor_of_cycles({kMadePeriod_s, sweep, sweep, sweep}).has_value());
+  const auto growing = sampled(kSamples, [](double t) { return t * sine(1.0, t); });
+  EXPECT_FALSE(floor_of_cycles({kMadePeriod_s, growing, growing, growing}).has_value());
+}
+
+TEST(Floor, OfRepeatedRecordingsIsTheNoiseOfEither) {
+  const auto motion = sampled(kSamples, [](double t) { return std::sin(t * t); });
+  const auto first = repeatable_gap(motion, 1);
+  const auto second = repeatable_gap(motion, 2);
+  const auto floor =
+      floor_of_repetition({kMadePeriod_s, motion, first, first}, {kMadePeriod_s, motion, second, second});
+  ASSERT_TRUE(floor.has_value());
+  EXPECT_NEAR(floor->rms, kNoise, kTolerance);
+  const auto other = sampled(kSamples, [](double t) { return std::sin(1.1 * t * t); });
+  EXPECT_FALSE(floor_of_repetition({kMadePeriod_s, motion, first, first}, {kMadePeriod_s, other, second, second}))
+      << "not a repetition";
+}
+
+TEST(Floor, AtRestAndOfHighFrequenciesIsTheNoise) {
+  const auto motion = sampled(kSamples, [](double t) { return t > 8.0 && t < 12.0 ? sine(0.25, t - 8.0) : 0.0; });
+  const auto residual = repeatable_gap(motion, 1);
+  const GapSignals signals{kMadePeriod_s, motion, residual, residual};
+  const auto rest = floor_at_rest(signals);
+  ASSERT_TRUE(rest.has_value());
+  EXPECT_NEAR(rest->rms, kNoise, 1.2 * kTolerance) << "over four fifths of the recording";
+  // Second differences of white noise are correlated: 35/18 times the variance of independent ones.
+  EXPECT_NEAR(floor_of_high_frequencies(signals).rms, kNoise, 1.5 * kTolerance);
+  EXPECT_NEAR(repeatability_floor(signals).rms, kNoise, 1.5 * kTolerance);
+  const auto moving = sampled(kSamples, [](double t) { return sine(1.0, t); });
+  EXPECT_FALSE(floor_at_rest({kMadePeriod_s, moving, residual, residual}).has_value());
+}
+
+}  // namespace
+}  // namespace hybridtest
