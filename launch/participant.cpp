@@ -36,8 +36,15 @@ ControlLoopSettings loop_settings(const Scenario& scenario, const SubstructureSc
   settings.periods_per_step = substructure.site.periods_per_step;
   settings.time_scale = scenario.time.time_scale;
   settings.step_s = scenario.time.step_s * settings.time_scale;
-  settings.limits = substructure.site.limits;
-  settings.return_time_s = substructure.site.return_time_s;
+  const LoopScenario& loop = substructure.site.loop;
+  settings.limits = loop.limits;
+  settings.rules = loop.rules;
+  settings.tracking_window_s = loop.tracking_window_s;
+  settings.trajectory = loop.trajectory;
+  settings.ramp_in_s = loop.ramp_in_s;
+  settings.captures_zero_offsets = loop.captures_zero_offsets;
+  settings.returns_at_end = loop.returns_at_end;
+  settings.return_time_s = loop.return_time_s;
   return settings;
 }
 

@@ -15,6 +15,7 @@
 #include "experimental_site/control_loop.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "launch/loop_sections.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 
 namespace hybridtest {
@@ -39,8 +40,7 @@ struct TimeoutScenario {
 struct SiteScenario {
   double control_rate_hz = 0.0;
   int periods_per_step = 1;  // the control rate, rounded up so that whole periods fill a step
-  SiteLimits limits;
-  double return_time_s = 0.0;
+  LoopScenario loop;
   std::string rig_type;
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself

@@ -41,7 +41,8 @@ struct DelayConsequence {
     return structure_damping_n_s_per_m / stiffness_n_per_m;
   }
 };
-/// @return nothing where the specimen has no positive stiffness or the delay cannot be told.
+/// @return nothing where less than half of the force's variance goes with the displacement, so that the specimen
+///         is no spring, where it has no positive stiffness, or the delay cannot be told.
 [[nodiscard]] std::optional<DelayConsequence> delay_consequence(std::span<const double> command_m,
                                                                 std::span<const double> measured_m,
                                                                 std::span<const double> force_n, double period_s);

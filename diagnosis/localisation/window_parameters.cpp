@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -46,15 +45,23 @@ std::pair<double, double> gain_and_delay(std::pair<double, double> fitted, doubl
   return {std::hypot(fitted.first, behind), std::atan2(behind, fitted.first) / frequency_rad_per_s};
 }
 
-double correlation(const std::vector<WindowParameters>& windows, double WindowParameters::*parameter,
-                   const std::function<double(const WindowParameters&)>& quantity) {
+/// 0, 1, 2 ... in the order of the values; equal ones share the mean of their places.
+Eigen::ArrayXd ranks_of(const std::vector<WindowParameters>& windows, double WindowParameters::*quantity) {
   const auto count = static_cast<Eigen::Index>(windows.size());
-  Eigen::ArrayXd a(count);
-  Eigen::ArrayXd b(count);
+  Eigen::ArrayXd ranks(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    a[i] = windows[static_cast<std::size_t>(i)].*parameter;
-    b[i] = quantity(windows[static_cast<std::size_t>(i)]);
+    const double own = windows[static_cast<std::size_t>(i)].*quantity;
+    const auto below = std::ranges::count_if(windows, [&](const auto& window) { return window.*quantity < own; });
+    const auto equal = std::ranges::count_if(windows, [&](const auto& window) { return window.*quantity == own; });
+    ranks[i] = static_cast<double>(below) + 0.5 * static_cast<double>(equal - 1);
   }
+  return ranks;
+}
+
+double correlation(const std::vector<WindowParameters>& windows, double WindowParameters::*first,
+                   double WindowParameters::*second) {
+  Eigen::ArrayXd a = ranks_of(windows, first);
+  Eigen::ArrayXd b = ranks_of(windows, second);
   a -= a.mean();
   b -= b.mean();
   const double product = std::sqrt(a.square().sum() * b.square().sum());
@@ -71,9 +78,9 @@ ParameterDrift drift_of_one(const std::vector<WindowParameters>& windows, double
   for (const WindowParameters& window : windows) drift.mean += window.*parameter / count;
   for (const WindowParameters& window : windows) square += std::pow(window.*parameter - drift.mean, 2) / (count - 1.0);
   drift.spread = drift.mean != 0.0 ? std::sqrt(square) / std::abs(drift.mean) : 0.0;
-  drift.with_amplitude = correlation(windows, parameter, [](const auto& w) { return std::log(w.amplitude_m); });
-  drift.with_time = correlation(windows, parameter, [](const auto& w) { return w.begin_s; });
-  drift.with_frequency = correlation(windows, parameter, [](const auto& w) { return std::log(w.frequency_hz); });
+  drift.with_amplitude = correlation(windows, parameter, &WindowParameters::amplitude_m);
+  drift.with_time = correlation(windows, parameter, &WindowParameters::begin_s);
+  drift.with_frequency = correlation(windows, parameter, &WindowParameters::frequency_hz);
   return drift;
 }
 

@@ -27,16 +27,16 @@ enum class InterfaceKind : std::uint8_t { displacement_out, force_out };
 [[nodiscard]] std::vector<WindowParameters> parameters_over_time(const GapSignals& signals, InterfaceKind kind,
                                                                  std::size_t count);
 
-/// How a parameter that a linear model holds constant goes with something: correlation coefficients over
-/// the windows. With amplitude it is a missing nonlinearity, with time a degradation, with frequency
-/// a missing dynamic.
+/// How a parameter that a linear model holds constant goes with something: rank correlations (Spearman) over
+/// the windows, so that only the order counts. With amplitude it is a missing nonlinearity, with time a degradation,
+/// with frequency a missing dynamic.
 struct ParameterDrift {
   std::string parameter;  // `stiffness_n_per_m`
   double mean = 0.0;
-  double spread = 0.0;          // standard deviation over |mean|
-  double with_amplitude = 0.0;  // correlation with the logarithm of the amplitude
+  double spread = 0.0;  // standard deviation over |mean|
+  double with_amplitude = 0.0;
   double with_time = 0.0;
-  double with_frequency = 0.0;  // with the logarithm of the frequency
+  double with_frequency = 0.0;
   std::size_t windows = 0;
 
   /// Whether a coefficient is more than chance gives one window in a hundred (Fisher's z, two-sided).

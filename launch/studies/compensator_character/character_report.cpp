@@ -8,8 +8,8 @@
 
 #include "launch/studies/compensator_character/character_study.hpp"
 #include "launch/studies/compensator_character/frequency_response.hpp"
-#include "launch/studies/plot/dot_figure.hpp"
-#include "launch/studies/plot/line_figure.hpp"
+#include "diagnosis/report/plot/dot_figure.hpp"
+#include "diagnosis/report/plot/line_figure.hpp"
 
 namespace hybridtest::character {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "launch/studies/plot/line_figure.hpp"
-#include "launch/studies/plot/page.hpp"
+#include "diagnosis/report/plot/line_figure.hpp"
+#include "diagnosis/report/plot/page.hpp"
 
 namespace hybridtest::founding {
 namespace {

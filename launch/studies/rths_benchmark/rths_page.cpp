@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "launch/studies/plot/dot_figure.hpp"
-#include "launch/studies/plot/line_figure.hpp"
-#include "launch/studies/plot/page.hpp"
+#include "diagnosis/report/plot/dot_figure.hpp"
+#include "diagnosis/report/plot/line_figure.hpp"
+#include "diagnosis/report/plot/page.hpp"
 #include "launch/studies/rths_benchmark/verdict.hpp"
 
 namespace hybridtest::rths {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/studies/plot/axis.hpp"
+#include "diagnosis/report/plot/axis.hpp"
 
 namespace hybridtest::plot {
 

@@ -1,4 +1,4 @@
-#include "launch/studies/plot/axis.hpp"
+#include "diagnosis/report/plot/axis.hpp"
 
 #include <fmt/format.h>
 

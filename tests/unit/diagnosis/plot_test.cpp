@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "launch/studies/plot/axis.hpp"
-#include "launch/studies/plot/dot_figure.hpp"
-#include "launch/studies/plot/line_figure.hpp"
-#include "launch/studies/plot/page.hpp"
-#include "launch/studies/plot/svg_canvas.hpp"
+#include "diagnosis/report/plot/axis.hpp"
+#include "diagnosis/report/plot/dot_figure.hpp"
+#include "diagnosis/report/plot/line_figure.hpp"
+#include "diagnosis/report/plot/page.hpp"
+#include "diagnosis/report/plot/svg_canvas.hpp"
 
 namespace hybridtest::plot {
 namespace {

@@ -1,4 +1,4 @@
-#include "launch/studies/plot/svg_canvas.hpp"
+#include "diagnosis/report/plot/svg_canvas.hpp"
 
 #include <fmt/format.h>
 

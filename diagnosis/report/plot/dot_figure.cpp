@@ -1,11 +1,11 @@
-#include "launch/studies/plot/dot_figure.hpp"
+#include "diagnosis/report/plot/dot_figure.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "launch/studies/plot/svg_canvas.hpp"
+#include "diagnosis/report/plot/svg_canvas.hpp"
 
 namespace hybridtest::plot {
 namespace {

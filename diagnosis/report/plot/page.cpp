@@ -1,8 +1,8 @@
-#include "launch/studies/plot/page.hpp"
+#include "diagnosis/report/plot/page.hpp"
 
 #include <fmt/format.h>
 
-#include "launch/studies/plot/svg_canvas.hpp"
+#include "diagnosis/report/plot/svg_canvas.hpp"
 
 namespace hybridtest::plot {
 

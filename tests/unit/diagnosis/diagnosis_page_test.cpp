@@ -1,0 +1,158 @@
+#include "diagnosis/report/diagnosis_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/report/wording.hpp"
+#include "tests/unit/diagnosis/made_signals.hpp"
+
+namespace hybridtest::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Dry friction of 500 N under a linear model; 60 s at 1 kHz, the longest that is usual.
+DiagnosisReport example() {
+  constexpr std::size_t kSamples = 60'000;
+  InterfaceSeries series;
+  series.interface = "specimen";
+  series.recording = "held_out.csv";
+  series.is_held_out = true;
+  series.sample_period_s = kMadePeriod_s;
+  series.unit = "N";
+  series.input_m = sampled(kSamples, [](double t) { return 0.01 * sine(0.7, t); });
+  series.measured = white_noise(kSamples, 20.0, 1);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double linear_n = 2e5 * series.input_m[i];
+    const double friction_n =
+        500.0 * (std::cos(2.0 * std::numbers::pi * 0.7 * static_cast<double>(i) * kMadePeriod_s) > 0.0 ? 1.0 : -1.0);
+    series.measured[i] += linear_n + friction_n;
+    series.model.push_back(linear_n);
+    series.augmented.push_back(linear_n + friction_n);
+  }
+  DiagnosisReport report;
+  report.site = "storey <1>";
+  report.model_file = "site.yaml";
+  report.recordings = {{"fit.csv", std::string(64, 'a'), RecordingRole::fit, 20.0, 0.001},
+                       {"held_out.csv", std::string(64, 'b'), RecordingRole::held_out, 60.0, 0.001}};
+  report.verdict = Verdict::named;
+  InterfaceGap specimen{.interface = "specimen"};
+  specimen.is_judged = true;
+  specimen.is_at_fault = true;
+  specimen.share = 0.93;
+  specimen.share_ci95 = {0.90, 0.95};
+  specimen.nrmse = 0.21;
+  specimen.floor_nrmse = 0.01;
+  InterfaceGap transfer{.interface = "transfer_system"};
+  transfer.why_not = "command_displacement_m was not recorded";
+  report.where = {specimen, transfer};
+  RankedCause friction{.interface = "specimen", .effect = "coulomb_friction", .equation = "f = F sign(v)"};
+  friction.probability = 0.98;
+  friction.is_cause = true;
+  friction.parameters = {{"friction_force_n", "N", 512.0, Interval{498.0, 527.0}, false}};
+  RankedCause stribeck{.interface = "specimen", .effect = "stribeck_friction"};
+  stribeck.probability = 0.02;
+  report.ranking = {friction, stribeck};
+  report.interface_shrink =
+      Shrink{.nrmse_before = 0.21, .nrmse_after = 0.02, .floor_nrmse = 0.01, .variance_removed = 0.99};
+  report.why_no_response = "the recording is a CSV";
+  report.series = {series};
+  return report;
+}
+
+/// Every element that is opened is closed in order; those that HTML leaves open are known.
+std::string first_imbalance(const std::string& html) {
+  std::vector<std::string> open;
+  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+    const std::size_t end = html.find('>', at);
+    if (end == std::string::npos) return "a tag without an end";
+    const bool closes = html[at + 1] == '/';
+    const std::size_t begin = at + (closes ? 2 : 1);
+    const std::string name = html.substr(begin, html.find_first_of(" \n/>", begin) - begin);
+    if (name == "!DOCTYPE" || name == "meta" || html[end - 1] == '/') continue;
+    if (!closes) {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return "</" + name + "> closes " + (open.empty() ? "nothing" : open.back());
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + "> stays open";
+}
+
+TEST(DiagnosisPage, StandsAloneAndIsSmall) {
+  const std::string page = diagnosis_page(example());
+  EXPECT_LT(page.size(), 2'000'000U);
+  for (const char* outside : {"<script", "<link", "<img", " src=", " href=", "@import", "url(http", "javascript:"}) {
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  }
+  EXPECT_EQ(first_imbalance(page), "");
+  EXPECT_EQ(first_imbalance("<p><b></p>"), "</p> closes b") << "control";
+}
+
+TEST(DiagnosisPage, SaysWhereWhichAndHowFar) {
+  const std::string page = diagnosis_page(example());
+  EXPECT_THAT(page, HasSubstr("The gap lies at the specimen (93.0\u00a0% of it); its cause is coulomb friction"));
+  EXPECT_THAT(page, HasSubstr("<li class=\"fault main\"><b>specimen</b>"));
+  EXPECT_THAT(page, HasSubstr("command_displacement_m was not recorded"));
+  EXPECT_THAT(page, HasSubstr("friction force <b>512\u00a0N</b> <small>(498\u00a0N to 527\u00a0N)</small>"));
+  EXPECT_THAT(page, HasSubstr("<b>99.0\u00a0%</b> removed"));
+  EXPECT_THAT(page, HasSubstr("stribeck friction"));
+  EXPECT_THAT(page, HasSubstr(std::string(64, 'b')));
+  EXPECT_THAT(page, HasSubstr("force over displacement, after"));
+  EXPECT_THAT(page, HasSubstr("the recording is a CSV"));
+}
+
+TEST(DiagnosisPage, EscapesWhatTheUserNamed) {
+  const std::string page = diagnosis_page(example());
+  EXPECT_THAT(page, HasSubstr("storey &lt;1&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("storey <1>")));
+}
+
+TEST(DiagnosisPage, OfEveryVerdictIsWhole) {
+  DiagnosisReport report = example();
+  for (const Verdict verdict :
+       {Verdict::none, Verdict::named, Verdict::set, Verdict::partial, Verdict::unknown, Verdict::not_excited}) {
+    report.verdict = verdict;
+    EXPECT_THAT(verdict_sentence(report), testing::EndsWith(".")) << name_of(verdict);
+    EXPECT_EQ(first_imbalance(diagnosis_page(report)), "") << name_of(verdict);
+  }
+  EXPECT_EQ(first_imbalance(diagnosis_page({})), "") << "of nothing";
+}
+
+TEST(DiagnosisPage, OfASetNamesItsMembersAndTheNextExperiment) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::set;
+  report.ranking[1].is_cause = true;
+  report.next_experiment = "repeat at half the rate";
+  const std::string page = diagnosis_page(report);
+  EXPECT_THAT(page, HasSubstr("these recordings cannot tell apart coulomb friction and stribeck friction."));
+  EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
+}
+
+TEST(Wording, QuantitiesHaveUnitsOfHandySize) {
+  EXPECT_EQ(quantity(0.0166, "s"), "16.6\u00a0ms");
+  EXPECT_EQ(quantity(-4.0e6, "N/m"), "-4.00\u00a0MN/m");
+  EXPECT_EQ(quantity(999.9, "N"), "1.00\u00a0kN");
+  EXPECT_EQ(quantity(12.0, "Hz"), "12\u00a0Hz") << "left as it is";
+  EXPECT_EQ(quantity(0.05, ""), "0.05");
+  EXPECT_EQ(quantity(0.0, "m"), "0\u00a0m");
+  EXPECT_EQ(plain_parameter("friction_force_n", "N"), "friction force");
+  EXPECT_EQ(plain_parameter("damping_n_s_per_m", "N s/m"), "damping");
+  EXPECT_EQ(plain_parameter("exponent", ""), "exponent");
+}
+
+TEST(Wording, PercentagesKeepDigitsWhereTheyMatter) {
+  EXPECT_EQ(percent(0.5), "50\u00a0%");
+  EXPECT_EQ(percent(0.997), "99.70\u00a0%");
+  EXPECT_EQ(percent(0.02), "2.0\u00a0%");
+  EXPECT_EQ(percent(1.0), "100\u00a0%");
+}
+
+}  // namespace
+}  // namespace hybridtest::report
