@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <system_error>
 
 namespace hybridtest {
 namespace {
@@ -14,18 +15,42 @@ std::string number(double value) {
 
 /// Unit of the values of an interlock, by the name of its fault.
 std::string_view unit_of(std::string_view fault) {
-  if (fault == "displacement_limit" || fault == "tracking_error") return " m";
+  if (fault == "displacement_limit" || fault == "tracking_error" || fault == "displacement_step") return " m";
   if (fault == "velocity_limit") return " m/s";
-  if (fault == "force_limit") return " N";
+  if (fault == "force_limit" || fault == "force_step") return " N";
   if (fault == "command_age") return " s";
+  if (fault == "stuck_sensor") return " samples";
   return "";
 }
 
 std::string interlock_text(const Event& event) {
   const auto subject = event.subject.text();
+  // There is nothing to measure about these.
+  if (subject == "not_finite" || subject == "rig_fault" || subject == "emergency_stop") return "interlock: " + subject;
   const std::string unit{unit_of(subject)};
   return "interlock: " + subject + " (observed " + number(event.values[0]) + unit + ", limit " +
          number(event.values[1]) + unit + ")";
+}
+
+std::string granted_text(const Event& event) {
+  const auto subject = event.subject.text();
+  if (subject == "scheduling") return "SCHED_FIFO at priority " + number(event.values[0]);
+  if (subject == "affinity") return "the control loop stays on cpu " + number(event.values[0]);
+  return "memory is locked";
+}
+
+std::string refused_text(const Event& event) {
+  const auto subject = event.subject.text();
+  const std::string why = ": " + std::generic_category().message(static_cast<int>(event.values[0]));
+  if (subject == "scheduling") {
+    return "SCHED_FIFO at priority " + number(event.values[1]) + " was refused" + why +
+           "; give the user an rtprio limit of at least that in /etc/security/limits.conf, or the program CAP_SYS_NICE";
+  }
+  if (subject == "affinity") {
+    return "cpu " + number(event.values[1]) + " was refused" + why + "; choose one that this process may run on";
+  }
+  return "locking memory was refused" + why +
+         "; give the user memlock unlimited in /etc/security/limits.conf, or the program CAP_IPC_LOCK";
 }
 
 }  // namespace
@@ -59,6 +84,13 @@ std::string describe(const Event& event) {
     case EventCode::test_paused: return "test paused";
     case EventCode::test_resumed: return "test resumed";
     case EventCode::emergency_stop: return "emergency stop";
+    case EventCode::interlock_warned: return "not ending the test, " + interlock_text(event);
+    case EventCode::interlock_cleared: return "the interlocks that can clear have cleared";
+    case EventCode::zero_offset:
+      return "zero offset of " + event.subject.text() + ": " + number(event.values[0]) + " m, " +
+             number(event.values[1]) + " N";
+    case EventCode::real_time_granted: return "real time: " + granted_text(event);
+    case EventCode::real_time_refused: return "real time: " + refused_text(event);
   }
   return "unknown event";
 }

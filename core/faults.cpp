@@ -18,6 +18,10 @@ std::string_view name(FaultFlags single_flag) noexcept {
     case FaultFlags::coordinator_lost: return "coordinator_lost";
     case FaultFlags::emergency_stop: return "emergency_stop";
     case FaultFlags::participant_lost: return "participant_lost";
+    case FaultFlags::displacement_step: return "displacement_step";
+    case FaultFlags::force_step: return "force_step";
+    case FaultFlags::stuck_sensor: return "stuck_sensor";
+    case FaultFlags::tracking_indicator: return "tracking_indicator";
   }
   return "several";
 }
@@ -62,6 +66,11 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::test_paused: return "test_paused";
     case EventCode::test_resumed: return "test_resumed";
     case EventCode::emergency_stop: return "emergency_stop";
+    case EventCode::interlock_warned: return "interlock_warned";
+    case EventCode::interlock_cleared: return "interlock_cleared";
+    case EventCode::zero_offset: return "zero_offset";
+    case EventCode::real_time_granted: return "real_time_granted";
+    case EventCode::real_time_refused: return "real_time_refused";
   }
   return "unknown";
 }

@@ -32,6 +32,10 @@ enum class FaultFlags : std::uint32_t {
   coordinator_lost = 1U << 10U,
   emergency_stop = 1U << 11U,
   participant_lost = 1U << 12U,
+  displacement_step = 1U << 13U,   // from one sample to the next: a broken sensor
+  force_step = 1U << 14U,          // likewise
+  stuck_sensor = 1U << 15U,        // reads the same while the command moves
+  tracking_indicator = 1U << 16U,  // the specimen lags or leads too far
 };
 HYBRIDTEST_FLAG_OPERATORS(FaultFlags)
 
@@ -83,6 +87,11 @@ enum class EventCode : std::uint16_t {
   test_paused,
   test_resumed,
   emergency_stop,
+  interlock_warned,   // subject and values as interlock_tripped; the test goes on
+  interlock_cleared,  // those that could have let go
+  zero_offset,        // subject: interface degree of freedom; values: displacement [m], force [N]
+  real_time_granted,  // subject: what of it; values[0]: priority or cpu
+  real_time_refused,  // subject: what of it; values: errno, what was asked for
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

@@ -195,7 +195,10 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     return diagnosis;
   }
   const IdentificationProblem problem = make_problem(model, segments);
-  const Selection selection = select_effects(problem, settings.threads, settings.progress);
+  std::vector<Segment> thin;
+  for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
+  const IdentificationProblem coarse = make_problem(model, std::move(thin));
+  const Selection selection = select_effects(problem, coarse, settings.threads, settings.progress);
   const Judgement judgement = judge(problem, selection);
   report.verdict = judgement.verdict;
   report.ranking = rank(problem, selection, judgement);

@@ -27,6 +27,8 @@ inline constexpr std::size_t kRefinedStarts = 2;
 inline constexpr double kIndependentPerSecond = 5.0;
 /// What leaving the model's slightly wrong parameters free costs a candidate [nats].
 inline constexpr double kNuisanceCost = 3.0;
+/// An effect so far behind the best one on the coarse record is not looked at again [nats].
+inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are refitted together with the first.
 inline constexpr std::size_t kRefittedPairs = 4;
 
@@ -37,6 +39,7 @@ inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
 /// Of the gap: with less left than this nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
+inline constexpr double kLittleLeft = 0.03;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string>
 #include <utility>
 
 #include "core/assert.hpp"
@@ -17,77 +15,90 @@ constexpr int kPeriodsPerAdvance = 256;
 /// Every so many control periods one goes to the live views.
 constexpr std::int64_t kSignalDecimation = 16;
 
+/// From full motion to standing, at least: half of it is the way that it takes at that speed.
+constexpr double kLeastHalt_s = 0.02;
+
+/// Motion smaller than this share of the displacement limit does not scale the tracking indicator.
+constexpr double kLeastMotionShare = 0.05;
+
+double period_s(const ControlLoopSettings& settings) noexcept { return settings.step_s / settings.periods_per_step; }
+
+ClosingMotionSettings closing_settings(const ControlLoopSettings& settings) noexcept {
+  return {.period_s = period_s(settings),
+          .halt_s = std::max(settings.step_s, kLeastHalt_s),
+          .return_time_s = settings.return_time_s,
+          .displacement_limit_m = settings.limits.displacement_m,
+          .velocity_limit_m_per_s = settings.limits.velocity_m_per_s};
+}
+
 }  // namespace
 
 ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteCompensation compensation,
                          EnergyErrorMonitor energy_error, ControlLoopPorts ports, RowSink& control_record)
     : settings_{settings},
+      period_s_{period_s(settings)},
       rig_{rig},
       compensation_{std::move(compensation)},
       energy_error_{std::move(energy_error)},
+      tracking_{settings.dofs, period_s_, settings.tracking_window_s,
+                kLeastMotionShare * settings.limits.displacement_m},
       ports_{ports},
-      control_record_{control_record},
-      trajectory_{settings.dofs, settings.step_s, settings.time_scale},
-      period_s_{settings.step_s / settings.periods_per_step} {
+      record_{settings.dofs, control_record},
+      trajectory_{settings.dofs, settings.step_s, settings.time_scale, settings.trajectory},
+      start_offset_{settings.dofs},
+      resume_offset_{settings.dofs},
+      closing_{closing_settings(settings), settings.dofs},
+      zero_offsets_{settings.dofs, period_s_} {
   HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.commands.size(), settings.dofs));
   HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.forces.size(), settings.dofs));
   const InterfaceVector zero = InterfaceVector::Zero(settings.dofs);
   command_.displacement_m = zero;
+  command_before_m_ = zero;
   wanted_command_m_ = zero;
-  last_target_m_ = zero;
+  compensated_command_m_ = zero;
+  target_ = trajectory_.point();
   no_motion_ = zero;
   feedback_ = {zero, zero};
   feedback_before_ = feedback_;
   compensated_force_n_ = zero;
   compensated_force_before_n_ = zero;
-  ramp_begin_m_ = zero;
-  row_.resize(5 + 5 * static_cast<std::size_t>(settings.dofs));
 }
 
 Instant ControlLoop::advance(Instant now) noexcept {
   LoopRequest request;
   while (ports_.requests.take(request)) obey(request, now);
 
-  const bool expects_commands = phase_ == Phase::running && !is_paused_;
-  command_age_s_ = expects_commands ? to_seconds(now - last_target_at_) : 0.0;
+  // A target that is not reached yet is ours to reach; only where none is known one can be overdue.
+  const bool waits_for_target = follows_targets() && !is_paused_ && !trajectory_.has_target() && !is_reached_;
+  command_age_s_ = waits_for_target ? to_seconds(now - last_target_at_) : 0.0;
   for (int periods = 0; has_due_period(now) && periods < kPeriodsPerAdvance; ++periods) run_period();
   // Between two targets lockstep has no control periods that would notice their absence.
-  if (settings_.mode == CouplingMode::lockstep && phase_ == Phase::running) {
-    static_cast<void>(passes_interlocks());
-  }
+  if (!is_paced_by_time() && phase_ == Phase::running) static_cast<void>(passes_interlocks(false));
   return next_wake(now);
 }
 
 void ControlLoop::obey(const LoopRequest& request, Instant now) noexcept {
   switch (request.kind) {
     case LoopRequest::Kind::arm: arm(now); break;
-    case LoopRequest::Kind::start:
-      if (phase_ != Phase::standing) break;
-      phase_ = Phase::running;
-      last_target_at_ = now;
-      break;
-    case LoopRequest::Kind::target:
-      if (phase_ != Phase::running) break;
-      trajectory_.set_target(request.target);
-      last_target_at_ = now;
-      break;
+    case LoopRequest::Kind::start: start(now); break;
+    case LoopRequest::Kind::target: take_target(request.target, now); break;
     case LoopRequest::Kind::pause: is_paused_ = true; break;
     case LoopRequest::Kind::resume:
       is_paused_ = false;
       last_target_at_ = now;
+      if (reset_by_operator(settings_.rules, interlocks_)) report_cleared();
       break;
     case LoopRequest::Kind::stop: stop(); break;
     case LoopRequest::Kind::emergency_stop:
-      rig_.stop_motion();
-      faults_ |= FaultFlags::emergency_stop;
-      stop_was_asked_ = true;
-      come_to_rest();
+      emergency_stop_ = true;
+      static_cast<void>(passes_interlocks(false));
       break;
   }
 }
 
 void ControlLoop::arm(Instant now) noexcept {
   if (phase_ != Phase::disarmed) return;
+  armed_at_ = now;
   LoopReport report;
   try {
     rig_.arm();
@@ -102,27 +113,60 @@ void ControlLoop::arm(Instant now) noexcept {
   for (auto& compensator : compensation_.forces) compensator->reset();
   energy_error_.reset();
   trajectory_.reset(no_motion_);
+  zero_offsets_.reset();
+  interlocks_ = {};
+  if (settings_.captures_zero_offsets) {
+    phase_ = Phase::zeroing;  // armed once they are captured
+    return;
+  }
   phase_ = Phase::standing;
-  armed_at_ = now;
   report.kind = LoopReport::Kind::armed;
   ports_.reports.send(report);
 }
 
+void ControlLoop::start(Instant now) noexcept {
+  Phase& phase = phase_ == Phase::holding && !hold_is_final_ ? phase_before_hold_ : phase_;
+  if (phase != Phase::standing) return;
+  phase = Phase::running;
+  last_target_at_ = now;
+}
+
+void ControlLoop::take_target(const CommandPoint& target, Instant now) noexcept {
+  if (!follows_targets()) return;
+  if (!trajectory_.is_running()) {
+    start_offset_.begin(no_motion_ - target.displacement_m, -target.velocity_m_per_s / settings_.time_scale,
+                        std::max(settings_.ramp_in_s, settings_.step_s));
+  }
+  trajectory_.set_target(target);
+  last_target_at_ = now;
+}
+
+bool ControlLoop::follows_targets() const noexcept {
+  if (phase_ == Phase::running) return true;
+  return phase_ == Phase::holding && phase_before_hold_ == Phase::running && !hold_is_final_;
+}
+
 void ControlLoop::stop() noexcept {
   if (std::exchange(stop_was_asked_, true)) return;
-  const bool is_untrustworthy = any(faults_ & (FaultFlags::not_finite | FaultFlags::rig_fault));
+  constexpr auto kUntrustworthy = FaultFlags::not_finite | FaultFlags::rig_fault | FaultFlags::displacement_step |
+                                  FaultFlags::force_step | FaultFlags::stuck_sensor;
   switch (phase_) {
     case Phase::disarmed:
+    case Phase::zeroing:
     case Phase::standing: come_to_rest(); break;
-    case Phase::running: begin_ramp(); break;
+    case Phase::running:
+      closing_.begin(command_.displacement_m, (command_.displacement_m - command_before_m_) / period_s_,
+                     settings_.returns_at_end);
+      phase_ = Phase::closing;
+      break;
     case Phase::holding:
-      if (is_untrustworthy) {
+      if (any(faults_ & kUntrustworthy) || !settings_.returns_at_end) {
         come_to_rest();
       } else {
-        begin_ramp();
+        begin_return();
       }
       break;
-    case Phase::ramping: break;
+    case Phase::closing: break;
     case Phase::at_rest: come_to_rest(); break;
   }
 }
@@ -136,30 +180,27 @@ void ControlLoop::come_to_rest() noexcept {
   ports_.reports.send(report);
 }
 
-void ControlLoop::begin_ramp() noexcept {
-  phase_ = Phase::ramping;
-  ramp_begin_m_ = command_.displacement_m;
-  ramp_period_ = 0;
-  // A raised cosine is fastest in its middle, pi/2 times its mean; it stays below half the limit.
-  const double least_s = std::numbers::pi * ramp_begin_m_.cwiseAbs().maxCoeff() / settings_.limits.velocity_m_per_s;
-  const double periods = std::ceil(std::max(settings_.return_time_s, least_s) / period_s_);
-  ramp_periods_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(periods));  // also from zero in no time
+/// At once, from wherever the command is.
+void ControlLoop::begin_return() noexcept {
+  closing_.begin(command_.displacement_m, no_motion_, true);
+  phase_ = Phase::closing;
+}
+
+Instant ControlLoop::period_due() const noexcept {
+  return armed_at_ + from_seconds(static_cast<double>(command_.sample) * period_s_);
 }
 
 bool ControlLoop::has_due_period(Instant now) const noexcept {
   if (phase_ == Phase::disarmed || phase_ == Phase::at_rest) return false;
-  if (settings_.mode == CouplingMode::paced) {
-    return now >= armed_at_ + from_seconds(static_cast<double>(command_.sample) * period_s_);
-  }
-  return phase_ == Phase::ramping || (phase_ == Phase::running && trajectory_.has_target());
+  if (is_paced_by_time()) return now >= period_due();
+  if (phase_ == Phase::zeroing || phase_ == Phase::closing) return true;
+  return phase_ == Phase::running && trajectory_.has_target();
 }
 
 Instant ControlLoop::next_wake(Instant now) const noexcept {
   if (phase_ == Phase::disarmed || phase_ == Phase::at_rest) return kNever;
   if (has_due_period(now)) return now;
-  if (settings_.mode == CouplingMode::paced) {
-    return armed_at_ + from_seconds(static_cast<double>(command_.sample) * period_s_);
-  }
+  if (is_paced_by_time()) return period_due();
   if (phase_ != Phase::running || is_paused_) return kNever;
   // One nanosecond past the limit: at the limit itself the command is not overdue yet.
   return last_target_at_ + from_seconds(settings_.limits.command_age_s) + Duration{1};
@@ -167,40 +208,60 @@ Instant ControlLoop::next_wake(Instant now) const noexcept {
 
 void ControlLoop::run_period() noexcept {
   command_.time_s = static_cast<double>(command_.sample) * period_s_;
-  ReachedTarget reached;
-  bool is_reached = false;
+  command_before_m_ = command_.displacement_m;
   motion_flags_ = MeasurementFlags::none;
   if (phase_ == Phase::running) {
-    is_reached = trajectory_.advance(period_s_, reached);
+    is_reached_ = trajectory_.advance(period_s_, reached_) || is_reached_;
     shape_command();
-    if (passes_interlocks()) limit_motion();
+    if (passes_interlocks(false)) limit_motion();
+  } else if (follows_targets()) {
+    shape_command();  // so that a compensator has seen the site stand when it goes on
   }
-  if (phase_ == Phase::ramping) ramp_command();
+  if (phase_ == Phase::closing) {
+    closing_.advance();
+    command_.displacement_m = closing_.displacement_m();
+    target_.displacement_m = command_.displacement_m;
+  }
   exchange();
-  if (phase_ == Phase::running) {
+  if (phase_ == Phase::zeroing) capture_zero_offsets();
+  if (follows_targets()) {
     compensate_forces();
-    energy_error_.sample(trajectory_.point().displacement_m, feedback_.displacement_m, feedback_.force_n);
-    if (passes_interlocks() && is_reached) report_measurement(reached);
+    observe_tracking();
+  }
+  // What is reached as an interlock holds is measured when it has cleared.
+  if (passes_interlocks(true)) {
+    if (is_reached_ && phase_ == Phase::running) report_measurement();
+  } else {
+    reached_.fraction = 1.0;
   }
   record();
   ++command_.sample;
-  if (phase_ == Phase::ramping && ramp_period_ >= ramp_periods_) come_to_rest();
+  if (phase_ == Phase::closing && closing_.is_over()) come_to_rest();
 }
 
 void ControlLoop::shape_command() noexcept {
-  const TrajectoryPoint& point = trajectory_.point();
-  last_target_m_ = point.displacement_m;
+  target_ = trajectory_.point();
+  if (!start_offset_.is_over()) {
+    target_.displacement_m += start_offset_.displacement_m();
+    target_.velocity_m_per_s += start_offset_.velocity_m_per_s();
+    start_offset_.advance(period_s_);
+  }
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
-    const CompensatorInput input{point.displacement_m[k], point.velocity_m_per_s[k], point.acceleration_m_per_s2[k],
-                                 feedback_.displacement_m[k], feedback_.force_n[k]};
+    const CompensatorInput input{target_.displacement_m[k], target_.velocity_m_per_s[k],
+                                 target_.acceleration_m_per_s2[k], feedback_.displacement_m[k], feedback_.force_n[k]};
     wanted_command_m_[k] = compensation_.commands[static_cast<std::size_t>(k)]->command(input);
   }
+  compensated_command_m_ = wanted_command_m_;
+  if (resume_offset_.is_over()) return;
+  wanted_command_m_ += resume_offset_.displacement_m();
+  resume_offset_.advance(period_s_);
 }
 
 void ControlLoop::limit_motion() noexcept {
   const double reach_m = settings_.limits.velocity_m_per_s * period_s_;
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
     const double before_m = command_.displacement_m[k];
+    if (!std::isfinite(wanted_command_m_[k])) continue;  // whatever the interlocks were told to make of it
     const double slow_m = std::clamp(wanted_command_m_[k], before_m - reach_m, before_m + reach_m);
     const double limited_m = std::clamp(slow_m, -settings_.limits.displacement_m, settings_.limits.displacement_m);
     if (limited_m != wanted_command_m_[k]) motion_flags_ |= MeasurementFlags::saturated;
@@ -208,106 +269,170 @@ void ControlLoop::limit_motion() noexcept {
   }
 }
 
-void ControlLoop::ramp_command() noexcept {
-  ++ramp_period_;
-  const double x = static_cast<double>(ramp_period_) / static_cast<double>(ramp_periods_);
-  command_.displacement_m = (0.5 * (1.0 + std::cos(std::numbers::pi * x))) * ramp_begin_m_;
-  last_target_m_ = command_.displacement_m;
-}
-
 void ControlLoop::exchange() noexcept {
   feedback_before_ = feedback_;
   rig_fault_ = rig_.exchange(command_, feedback_) != RigStatus::healthy;
+  zero_offsets_.take_off(feedback_);
+}
+
+void ControlLoop::capture_zero_offsets() noexcept {
+  zero_offsets_.capture(feedback_);
+  if (!zero_offsets_.is_captured()) return;
+  zero_offsets_.take_off(feedback_);
+  // The next sample differs from this one by the offset, and no sensor is broken for that.
+  interlocks_.has_sample = false;
+  phase_ = Phase::standing;
+  LoopReport report;
+  report.kind = LoopReport::Kind::zero_offset;
+  for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
+    report.dof = static_cast<int>(k);
+    report.displacement_m = zero_offsets_.offset().displacement_m[k];
+    report.force_n = zero_offsets_.offset().force_n[k];
+    ports_.reports.send(report);
+  }
+  report = {};
+  report.kind = LoopReport::Kind::armed;
+  ports_.reports.send(report);
 }
 
 void ControlLoop::compensate_forces() noexcept {
   compensated_force_before_n_ = compensated_force_n_;
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
     compensated_force_n_[k] = compensation_.forces[static_cast<std::size_t>(k)]->corrected_force(
-        {last_target_m_[k], feedback_.displacement_m[k], feedback_.force_n[k]});
+        {target_.displacement_m[k], feedback_.displacement_m[k], feedback_.force_n[k]});
   }
 }
 
-bool ControlLoop::passes_interlocks() noexcept {
-  const TrajectoryPoint& point = trajectory_.point();
+void ControlLoop::observe_tracking() noexcept {
+  // What is no number would stay in the sums; it has an interlock of its own.
+  if (!target_.displacement_m.allFinite() || !feedback_.displacement_m.allFinite() || !feedback_.force_n.allFinite()) {
+    return;
+  }
+  energy_error_.sample(target_.displacement_m, feedback_.displacement_m, feedback_.force_n);
+  tracking_.sample(target_.displacement_m, feedback_.displacement_m);
+}
+
+InterlockInput ControlLoop::interlock_input(bool is_new_sample) const noexcept {
+  SitePhase phase = SitePhase::resting;
+  if (follows_targets()) phase = SitePhase::running;
+  if (phase_ == Phase::zeroing || phase_ == Phase::standing) phase = SitePhase::standing;
+  return {.phase = phase,
+          .target_displacement_m = target_.displacement_m,
+          .target_velocity_m_per_s = target_.velocity_m_per_s,
+          .command_displacement_m = phase_ == Phase::running ? wanted_command_m_ : command_.displacement_m,
+          .measured_displacement_m = feedback_.displacement_m,
+          .force_n = feedback_.force_n,
+          .energy_error_ratio = energy_error_.ratio(),
+          .tracking_lag_sine = tracking_.lag_sine(),
+          .command_age_s = command_age_s_,
+          .expects_commands = follows_targets() && !is_paused_,
+          .rig_fault = rig_fault_,
+          .emergency_stop = emergency_stop_,
+          .is_new_sample = is_new_sample,
+          .period_s = period_s_};
+}
+
+bool ControlLoop::passes_interlocks(bool is_new_sample) noexcept {
   const InterlockVerdict verdict =
-      judge(settings_.limits,
-            InterlockInput{point.displacement_m, point.velocity_m_per_s, wanted_command_m_, feedback_.displacement_m,
-                           feedback_.force_n, energy_error_.ratio(), command_age_s_, !is_paused_, rig_fault_});
-  if (verdict.action == SafetyAction::none) return true;
-  trip(verdict);
-  return false;
+      judge(settings_.limits, settings_.rules, interlock_input(is_new_sample), interlocks_);
+  for (int i = 0; i < verdict.trip_count; ++i) report(verdict.trips[static_cast<std::size_t>(i)]);
+  if (verdict.has_cleared) report_cleared();
+  act(verdict);
+  return verdict.action < SafetyAction::hold;
 }
 
-void ControlLoop::trip(const InterlockVerdict& verdict) noexcept {
-  faults_ |= verdict.fault;
-  if (verdict.action == SafetyAction::ramp_to_zero) {
-    begin_ramp();
-  } else {
-    phase_ = Phase::holding;  // the last command stays
+void ControlLoop::act(const InterlockVerdict& verdict) noexcept {
+  switch (verdict.action) {
+    case SafetyAction::none:
+    case SafetyAction::warn:
+      if (phase_ == Phase::holding && !hold_is_final_) go_on();
+      break;
+    case SafetyAction::hold: hold(verdict.is_final); break;
+    case SafetyAction::ramp_to_zero:
+      if (phase_ != Phase::closing && phase_ != Phase::at_rest && phase_ != Phase::disarmed) begin_return();
+      break;
+    case SafetyAction::release:
+      if (phase_ == Phase::at_rest && !emergency_stop_) break;
+      stop_was_asked_ = stop_was_asked_ || emergency_stop_;
+      come_to_rest();
+      break;
   }
+}
+
+void ControlLoop::hold(bool is_final) noexcept {
+  if (phase_ == Phase::holding) hold_is_final_ = hold_is_final_ || is_final;
+  if (phase_ != Phase::zeroing && phase_ != Phase::standing && phase_ != Phase::running) return;
+  phase_before_hold_ = phase_;
+  phase_ = Phase::holding;  // the last command stays
+  hold_is_final_ = is_final;
+  trajectory_.halt();
+  target_.velocity_m_per_s.setZero();
+}
+
+/// What held has cleared: from rest, and from the command that was held.
+void ControlLoop::go_on() noexcept {
+  phase_ = phase_before_hold_;
+  if (phase_ != Phase::running) return;
+  resume_offset_.begin(command_.displacement_m - compensated_command_m_, no_motion_,
+                       std::max({settings_.ramp_in_s, settings_.step_s, kLeastHalt_s}));
+}
+
+void ControlLoop::report(const InterlockTrip& trip) noexcept {
+  const FaultFlags fault = fault_of(trip.kind);
+  if (trip.is_final) faults_ |= fault;
   LoopReport report;
-  report.kind = LoopReport::Kind::fault;
-  report.fault = verdict.fault;
-  report.observed = verdict.observed;
-  report.limit = verdict.limit;
-  report.model_time_s = trajectory_.point().path_time_s / settings_.time_scale;
+  report.kind = trip.is_final ? LoopReport::Kind::fault : LoopReport::Kind::warning;
+  report.fault = fault;
+  report.observed = trip.observed;
+  report.limit = trip.limit;
+  report.model_time_s = model_time_s();
   ports_.reports.send(report);
 }
 
-void ControlLoop::report_measurement(const ReachedTarget& reached) noexcept {
+void ControlLoop::report_cleared() noexcept {
+  LoopReport report;
+  report.kind = LoopReport::Kind::cleared;
+  report.model_time_s = model_time_s();
+  ports_.reports.send(report);
+}
+
+void ControlLoop::report_measurement() noexcept {
+  is_reached_ = false;
   const auto at_target = [&](const InterfaceVector& before, const InterfaceVector& after) -> InterfaceVector {
-    if (reached.fraction >= 1.0) return after;
-    return before + reached.fraction * (after - before);
+    if (reached_.fraction >= 1.0) return after;
+    return before + reached_.fraction * (after - before);
   };
   LoopReport report;
   report.kind = LoopReport::Kind::measurement;
   StepMeasurement& measurement = report.measurement;
-  measurement.step = reached.target.step;
-  measurement.model_time_s = reached.target.model_time_s;
-  measurement.target_displacement_m = reached.target.displacement_m;
+  measurement.step = reached_.target.step;
+  measurement.model_time_s = reached_.target.model_time_s;
+  measurement.target_displacement_m = reached_.target.displacement_m;
   measurement.imposed_displacement_m = command_.displacement_m;
   measurement.measured_displacement_m = at_target(feedback_before_.displacement_m, feedback_.displacement_m);
   measurement.force_n = at_target(compensated_force_before_n_, compensated_force_n_);
-  measurement.flags = reached.flags | motion_flags_;
+  measurement.flags = reached_.flags | motion_flags_;
   ports_.reports.send(report);
 }
 
-void ControlLoop::record() noexcept {
-  const double model_time_s = trajectory_.point().path_time_s / settings_.time_scale;
-  std::size_t next = 0;
-  row_[next++] = static_cast<double>(command_.sample);
-  row_[next++] = command_.time_s;
-  row_[next++] = model_time_s;
-  for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
-    row_[next++] = last_target_m_[k];
-    row_[next++] = command_.displacement_m[k];
-    row_[next++] = feedback_.displacement_m[k];
-    row_[next++] = feedback_.force_n[k];
-    row_[next++] = compensated_force_n_[k];
-  }
-  row_[next++] = energy_error_.energy_error_j();
-  row_[next++] = static_cast<double>(static_cast<std::uint32_t>(faults_));
-  control_record_.append(row_);
-  if (command_.sample % kSignalDecimation == 0) {
-    ports_.signals.send({model_time_s, last_target_m_[0], command_.displacement_m[0], feedback_.displacement_m[0],
-                         feedback_.force_n[0]});
-  }
-}
+double ControlLoop::model_time_s() const noexcept { return trajectory_.point().path_time_s / settings_.time_scale; }
 
-TableLayout ControlLoop::control_layout(int dofs) {
-  TableLayout layout{"control", {{"sample", ""}, {"time_s", "s"}, {"model_time_s", "s"}}};
-  for (int k = 1; k <= dofs; ++k) {
-    const std::string suffix = dofs == 1 ? "" : "_" + std::to_string(k);
-    layout.columns.push_back({"target_displacement_m" + suffix, "m"});
-    layout.columns.push_back({"command_displacement_m" + suffix, "m"});
-    layout.columns.push_back({"measured_displacement_m" + suffix, "m"});
-    layout.columns.push_back({"measured_force_n" + suffix, "N"});
-    layout.columns.push_back({"compensated_force_n" + suffix, "N"});
+void ControlLoop::record() noexcept {
+  record_.append({.sample = command_.sample,
+                  .time_s = command_.time_s,
+                  .model_time_s = model_time_s(),
+                  .target_displacement_m = target_.displacement_m,
+                  .command_displacement_m = command_.displacement_m,
+                  .measured_displacement_m = feedback_.displacement_m,
+                  .measured_force_n = feedback_.force_n,
+                  .compensated_force_n = compensated_force_n_,
+                  .energy_error_j = energy_error_.energy_error_j(),
+                  .tracking_lag_sine = tracking_.lag_sine(),
+                  .faults = faults_});
+  if (command_.sample % kSignalDecimation == 0) {
+    ports_.signals.send({model_time_s(), target_.displacement_m[0], command_.displacement_m[0],
+                         feedback_.displacement_m[0], feedback_.force_n[0]});
   }
-  layout.columns.push_back({"energy_error_j", "J"});
-  layout.columns.push_back({"faults", ""});
-  return layout;
 }
 
 }  // namespace hybridtest

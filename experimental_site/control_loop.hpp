@@ -8,11 +8,16 @@
 #include "core/node.hpp"
 #include "core/ports.hpp"
 #include "core/records.hpp"
+#include "experimental_site/closing_motion.hpp"
+#include "experimental_site/control_record.hpp"
 #include "experimental_site/energy_error.hpp"
+#include "experimental_site/fading_offset.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/loop_messages.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "experimental_site/tracking_indicator.hpp"
 #include "experimental_site/trajectory.hpp"
+#include "experimental_site/zero_offsets.hpp"
 
 namespace hybridtest {
 
@@ -23,7 +28,13 @@ struct ControlLoopSettings {
   double step_s = 0.0;       // coupling step in site time [s]
   double time_scale = 1.0;   // site time over model time
   SiteLimits limits;
-  double return_time_s = 2.0;  // ramp back to zero at the end, site time
+  InterlockRules rules = default_interlock_rules();
+  double tracking_window_s = 1.0;  // of the tracking indicator, site time
+  TrajectorySettings trajectory;
+  double ramp_in_s = 0.0;              // towards first targets that are not where the rig stands; a step at least
+  bool captures_zero_offsets = false;  // at arming
+  bool returns_at_end = true;          // else it holds
+  double return_time_s = 2.0;          // ramp back to zero, site time
 };
 
 struct ControlLoopPorts {
@@ -40,9 +51,10 @@ struct SiteCompensation {
 
 /// The part of a site that stands between targets and the rig, once per control period:
 /// trajectory, compensator, motion limits, interlocks, exchange with the rig, force compensator,
-/// record. Interlocks judge forces as measured; the coordinator gets them as compensated.
+/// record. Interlocks judge forces as measured; the coordinator gets them as compensated. Actions
+/// of interlocks only become graver, but for a hold that clears: the loop then picks up from rest.
 ///
-/// In lockstep, control periods follow each other as fast as targets come; in paced mode each
+/// In lockstep, control periods follow each other as fast as targets come; in the other modes each
 /// has its own time and those missed are made up for at once, so that the rig sees every one.
 /// Allocates, locks and logs nothing after construction.
 class ControlLoop final : public Node {
@@ -52,62 +64,84 @@ class ControlLoop final : public Node {
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
-  [[nodiscard]] static TableLayout control_layout(int dofs);
+  [[nodiscard]] static TableLayout control_layout(int dofs) { return ControlRecord::layout(dofs); }
 
  private:
-  /// disarmed -> standing (armed, commands stay at zero) -> running -> holding or ramping -> at_rest
-  enum class Phase : std::uint8_t { disarmed, standing, running, holding, ramping, at_rest };
+  /// disarmed -> zeroing (armed, offsets are captured) -> standing (commands stay at zero) ->
+  /// running -> holding or closing (comes to a stand or to zero) -> at_rest
+  enum class Phase : std::uint8_t { disarmed, zeroing, standing, running, holding, closing, at_rest };
 
   void obey(const LoopRequest& request, Instant now) noexcept;
   void arm(Instant now) noexcept;
+  void start(Instant now) noexcept;
+  void take_target(const CommandPoint& target, Instant now) noexcept;
   void stop() noexcept;
   void come_to_rest() noexcept;
-  void begin_ramp() noexcept;
+  void begin_return() noexcept;
 
+  [[nodiscard]] bool is_paced_by_time() const noexcept { return settings_.mode != CouplingMode::lockstep; }
+  [[nodiscard]] bool follows_targets() const noexcept;
+  [[nodiscard]] Instant period_due() const noexcept;
   [[nodiscard]] bool has_due_period(Instant now) const noexcept;
   [[nodiscard]] Instant next_wake(Instant now) const noexcept;
   void run_period() noexcept;
   void shape_command() noexcept;
   void limit_motion() noexcept;
-  void ramp_command() noexcept;
   void exchange() noexcept;
+  void capture_zero_offsets() noexcept;
   void compensate_forces() noexcept;
-  [[nodiscard]] bool passes_interlocks() noexcept;
-  void trip(const InterlockVerdict& verdict) noexcept;
-  void report_measurement(const ReachedTarget& reached) noexcept;
+  void observe_tracking() noexcept;
+  [[nodiscard]] InterlockInput interlock_input(bool is_new_sample) const noexcept;
+  [[nodiscard]] bool passes_interlocks(bool is_new_sample) noexcept;
+  void act(const InterlockVerdict& verdict) noexcept;
+  void hold(bool is_final) noexcept;
+  void go_on() noexcept;
+  void report(const InterlockTrip& trip) noexcept;
+  void report_cleared() noexcept;
+  void report_measurement() noexcept;
   void record() noexcept;
+  [[nodiscard]] double model_time_s() const noexcept;
 
   ControlLoopSettings settings_;
+  double period_s_;
   Rig& rig_;
   SiteCompensation compensation_;
   EnergyErrorMonitor energy_error_;
+  TrackingIndicator tracking_;
   ControlLoopPorts ports_;
-  RowSink& control_record_;
+  ControlRecord record_;
   Trajectory trajectory_;
-  double period_s_;
+  FadingOffset start_offset_;   // between where the rig stands and the path at its start
+  FadingOffset resume_offset_;  // between a held command and what the compensator wants after it
+  ClosingMotion closing_;
+  ZeroOffsets zero_offsets_;
 
   Phase phase_ = Phase::disarmed;
+  Phase phase_before_hold_ = Phase::disarmed;
+  bool hold_is_final_ = false;
   bool is_paused_ = false;
   bool stop_was_asked_ = false;
   FaultFlags faults_ = FaultFlags::none;
+  InterlockState interlocks_;
   Instant armed_at_{};
   Instant last_target_at_{};
   double command_age_s_ = 0.0;
   bool rig_fault_ = false;
+  bool emergency_stop_ = false;
 
   ActuatorCommand command_;
+  InterfaceVector command_before_m_;
   MeasurementFlags motion_flags_ = MeasurementFlags::none;
-  InterfaceVector wanted_command_m_;
-  InterfaceVector last_target_m_;
+  InterfaceVector compensated_command_m_;
+  InterfaceVector wanted_command_m_;  // with the offset after a hold
+  ReachedTarget reached_;             // not measured yet
+  bool is_reached_ = false;           // there is one
+  TrajectoryPoint target_;            // with the offset at the start
   InterfaceVector no_motion_;
   RigFeedback feedback_;
   RigFeedback feedback_before_;
   InterfaceVector compensated_force_n_;
   InterfaceVector compensated_force_before_n_;
-  InterfaceVector ramp_begin_m_;
-  std::int64_t ramp_periods_ = 0;
-  std::int64_t ramp_period_ = 0;
-  std::vector<double> row_;
 };
 
 }  // namespace hybridtest

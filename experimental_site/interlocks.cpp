@@ -1,13 +1,30 @@
 #include "experimental_site/interlocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace hybridtest {
 namespace {
 
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+/// What one interlock sees in one control sample.
+struct Finding {
+  bool is_judged = false;  // there is a limit, and something to hold against it
+  bool is_passed = false;
+  double observed = 0.0;
+  double limit = 0.0;
+};
+
+/// What is no number counts for nothing here, so that it hides no other value; it has an interlock of its own.
 [[nodiscard]] double largest(const InterfaceVector& values) noexcept {
-  return values.size() == 0 ? 0.0 : values.cwiseAbs().maxCoeff();
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (std::isfinite(values[k])) largest = std::max(largest, std::fabs(values[k]));
+  }
+  return largest;
 }
 
 [[nodiscard]] bool is_finite(const InterlockInput& input) noexcept {
@@ -15,41 +32,187 @@ namespace {
          input.measured_displacement_m.allFinite() && input.force_n.allFinite();
 }
 
-}  // namespace
+[[nodiscard]] Finding against(double observed, double limit) noexcept {
+  return {true, observed > limit, observed, limit};
+}
 
-InterlockVerdict judge(const SiteLimits& limits, const InterlockInput& input) noexcept {
-  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-  if (!is_finite(input)) return {SafetyAction::hold, FaultFlags::not_finite, kNotANumber, 0.0};
-  if (input.rig_fault) return {SafetyAction::hold, FaultFlags::rig_fault, 0.0, 0.0};
+[[nodiscard]] Finding against(double observed, const std::optional<double>& limit) noexcept {
+  return limit ? against(observed, *limit) : Finding{};
+}
 
-  const auto ramp_if_above = [](double observed, double limit, FaultFlags fault) -> InterlockVerdict {
-    if (observed <= limit) return {};
-    return {SafetyAction::ramp_to_zero, fault, observed, limit};
-  };
-  const double displacement = std::fmax(largest(input.target_displacement_m), largest(input.measured_displacement_m));
-  if (auto v = ramp_if_above(displacement, limits.displacement_m, FaultFlags::displacement_limit); any(v.fault))
-    return v;
-  if (auto v = ramp_if_above(largest(input.force_n), limits.force_n, FaultFlags::force_limit); any(v.fault)) return v;
-  if (auto v =
-          ramp_if_above(largest(input.target_velocity_m_per_s), limits.velocity_m_per_s, FaultFlags::velocity_limit);
-      any(v.fault)) {
-    return v;
+/// A sensor that reads the same is stuck once the command has moved away under it.
+void count_stuck(double value, double before, double command_m, InterlockState::Stuck& stuck) noexcept {
+  if (value != before) {
+    stuck = {0, command_m, 0.0};
+    return;
   }
-  if (limits.tracking_error_m) {
-    const double error = (input.target_displacement_m - input.measured_displacement_m).cwiseAbs().maxCoeff();
-    if (auto v = ramp_if_above(error, *limits.tracking_error_m, FaultFlags::tracking_error); any(v.fault)) return v;
+  ++stuck.samples;
+  stuck.command_moved_m = std::max(stuck.command_moved_m, std::fabs(command_m - stuck.command_then_m));
+}
+
+void remember(const InterlockInput& input, InterlockState& state) noexcept {
+  const Eigen::Index dofs = input.measured_displacement_m.size();
+  if (!std::exchange(state.has_sample, true)) {
+    state.measured_displacement_m = InterfaceVector::Constant(dofs, kNotANumber);  // nothing is the same as these
+    state.measured_force_n = state.measured_displacement_m;
   }
-  if (limits.energy_error_ratio) {
-    if (auto v =
-            ramp_if_above(std::fabs(input.energy_error_ratio), *limits.energy_error_ratio, FaultFlags::energy_error);
-        any(v.fault)) {
-      return v;
+  for (Eigen::Index k = 0; k < dofs; ++k) {
+    const auto dof = static_cast<std::size_t>(k);
+    const double command_m = input.command_displacement_m[k];
+    count_stuck(input.measured_displacement_m[k], state.measured_displacement_m[k], command_m,
+                state.displacement_stuck[dof]);
+    count_stuck(input.force_n[k], state.measured_force_n[k], command_m, state.force_stuck[dof]);
+  }
+  state.measured_displacement_m = input.measured_displacement_m;
+  state.measured_force_n = input.force_n;
+}
+
+[[nodiscard]] Finding find_step(const InterfaceVector& value, const InterfaceVector& before, bool is_new,
+                                const std::optional<double>& limit) noexcept {
+  if (!is_new || before.size() != value.size()) return {};
+  return against(largest(value - before), limit);
+}
+
+[[nodiscard]] Finding find_stuck(const SiteLimits& limits, const InterlockInput& input,
+                                 const InterlockState& state) noexcept {
+  if (!limits.stuck_samples || !input.is_new_sample) return {};
+  int samples = 0;
+  const auto dofs = static_cast<std::size_t>(input.force_n.size());
+  for (std::size_t k = 0; k < dofs; ++k) {
+    for (const InterlockState::Stuck& stuck : {state.displacement_stuck[k], state.force_stuck[k]}) {
+      if (stuck.command_moved_m > limits.stuck_while_moving_m) samples = std::max(samples, stuck.samples);
     }
   }
-  if (input.expects_commands && input.command_age_s > limits.command_age_s) {
-    return {SafetyAction::hold, FaultFlags::command_age, input.command_age_s, limits.command_age_s};
+  return {true, samples >= *limits.stuck_samples, static_cast<double>(samples),
+          static_cast<double>(*limits.stuck_samples)};
+}
+
+[[nodiscard]] double displacement_of(const InterlockInput& input) noexcept {
+  const double measured_m = largest(input.measured_displacement_m);
+  return input.phase == SitePhase::resting ? measured_m : std::fmax(measured_m, largest(input.target_displacement_m));
+}
+
+/// What was measured one control sample earlier.
+struct Before {
+  InterfaceVector displacement_m;
+  InterfaceVector force_n;
+};
+
+[[nodiscard]] Finding find(InterlockKind kind, const SiteLimits& limits, const InterlockInput& input,
+                           const Before& before, const InterlockState& state) noexcept {
+  switch (kind) {
+    case InterlockKind::not_finite: return {true, !is_finite(input), kNotANumber, 0.0};
+    case InterlockKind::rig_status: return {true, input.rig_fault, 0.0, 0.0};
+    case InterlockKind::emergency_stop: return {true, input.emergency_stop, 0.0, 0.0};
+    case InterlockKind::command_age:
+      if (!input.expects_commands) return {true, false, 0.0, limits.command_age_s};
+      return against(input.command_age_s, limits.command_age_s);
+    case InterlockKind::displacement: return against(displacement_of(input), limits.displacement_m);
+    case InterlockKind::force: return against(largest(input.force_n), limits.force_n);
+    case InterlockKind::displacement_step:
+      return find_step(input.measured_displacement_m, before.displacement_m, input.is_new_sample,
+                       limits.displacement_step_m);
+    case InterlockKind::force_step:
+      return find_step(input.force_n, before.force_n, input.is_new_sample, limits.force_step_n);
+    case InterlockKind::stuck_sensor: return find_stuck(limits, input, state);
+    default: break;
   }
-  return {};
+  if (input.phase != SitePhase::running) return {};  // no targets are followed
+  switch (kind) {
+    case InterlockKind::velocity: return against(largest(input.target_velocity_m_per_s), limits.velocity_m_per_s);
+    case InterlockKind::tracking_error:
+      return against(largest(input.target_displacement_m - input.measured_displacement_m), limits.tracking_error_m);
+    case InterlockKind::energy_error: return against(std::fabs(input.energy_error_ratio), limits.energy_error_ratio);
+    case InterlockKind::tracking_indicator:
+      return against(std::fabs(input.tracking_lag_sine), limits.tracking_indicator);
+    default: return {};
+  }
+}
+
+[[nodiscard]] bool is_final(const InterlockRule& rule) noexcept {
+  return rule.action > SafetyAction::hold || rule.clears == ClearCondition::never;
+}
+
+/// @return whether the interlock let go.
+[[nodiscard]] bool clear(const InterlockRule& rule, const Finding& finding, const InterlockInput& input,
+                         InterlockState::Latch& latch) noexcept {
+  if (finding.is_passed) latch.clear_for_s = 0.0;
+  if (!finding.is_judged || finding.is_passed || !input.is_new_sample) return false;
+  latch.clear_for_s += input.period_s;
+  if (is_final(rule) || rule.clears != ClearCondition::when_cleared || latch.clear_for_s < kClearAfter_s) return false;
+  latch = {};
+  return true;
+}
+
+void add(InterlockVerdict& verdict, const InterlockTrip& trip) noexcept {
+  auto* const begin = verdict.trips.begin();
+  auto* const end = begin + verdict.trip_count++;
+  auto* const place = std::find_if(begin, end, [&](const InterlockTrip& other) { return other.action < trip.action; });
+  std::move_backward(place, end, end + 1);
+  *place = trip;
+}
+
+}  // namespace
+
+InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
+                       InterlockState& state) noexcept {
+  const Before before = state.has_sample ? Before{state.measured_displacement_m, state.measured_force_n} : Before{};
+  if (input.is_new_sample) remember(input, state);
+  InterlockVerdict verdict;
+  for (std::size_t i = 0; i < kInterlockCount; ++i) {
+    const InterlockRule& rule = rules[i];
+    if (rule.action == SafetyAction::none) continue;
+    const auto kind = static_cast<InterlockKind>(i);
+    InterlockState::Latch& latch = state.latches[i];
+    const Finding finding = find(kind, limits, input, before, state);
+    if (latch.is_tripped) {
+      if (clear(rule, finding, input, latch)) verdict.has_cleared = true;
+    } else if (finding.is_judged && finding.is_passed) {
+      latch = {true, 0.0};
+      add(verdict, {kind, rule.action, is_final(rule), finding.observed, finding.limit});
+    }
+    if (!latch.is_tripped) continue;
+    if (rule.action > verdict.action) verdict.is_final = false;
+    verdict.action = std::max(verdict.action, rule.action);
+    if (rule.action == verdict.action) verdict.is_final = verdict.is_final || is_final(rule);
+  }
+  return verdict;
+}
+
+bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexcept {
+  bool has_reset = false;
+  for (std::size_t i = 0; i < kInterlockCount; ++i) {
+    if (is_final(rules[i]) || rules[i].clears != ClearCondition::operator_reset) continue;
+    has_reset = has_reset || state.latches[i].is_tripped;
+    state.latches[i] = {};
+  }
+  return has_reset;
+}
+
+InterlockRules default_interlock_rules() noexcept {
+  InterlockRules rules;
+  const auto holds = {InterlockKind::not_finite, InterlockKind::rig_status,   InterlockKind::displacement_step,
+                      InterlockKind::force_step, InterlockKind::stuck_sensor, InterlockKind::command_age};
+  for (const InterlockKind kind : holds) rules[static_cast<std::size_t>(kind)].action = SafetyAction::hold;
+  rules[static_cast<std::size_t>(InterlockKind::emergency_stop)].action = SafetyAction::release;
+  return rules;
+}
+
+std::string_view name(InterlockKind kind) noexcept {
+  constexpr std::array<std::string_view, kInterlockCount> kNames{
+      "not_finite",         "rig_status",        "displacement",  "force",        "velocity",
+      "tracking_error",     "displacement_step", "force_step",    "stuck_sensor", "energy_error",
+      "tracking_indicator", "command_age",       "emergency_stop"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+FaultFlags fault_of(InterlockKind kind) noexcept {
+  constexpr std::array<FaultFlags, kInterlockCount> kFaults{
+      FaultFlags::not_finite,     FaultFlags::rig_fault,      FaultFlags::displacement_limit, FaultFlags::force_limit,
+      FaultFlags::velocity_limit, FaultFlags::tracking_error, FaultFlags::displacement_step,  FaultFlags::force_step,
+      FaultFlags::stuck_sensor,   FaultFlags::energy_error,   FaultFlags::tracking_indicator, FaultFlags::command_age,
+      FaultFlags::emergency_stop};
+  return kFaults[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace hybridtest

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "core/faults.hpp"
 #include "core/interface_vector.hpp"
@@ -9,43 +11,138 @@
 namespace hybridtest {
 
 /// What a site does about a fault, in order of severity.
-enum class SafetyAction : std::uint8_t { none, hold, ramp_to_zero };
+///   warn           says so; the test goes on.
+///   hold           the last command stays; the rig keeps its pressure and its control.
+///   ramp_to_zero   a controlled return, then stop_motion().
+///   release        stop_motion() at once.
+enum class SafetyAction : std::uint8_t { none, warn, hold, ramp_to_zero, release };
+
+/// When an interlock lets go again. Those that ramp or release never do.
+enum class ClearCondition : std::uint8_t { when_cleared, operator_reset, never };
+
+enum class InterlockKind : std::uint8_t {
+  not_finite,
+  rig_status,
+  displacement,
+  force,
+  velocity,
+  tracking_error,
+  displacement_step,
+  force_step,
+  stuck_sensor,
+  energy_error,
+  tracking_indicator,
+  command_age,
+  emergency_stop,
+};
+inline constexpr std::size_t kInterlockCount = 13;
+
+/// As in the `interlocks` section of a scenario.
+[[nodiscard]] std::string_view name(InterlockKind kind) noexcept;
+[[nodiscard]] FaultFlags fault_of(InterlockKind kind) noexcept;
 
 /// Limits of one site, the same for each of its interface degrees of freedom. Site time.
+/// What has no value is not judged.
 struct SiteLimits {
   double displacement_m = 0.0;
   double velocity_m_per_s = 0.0;
   double force_n = 0.0;
-  std::optional<double> tracking_error_m;    // |target - measured|
-  std::optional<double> energy_error_ratio;  // see EnergyErrorMonitor
-  double command_age_s = 0.0;                // since the last new target
+  std::optional<double> tracking_error_m{};     // |target - measured|
+  std::optional<double> energy_error_ratio{};   // see EnergyErrorMonitor
+  double command_age_s = 0.0;                   // since the last new target
+  std::optional<double> displacement_step_m{};  // measured, from one control period to the next
+  std::optional<double> force_step_n{};         // likewise
+  std::optional<int> stuck_samples{};           // in a row measured the same to the last bit, while the command moves
+  double stuck_while_moving_m = 1e-4;           // by more than this; above the resolution of the sensors
+  std::optional<double> tracking_indicator{};   // |lag_sine|, see TrackingIndicator
+};
+
+/// What an interlock does once its limit is passed.
+struct InterlockRule {
+  SafetyAction action = SafetyAction::ramp_to_zero;
+  ClearCondition clears = ClearCondition::never;
+};
+using InterlockRules = std::array<InterlockRule, kInterlockCount>;  // by InterlockKind
+
+/// Limits passed ramp to zero. What makes the measurement untrustworthy holds, since a controlled
+/// return would act on it; so does an overdue command. The operator's emergency stop releases.
+/// None of them clears.
+[[nodiscard]] InterlockRules default_interlock_rules() noexcept;
+
+/// What may be expected of a site: until it is armed nothing is judged.
+enum class SitePhase : std::uint8_t {
+  standing,  // armed, commands at zero
+  running,   // follows targets
+  resting,   // holds or returns: targets are not followed
 };
 
 /// What the interlocks look at, once per control sample.
 struct InterlockInput {
+  SitePhase phase = SitePhase::running;
   const InterfaceVector& target_displacement_m;  // wanted, before it is clipped
   const InterfaceVector& target_velocity_m_per_s;
-  const InterfaceVector& command_displacement_m;  // as the compensator wants it
+  const InterfaceVector& command_displacement_m;  // as the compensator wants it; at rest as sent
   const InterfaceVector& measured_displacement_m;
   const InterfaceVector& force_n;
   double energy_error_ratio = 0.0;
+  double tracking_lag_sine = 0.0;
   double command_age_s = 0.0;
   bool expects_commands = false;  // the test runs and is not paused
   bool rig_fault = false;
+  bool emergency_stop = false;
+  bool is_new_sample = false;  // measured since the last call; the others only look again
+  double period_s = 0.0;       // control period
 };
 
-/// The gravest of what is wrong. Faults that bring the rig to rest outrank those that hold it.
-struct InterlockVerdict {
+/// What an interlock remembers from one control sample to the next.
+struct InterlockState {
+  struct Latch {
+    bool is_tripped = false;
+    double clear_for_s = 0.0;  // its condition has been absent for so long
+  };
+  std::array<Latch, kInterlockCount> latches{};
+
+  bool has_sample = false;
+  InterfaceVector measured_displacement_m;  // of the sample before
+  InterfaceVector measured_force_n;
+  /// How long a sensor has read the same, and how far the command has gone meanwhile.
+  struct Stuck {
+    int samples = 0;
+    double command_then_m = 0.0;
+    double command_moved_m = 0.0;
+  };
+  std::array<Stuck, kMaxInterfaceDofs> displacement_stuck{};
+  std::array<Stuck, kMaxInterfaceDofs> force_stuck{};
+};
+
+/// An interlock that tripped with this sample.
+struct InterlockTrip {
+  InterlockKind kind = InterlockKind::not_finite;
   SafetyAction action = SafetyAction::none;
-  FaultFlags fault = FaultFlags::none;  // one flag
-  double observed = 0.0;                // in the fault's unit; not finite for `not_finite`
+  bool is_final = true;   // never clears: the test cannot go on
+  double observed = 0.0;  // in the fault's unit; NaN for `not_finite`
   double limit = 0.0;
 };
 
-/// Judges one control sample: a pure function, no state, no clock.
+struct InterlockVerdict {
+  SafetyAction action = SafetyAction::none;  // the gravest of those in force
+  bool is_final = false;                     // one that never clears is in force with that action
+  std::array<InterlockTrip, kInterlockCount> trips{};
+  int trip_count = 0;        // new ones, gravest first
+  bool has_cleared = false;  // one let go with this sample
+};
+
+/// An interlock that clears by itself lets go when its condition has been absent for so long.
+inline constexpr double kClearAfter_s = 0.1;
+
+/// Judges one control sample: a pure function of its arguments, no clock.
 ///
-/// Values that are not finite and a rig that reports a fault hold (a controlled return would
-/// act on them); limits passed ramp to zero; an overdue command holds.
-[[nodiscard]] InterlockVerdict judge(const SiteLimits& limits, const InterlockInput& input) noexcept;
+/// @param state   from the last call; the new one is left in it. A fresh one at arming.
+[[nodiscard]] InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
+                                     InterlockState& state) noexcept;
+
+/// The operator's reset: those that clear on it let go, if their condition is gone by the next
+/// sample; else they trip again. @return whether there was one.
+bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexcept;
 
 }  // namespace hybridtest

@@ -27,12 +27,16 @@ struct StepMeasurement {
 
 /// From the control loop to the site link.
 struct LoopReport {
-  enum class Kind : std::uint8_t { armed, arm_failed, measurement, fault, at_rest };
+  /// `fault` ends the test; after a `warning` it goes on, if it holds as soon as that has `cleared`.
+  enum class Kind : std::uint8_t { armed, arm_failed, zero_offset, measurement, warning, cleared, fault, at_rest };
   Kind kind = Kind::measurement;
   StepMeasurement measurement;          // with `measurement`
-  FaultFlags fault = FaultFlags::none;  // with `fault`: exactly one
-  double observed = 0.0;                // with `fault`: in the fault's unit
+  FaultFlags fault = FaultFlags::none;  // with `fault` and `warning`: exactly one
+  double observed = 0.0;                // likewise: in the fault's unit
   double limit = 0.0;
+  int dof = 0;                  // with `zero_offset`
+  double displacement_m = 0.0;  // likewise: what is taken off the measured displacement
+  double force_n = 0.0;         // likewise
   double model_time_s = 0.0;
 };
 

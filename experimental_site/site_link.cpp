@@ -1,6 +1,7 @@
 #include "experimental_site/site_link.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace hybridtest {
@@ -106,6 +107,18 @@ void SiteLink::heed(const LoopReport& report, Instant now) noexcept {
           now, Severity::fault,
           report.fault == FaultFlags::command_age ? EventCode::command_overdue : EventCode::interlock_tripped,
           name(report.fault), {report.observed, report.limit}, passed_on_, report.model_time_s);
+      break;
+    case LoopReport::Kind::warning:
+      presence_.report(now, Severity::warning, EventCode::interlock_warned, name(report.fault),
+                       {report.observed, report.limit}, passed_on_, report.model_time_s);
+      break;
+    case LoopReport::Kind::cleared:
+      presence_.report(now, Severity::information, EventCode::interlock_cleared, {}, {}, passed_on_,
+                       report.model_time_s);
+      break;
+    case LoopReport::Kind::zero_offset:
+      presence_.report(now, Severity::information, EventCode::zero_offset, "dof " + std::to_string(report.dof + 1),
+                       {report.displacement_m, report.force_n});
       break;
     case LoopReport::Kind::measurement:
       measured_ = report.measurement;

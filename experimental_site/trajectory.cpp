@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace hybridtest {
@@ -16,7 +17,8 @@ constexpr double kHeldBelow = 0.05;
 
 }  // namespace
 
-Trajectory::Trajectory(int dofs, double step_s, double time_scale) noexcept : step_s_{step_s}, time_scale_{time_scale} {
+Trajectory::Trajectory(int dofs, double step_s, double time_scale, const TrajectorySettings& settings) noexcept
+    : settings_{settings}, step_s_{step_s}, time_scale_{time_scale} {
   reset(InterfaceVector::Zero(dofs));
 }
 
@@ -32,6 +34,8 @@ void Trajectory::reset(const InterfaceVector& displacement_m) noexcept {
   begin_displacement_m_ = displacement_m;
   begin_velocity_m_per_s_ = zero;
   begin_acceleration_m_per_s2_ = zero;
+  begin_jerk_m_per_s3_ = zero;
+  has_left_target_ = false;
   end_velocity_m_per_s_ = zero;
   end_acceleration_m_per_s2_ = zero;
   flags_ = MeasurementFlags::none;
@@ -65,7 +69,8 @@ bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
   if (!is_running_) return false;
   const double before_s = path_time_s_;
   const double target_time_s = interval_begin_s_ + step_s_;
-  if (!std::exchange(is_first_target_, false)) {
+  const bool waits = !has_target_ && settings_.type == TrajectoryType::ramp_and_hold;
+  if (!std::exchange(is_first_target_, false) && !waits) {
     choose_rate(interval_s);
     path_time_s_ += rate_ * interval_s;
   }
@@ -101,34 +106,77 @@ void Trajectory::leave_target() noexcept {
   segment_begin_s_ = interval_begin_s_;
   begin_displacement_m_ = target_.displacement_m;
   begin_velocity_m_per_s_ = end_velocity_m_per_s_;
+  if (std::exchange(has_left_target_, true)) {
+    begin_jerk_m_per_s3_ = (end_acceleration_m_per_s2_ - begin_acceleration_m_per_s2_) / step_s_;
+  }
   begin_acceleration_m_per_s2_ = end_acceleration_m_per_s2_;
+}
+
+void Trajectory::halt() noexcept {
+  rate_ = 0.0;
+  point_.velocity_m_per_s.setZero();
+  point_.acceleration_m_per_s2.setZero();
 }
 
 void Trajectory::evaluate() noexcept {
   const double since_s = path_time_s_ - segment_begin_s_;
-  if (has_target_) {
-    // Cubic Hermite between the place reached and the target.
-    const double length_s = interval_begin_s_ + step_s_ - segment_begin_s_;
-    const double x = since_s / length_s;
-    const double at_target = x * x * (3.0 - 2.0 * x);
-    const double at_begin_slope = x * (1.0 - x) * (1.0 - x) * length_s;
-    const double at_end_slope = x * x * (x - 1.0) * length_s;
-    point_.displacement_m = (1.0 - at_target) * begin_displacement_m_ + at_target * target_.displacement_m +
-                            at_begin_slope * begin_velocity_m_per_s_ + at_end_slope * end_velocity_m_per_s_;
-    slope_m_per_s_ = (6.0 * x * (1.0 - x) / length_s) * (target_.displacement_m - begin_displacement_m_) +
-                     (1.0 - x) * (1.0 - 3.0 * x) * begin_velocity_m_per_s_ +
-                     x * (3.0 * x - 2.0) * end_velocity_m_per_s_;
-    point_.acceleration_m_per_s2 = (1.0 - x) * begin_acceleration_m_per_s2_ + x * end_acceleration_m_per_s2_;
+  if (settings_.type == TrajectoryType::ramp_and_hold) {
+    ramp(since_s);
+  } else if (has_target_) {
+    correct(since_s);
   } else {
-    point_.displacement_m = begin_displacement_m_ + since_s * begin_velocity_m_per_s_ +
-                            (0.5 * since_s * since_s) * begin_acceleration_m_per_s2_;
-    slope_m_per_s_ = begin_velocity_m_per_s_ + since_s * begin_acceleration_m_per_s2_;
-    point_.acceleration_m_per_s2 = begin_acceleration_m_per_s2_;
+    predict(since_s);
   }
   point_.velocity_m_per_s = rate_ * slope_m_per_s_;
   point_.path_time_s = path_time_s_;
-  point_.is_extrapolated = !has_target_;
+  point_.is_extrapolated = !has_target_ && settings_.type == TrajectoryType::predictor_corrector;
   point_.is_held = any(flags_ & MeasurementFlags::held);
+}
+
+/// Cubic Hermite between the place reached and the target.
+void Trajectory::correct(double since_s) noexcept {
+  const double length_s = interval_begin_s_ + step_s_ - segment_begin_s_;
+  const double x = since_s / length_s;
+  const double at_target = x * x * (3.0 - 2.0 * x);
+  const double at_begin_slope = x * (1.0 - x) * (1.0 - x) * length_s;
+  const double at_end_slope = x * x * (x - 1.0) * length_s;
+  point_.displacement_m = (1.0 - at_target) * begin_displacement_m_ + at_target * target_.displacement_m +
+                          at_begin_slope * begin_velocity_m_per_s_ + at_end_slope * end_velocity_m_per_s_;
+  slope_m_per_s_ = (6.0 * x * (1.0 - x) / length_s) * (target_.displacement_m - begin_displacement_m_) +
+                   (1.0 - x) * (1.0 - 3.0 * x) * begin_velocity_m_per_s_ + x * (3.0 * x - 2.0) * end_velocity_m_per_s_;
+  point_.acceleration_m_per_s2 = (1.0 - x) * begin_acceleration_m_per_s2_ + x * end_acceleration_m_per_s2_;
+}
+
+/// Taylor series from the last target, as long as the order says.
+void Trajectory::predict(double since_s) noexcept {
+  point_.displacement_m = begin_displacement_m_ + since_s * begin_velocity_m_per_s_;
+  slope_m_per_s_ = begin_velocity_m_per_s_;
+  point_.acceleration_m_per_s2.setZero();
+  if (settings_.order < 2) return;
+  point_.displacement_m += (0.5 * since_s * since_s) * begin_acceleration_m_per_s2_;
+  slope_m_per_s_ += since_s * begin_acceleration_m_per_s2_;
+  point_.acceleration_m_per_s2 = begin_acceleration_m_per_s2_;
+  if (settings_.order < 3) return;
+  point_.displacement_m += (since_s * since_s * since_s / 6.0) * begin_jerk_m_per_s3_;
+  slope_m_per_s_ += (0.5 * since_s * since_s) * begin_jerk_m_per_s3_;
+  point_.acceleration_m_per_s2 += since_s * begin_jerk_m_per_s3_;
+}
+
+/// Raised cosine from rest to rest over the first share of the step.
+void Trajectory::ramp(double since_s) noexcept {
+  const double length_s = (1.0 - settings_.hold_share) * (interval_begin_s_ + step_s_ - segment_begin_s_);
+  const double pi_x = std::numbers::pi * since_s / length_s;
+  if (!has_target_ || since_s >= length_s) {
+    point_.displacement_m = has_target_ ? target_.displacement_m : begin_displacement_m_;
+    slope_m_per_s_.setZero();
+    point_.acceleration_m_per_s2.setZero();
+    return;
+  }
+  const double frequency_per_s = std::numbers::pi / length_s;
+  const InterfaceVector half_way_m = 0.5 * (target_.displacement_m - begin_displacement_m_);
+  point_.displacement_m = begin_displacement_m_ + (1.0 - std::cos(pi_x)) * half_way_m;
+  slope_m_per_s_ = (frequency_per_s * std::sin(pi_x)) * half_way_m;
+  point_.acceleration_m_per_s2 = (frequency_per_s * frequency_per_s * std::cos(pi_x)) * half_way_m;
 }
 
 }  // namespace hybridtest

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/interface_vector.hpp"
 #include "core/messages.hpp"
 
@@ -24,17 +26,32 @@ struct ReachedTarget {
   MeasurementFlags flags = MeasurementFlags::none;
 };
 
+enum class TrajectoryType : std::uint8_t { predictor_corrector, ramp_and_hold };
+
+struct TrajectorySettings {
+  TrajectoryType type = TrajectoryType::predictor_corrector;
+  /// Of the predictor: 1 constant velocity, 2 constant acceleration, 3 constant jerk, which is
+  /// taken from the accelerations of the last two targets. Exact for motions of that order.
+  int order = 2;
+  /// Ramp and hold: share of the step at its end in which the target is held, 0 to below 1.
+  double hold_share = 0.2;
+};
+
 /// Event-driven predictor-corrector between coupling steps (Mosqueda, Stojadinovic and Mahin,
 /// 2005): interpolates to the next target once it is known, extrapolates while it is not,
 /// slows down when it is late and waits short of the step's end as the last resort.
 ///
 /// The path is a function of path time. It is continued by a cubic through the place and
-/// velocity reached and those of the target at its time, and predicted with constant
-/// acceleration while the target is unknown. Path time runs with site time; from
+/// velocity reached and those of the target at its time, and predicted by a polynomial while the
+/// target is unknown. The corrector is a cubic whatever the predictor's order: the least that
+/// joins two places and two velocities. Path time runs with site time; from
 /// `kSlowDownAt` of a step without its target it runs ever more slowly and tends to the
 /// step's end. When a late target comes, path time is set back to there, so that it is reached
 /// over the same share of a step, and picks up at a bounded rate. So position and velocity are
 /// continuous whenever targets arrive.
+///
+/// Ramp and hold, for quasi-static tests: from rest to rest along a raised cosine, held for the
+/// last share of the step, measured at its end; nothing is predicted, and no target is late.
 ///
 /// Site time is model time times the time scale. Real-time safe.
 class Trajectory {
@@ -45,7 +62,7 @@ class Trajectory {
   /// @param dofs        interface degrees of freedom.
   /// @param step_s      coupling step in site time [s].
   /// @param time_scale  site time over model time.
-  Trajectory(int dofs, double step_s, double time_scale) noexcept;
+  Trajectory(int dofs, double step_s, double time_scale, const TrajectorySettings& settings = {}) noexcept;
 
   /// At rest at `displacement_m`, before step 0.
   void reset(const InterfaceVector& displacement_m) noexcept;
@@ -59,6 +76,9 @@ class Trajectory {
   /// @return whether the target was passed; the interval is short enough that it is one at most.
   [[nodiscard]] bool advance(double interval_s, ReachedTarget& reached) noexcept;
 
+  /// Stands still at once, as an interlock does; the next advance() picks up from rest.
+  void halt() noexcept;
+
   [[nodiscard]] const TrajectoryPoint& point() const noexcept { return point_; }
   /// A target is known and not yet reached.
   [[nodiscard]] bool has_target() const noexcept { return has_target_; }
@@ -69,7 +89,11 @@ class Trajectory {
   void choose_rate(double interval_s) noexcept;
   void leave_target() noexcept;
   void evaluate() noexcept;
+  void correct(double since_s) noexcept;
+  void predict(double since_s) noexcept;
+  void ramp(double since_s) noexcept;
 
+  TrajectorySettings settings_;
   double step_s_;
   double time_scale_;
   bool is_running_ = false;
@@ -85,6 +109,8 @@ class Trajectory {
   InterfaceVector begin_displacement_m_;
   InterfaceVector begin_velocity_m_per_s_;
   InterfaceVector begin_acceleration_m_per_s2_;
+  InterfaceVector begin_jerk_m_per_s3_;
+  bool has_left_target_ = false;
   InterfaceVector end_velocity_m_per_s_;
   InterfaceVector end_acceleration_m_per_s2_;
   MeasurementFlags flags_ = MeasurementFlags::none;

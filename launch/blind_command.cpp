@@ -6,8 +6,13 @@
 
 #include "core/exit_code.hpp"
 #include "diagnosis/blind/make_batch.hpp"
+#include "diagnosis/blind/run_batch.hpp"
+#include "diagnosis/blind/score/score_batch.hpp"
 #include "launch/commands.hpp"
+#include "launch/diagnose_site.hpp"
+#include "launch/read_recording.hpp"
 #include "launch/scenario_digest.hpp"
+#include "launch/studies/output_file.hpp"
 #include "launch/studies/parallel_runs.hpp"
 #include "launch/studies/study_progress.hpp"
 
@@ -22,40 +27,87 @@ std::string hexadecimal_sha256(std::string_view text) {
   return digits;
 }
 
-struct MakeOptions {
-  blind::MakeSettings settings;
+/// BATCH/ is BATCH.
+fs::path without_slash(const fs::path& directory) {
+  return directory.has_filename() ? directory : directory.parent_path();
+}
+
+fs::path beside(const fs::path& directory, const char* ending) {
+  return fs::path{without_slash(directory).string() + ending};
+}
+
+/// On so many threads, with a line that tells how far it is.
+blind::ForEach in_parallel(unsigned threads) {
+  return [threads](std::size_t count, const std::function<void(std::size_t)>& one) {
+    StudyProgress progress{count, stderr};
+    run_in_parallel(count, threads, [&](std::size_t i) {
+      one(i);
+      progress.completed(blind::case_name(i));
+    });
+  };
+}
+
+struct BlindOptions {
+  blind::MakeSettings make;
+  fs::path batch;
+  fs::path key;
+  fs::path answers;
+  std::uint64_t seed = 1;
   unsigned threads = usable_threads();
 };
 
-int make(MakeOptions options) {
-  fs::path& directory = options.settings.directory;
-  if (!directory.has_filename()) directory = directory.parent_path();
-  if (options.settings.key.empty()) options.settings.key = directory.string() + ".key.json";
-  {
-    StudyProgress progress{options.settings.cases, stderr};
-    make_batch(options.settings, hexadecimal_sha256, [&](std::size_t count, const auto& one) {
-      run_in_parallel(count, options.threads, [&](std::size_t i) {
-        one(i);
-        progress.completed(blind::case_name(i));
-      });
-    });
-  }
-  fmt::print("{} cases in {}, the key in {}\n", options.settings.cases, directory.string(),
-             options.settings.key.string());
+int make(const BlindOptions& options) {
+  blind::MakeSettings settings = options.make;
+  settings.key = options.key.empty() ? beside(settings.directory, ".key.json") : options.key;
+  blind::make_batch(settings, hexadecimal_sha256, in_parallel(options.threads));
+  fmt::print("{} cases in {}, the key in {}\n", settings.cases, settings.directory.string(), settings.key.string());
   return kExitCompleted;
 }
 
-void add_make(CLI::App& commands, CommandAction& action) {
-  const auto options = std::make_shared<MakeOptions>();
-  CLI::App* command = commands.add_subcommand("make", "Draw sites, recordings and what is wrong with them");
-  command->add_option("--cases", options->settings.cases, "How many")->required()->check(CLI::Range(1, 9999));
-  command->add_option("--seed", options->settings.seed, "The same seed gives the same files")->required();
-  command->add_option("--out", options->settings.directory, "New directory of the batch")->required();
-  command->add_option("--key", options->settings.key, "File for the truth")->default_str("<out>.key.json");
-  command->add_option("--threads", options->threads, "Cases at a time; the files do not depend on it")
+/// What `hybridtest diagnose` does with the same files.
+void diagnose_case(const blind::CaseFiles& files, const fs::path& out, std::uint64_t seed) {
+  const SiteModelFile model = read_site_model(files.site, {});
+  std::vector<Recording> recordings;
+  for (const fs::path& file : files.fit) recordings.push_back(read_recording(file, RecordingRole::fit));
+  recordings.push_back(read_recording(files.held_out, RecordingRole::held_out));
+  DiagnoseSettings settings;
+  settings.seed = seed;
+  settings.threads = 1;  // the cases themselves run side by side
+  write_diagnosis(diagnose_site(model, recordings, settings), model, out);
+}
+
+int run(const BlindOptions& options) {
+  const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
+  const blind::RunOutcome outcome = blind::run_batch(
+      options.batch, answers,
+      [&](const blind::CaseFiles& files, const fs::path& out) { diagnose_case(files, out, options.seed); },
+      hexadecimal_sha256, in_parallel(options.threads));
+  for (const std::string& failure : outcome.failures) fmt::print(stderr, "not answered: {}\n", failure);
+  fmt::print("{} answers in {}, sealed\n", outcome.answered, answers.string());
+  return outcome.failures.empty() ? kExitCompleted : kExitDataInvalid;
+}
+
+int score(const BlindOptions& options) {
+  const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
+  const fs::path key = options.key.empty() ? beside(options.batch, ".key.json") : options.key;
+  const blind::BatchScore scored = blind::score_batch(options.batch, answers, key, hexadecimal_sha256);
+  fmt::print("{}", scored.text);
+  write_output_file(answers / "score.json", scored.json);
+  fmt::print("\nWritten to {}\n", (answers / "score.json").string());
+  return kExitCompleted;
+}
+
+CLI::App* add(CLI::App& commands, const char* name, const char* what, const std::shared_ptr<BlindOptions>& options,
+              int (*act)(const BlindOptions&), CommandAction& action) {
+  CLI::App* command = commands.add_subcommand(name, what);
+  command->callback([options, act, &action] { action = [options, act] { return act(*options); }; });
+  return command;
+}
+
+void add_threads(CLI::App& command, const std::shared_ptr<BlindOptions>& options) {
+  command.add_option("--threads", options->threads, "Cases at a time; the files do not depend on it")
       ->check(CLI::Range(1U, 1024U))
       ->capture_default_str();
-  command->callback([options, &action] { action = [options] { return make(*options); }; });
 }
 
 }  // namespace
@@ -64,7 +116,29 @@ void add_blind_command(CLI::App& app, CommandAction& action) {
   CLI::App* commands =
       app.add_subcommand("blind", "Check the diagnosis on recordings whose effect is withheld from it");
   commands->require_subcommand(1);
-  add_make(*commands, action);
+  const auto options = std::make_shared<BlindOptions>();
+
+  CLI::App* making =
+      add(*commands, "make", "Draw sites, recordings and what is wrong with them", options, make, action);
+  making->add_option("--cases", options->make.cases, "How many")->required()->check(CLI::Range(1, 9999));
+  making->add_option("--seed", options->make.seed, "The same seed gives the same files")->required();
+  making->add_option("--out", options->make.directory, "New directory of the batch")->required();
+  making->add_option("--key", options->key, "File for the truth")->default_str("<out>.key.json");
+  add_threads(*making, options);
+
+  CLI::App* running =
+      add(*commands, "run", "Diagnose every case that is not answered yet, without the key", options, run, action);
+  running->add_option("BATCH", options->batch, "Directory of the batch")->required()->check(CLI::ExistingDirectory);
+  running->add_option("--out", options->answers, "Directory for the answers")->default_str("<batch>.answers");
+  running->add_option("--seed", options->seed, "Of the diagnosis")->capture_default_str();
+  add_threads(*running, options);
+
+  CLI::App* scoring = add(*commands, "score", "Open the key and judge the answers", options, score, action);
+  scoring->add_option("BATCH", options->batch, "Directory of the batch")->required()->check(CLI::ExistingDirectory);
+  scoring->add_option("--answers", options->answers, "Directory with <case>/diagnosis.json")
+      ->default_str("<batch>.answers")
+      ->check(CLI::ExistingDirectory);
+  scoring->add_option("--key", options->key, "The truth")->default_str("<batch>.key.json");
 }
 
 }  // namespace hybridtest

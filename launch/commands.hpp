@@ -13,6 +13,7 @@ void add_check_command(CLI::App& app, CommandAction& action);
 void add_run_command(CLI::App& app, CommandAction& action);
 void add_simulate_command(CLI::App& app, CommandAction& action);
 void add_control_commands(CLI::App& app, CommandAction& action);
+void add_effects_command(CLI::App& app, CommandAction& action);
 void add_export_command(CLI::App& app, CommandAction& action);
 void add_summary_command(CLI::App& app, CommandAction& action);
 void add_diagnose_command(CLI::App& app, CommandAction& action);

@@ -169,13 +169,6 @@ Maker<SubstructureModel> read_model(Section section, int dofs, const std::filesy
   return maker;
 }
 
-RigReading read_rig(Section section, int dofs) {
-  static_cast<void>(section.choice("type", {"simulated"}));
-  RigReading reading = read_simulated_rig(section, dofs);
-  section.finish();
-  return reading;
-}
-
 std::string read_integrator_type(Section section) {
   const std::vector<std::string> names{"central_difference", "explicit_newmark"};
   std::string type = names[section.choice("type", names)];

@@ -12,6 +12,7 @@
 #include "coordinator/integrator.hpp"
 #include "coordinator/linear_structure.hpp"
 #include "core/config/section.hpp"
+#include "core/records.hpp"
 #include "core/time.hpp"
 #include "experimental_site/rigs/rig.hpp"
 #include "experimental_site/transfer_systems/transfer_system.hpp"
@@ -38,9 +39,13 @@ using Maker = std::function<std::unique_ptr<Part>()>;
 struct RigReading {
   std::string type;
   std::function<std::unique_ptr<Rig>(double control_period_s)> make;
-  double transfer_delay_s = 0.0;  // at low frequency, of a simulated rig's slowest actuator
+  double transfer_delay_s = 0.0;    // at low frequency, of a simulated rig's slowest actuator
+  bool is_elsewhere = false;        // outside the process that makes it: not under simulated time
+  bool keeps_time = false;          // by a clock of its own: not in lockstep
+  std::vector<TableLayout> tables;  // that it records by itself, see Rig::record_to()
 };
-[[nodiscard]] RigReading read_rig(config::Section section, int dofs);
+/// @param directory   where files that it names are looked for.
+[[nodiscard]] RigReading read_rig(config::Section section, int dofs, const std::filesystem::path& directory);
 
 struct CompensatorReading {
   std::function<std::unique_ptr<Compensator>(double control_period_s)> make;

@@ -22,6 +22,7 @@
 #include "compensation/newmark_kinematics.hpp"
 #include "compensation/no_compensation.hpp"
 #include "compensation/no_force_compensation.hpp"
+#include "compensation/optimal_pick.hpp"
 #include "compensation/polynomial_displacement.hpp"
 #include "compensation/polynomial_force.hpp"
 #include "compensation/two_stage_adaptive.hpp"
@@ -228,6 +229,12 @@ ForceCompensatorMaker read_force_correction_quadratic(Section& section) {
   return force_compensator<ForceCorrectionQuadratic>(parameters);
 }
 
+ForceCompensatorMaker read_optimal_pick(Section& section) {
+  OptimalPick::Parameters parameters;
+  take(section, "window_s", parameters.window_s);
+  return force_compensator<OptimalPick>(parameters);
+}
+
 using EstimatorMaker = std::function<std::unique_ptr<DelayEstimator>(double period_s)>;
 
 template <class Part>
@@ -245,6 +252,7 @@ EstimatorMaker read_zero_crossing_slope(Section& section) {
   ZeroCrossingSlope::Parameters parameters;
   take(section, "average_s", parameters.average_s);
   take(section, "slope_m_per_s_min", parameters.slope_m_per_s_min);
+  take(section, "motion_m_min", parameters.motion_m_min);
   take(section, "crossing_weight", parameters.crossing_weight);
   return estimator<ZeroCrossingSlope>(section, parameters);
 }
@@ -322,7 +330,8 @@ ForceCompensatorMaker read_force_compensator(Section section) {
                                        {{"none", read_no_force_compensation},
                                         {"polynomial_force", read_polynomial_force},
                                         {"force_correction", read_force_correction},
-                                        {"force_correction_quadratic", read_force_correction_quadratic}},
+                                        {"force_correction_quadratic", read_force_correction_quadratic},
+                                        {"optimal_pick", read_optimal_pick}},
                                        "none");
   if (!estimator_maker) return maker;
   return [maker, make_estimator = *estimator_maker](double period_s) {

@@ -33,7 +33,7 @@ ListedEffect read_effect(Section section, const std::vector<EffectInterface>& in
     effect.setting.values.push_back(
         section.number(parameter.name, {.low = parameter.low, .high = parameter.high}, fallback_of(parameter)));
   }
-  if (section.has_optional("dof")) effect.dof = static_cast<int>(section.integer("dof", 1, dofs)) - 1;
+  if (dofs > 0 && section.has_optional("dof")) effect.dof = static_cast<int>(section.integer("dof", 1, dofs)) - 1;
   section.finish();
   return effect;
 }

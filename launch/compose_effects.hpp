@@ -17,7 +17,7 @@ struct ListedEffect {
 
 /// The list under the optional key `effects`.
 /// @param interfaces   those an effect may name here.
-/// @param dofs         degrees of freedom that it may name with `dof`, counted from 1.
+/// @param dofs         degrees of freedom that it may name with `dof`, counted from 1; 0: it has no such key.
 [[nodiscard]] std::vector<ListedEffect> read_effects(config::Section& section,
                                                      const std::vector<EffectInterface>& interfaces, int dofs);
 

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   hybridtest::add_run_command(app, action);
   hybridtest::add_simulate_command(app, action);
   hybridtest::add_control_commands(app, action);
+  hybridtest::add_effects_command(app, action);
   hybridtest::add_export_command(app, action);
   hybridtest::add_summary_command(app, action);
   hybridtest::add_diagnose_command(app, action);

@@ -36,8 +36,15 @@ ControlLoopSettings loop_settings(const Scenario& scenario, const SubstructureSc
   settings.periods_per_step = substructure.site.periods_per_step;
   settings.time_scale = scenario.time.time_scale;
   settings.step_s = scenario.time.step_s * settings.time_scale;
-  settings.limits = substructure.site.limits;
-  settings.return_time_s = substructure.site.return_time_s;
+  const LoopScenario& loop = substructure.site.loop;
+  settings.limits = loop.limits;
+  settings.rules = loop.rules;
+  settings.tracking_window_s = loop.tracking_window_s;
+  settings.trajectory = loop.trajectory;
+  settings.ramp_in_s = loop.ramp_in_s;
+  settings.captures_zero_offsets = loop.captures_zero_offsets;
+  settings.returns_at_end = loop.returns_at_end;
+  settings.return_time_s = loop.return_time_s;
   return settings;
 }
 
@@ -99,6 +106,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   const ControlLoopSettings settings = loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
   rig_ = substructure.make_rig(control_period_s);
+  if (!substructure.site.rig_tables.empty()) rig_->record_to(surroundings.sink);
   rig_->connect();
   // A twentieth of the displacement limit: smaller motion does not scale the energy error.
   EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
@@ -115,7 +123,9 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
 
 std::vector<TableLayout> SiteParticipant::tables(const SubstructureScenario& substructure) {
   const int dofs = static_cast<int>(substructure.interface.size());
-  return {SiteLink::steps_layout(dofs), ControlLoop::control_layout(dofs)};
+  std::vector<TableLayout> tables{SiteLink::steps_layout(dofs), ControlLoop::control_layout(dofs)};
+  tables.insert(tables.end(), substructure.site.rig_tables.begin(), substructure.site.rig_tables.end());
+  return tables;
 }
 
 std::unique_ptr<Participant> make_substructure_participant(const Scenario& scenario,

@@ -3,7 +3,6 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "coordinator/damping.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
@@ -12,8 +11,10 @@
 #include "core/config/section.hpp"
 #include "experimental_site/energy_error.hpp"
 #include "launch/compose.hpp"
+#include "launch/numerical_effects.hpp"
 #include "launch/participant.hpp"
 #include "launch/scenario_digest.hpp"
+#include "numerical_substructure/scaled_model.hpp"
 
 namespace hybridtest {
 namespace {
@@ -169,26 +170,6 @@ void read_interface(Section& section, const std::vector<std::string>& dofs, Subs
   }
 }
 
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g s", seconds);
-  return text;
-}
-
-SiteLimits read_limits(Section section) {
-  SiteLimits limits;
-  limits.displacement_m = section.number("displacement_m", config::kPositive);
-  limits.velocity_m_per_s = section.number("velocity_m_per_s", config::kPositive);
-  limits.force_n = section.number("force_n", config::kPositive);
-  if (section.has("tracking_error_m")) limits.tracking_error_m = section.number("tracking_error_m", config::kPositive);
-  if (section.has("energy_error_ratio")) {
-    limits.energy_error_ratio = section.number("energy_error_ratio", config::kPositive);
-  }
-  limits.command_age_s = section.number("command_age_s", {.low = 0.01, .high = 86400.0}, 1.0);
-  section.finish();
-  return limits;
-}
-
 /// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
 template <class Reading>
 std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
@@ -204,13 +185,19 @@ std::vector<Reading> read_each(Section& section, std::string_view key, std::size
   return readings;
 }
 
-void read_site(Section& section, const TimeScenario& time, SubstructureScenario& substructure) {
+void read_site(Section& section, const TimeScenario& time, const std::filesystem::path& directory,
+               SubstructureScenario& substructure) {
   const auto dofs = substructure.interface.size();
   SiteScenario& site = substructure.site;
   substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
-  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs));
+  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory);
   site.rig_type = rig.type;
+  site.rig_is_elsewhere = rig.is_elsewhere;
+  site.rig_tables = std::move(rig.tables);
   site.transfer_delay_s = rig.transfer_delay_s;
+  if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
+    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
+  }
   substructure.make_rig = std::move(rig.make);
   site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
 
@@ -226,13 +213,7 @@ void read_site(Section& section, const TimeScenario& time, SubstructureScenario&
     for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
     return made;
   };
-  site.limits = read_limits(section.section("limits"));
-  if (time.mode == CouplingMode::paced && site.limits.command_age_s <= site_step_s) {
-    section.error("limits", "command_age_s of " + seconds_text(site.limits.command_age_s) +
-                                " is no longer than a step, step_s times time_scale, of " + seconds_text(site_step_s) +
-                                ": every command would be overdue");
-  }
-  site.return_time_s = section.number("return_time_s", {.low = 0.0, .high = 3600.0}, 2.0);
+  site.loop = read_loop(section, time.mode, site_step_s);
 }
 
 SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
@@ -247,7 +228,7 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   if (is_numerical) {
     substructure.make_model = read_model(section.section("model"), dofs, directory);
   } else {
-    read_site(section, scenario.time, substructure);
+    read_site(section, scenario.time, directory, substructure);
   }
   section.finish();
   return substructure;
@@ -306,6 +287,21 @@ void try_out(const Scenario& scenario, SubstructureScenario& substructure) {
   static_cast<void>(EnergyErrorMonitor{substructure.initial_stiffness_n_per_m, 1.0});
 }
 
+/// Errors of the part that is computed; the damping that comes of the stiffness is that of the right one.
+void apply(const NumericalErrors& errors, Scenario& scenario) {
+  scenario.structure.mass_kg *= errors.mass;
+  scenario.structure.damping_n_s_per_m *= errors.damping;
+  if (errors.stiffness == 1.0) return;
+  for (SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::numerical_substructure) continue;
+    substructure.make_model = [make = substructure.make_model, factor = errors.stiffness] {
+      return std::make_unique<ScaledModel>(make(), factor);
+    };
+    substructure.initial_stiffness_n_per_m *= errors.stiffness;
+  }
+  scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+}
+
 /// Reports what a part finds wrong with its parameters at the section they came from.
 template <class Work>
 void report_at(Section section, Work work) {
@@ -352,6 +348,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   for (Section& section : substructures) {
     scenario.substructures.push_back(read_substructure(section, scenario, document.directory()));
   }
+  const NumericalErrors errors = read_numerical_errors(root);
   read_timeouts(root, scenario.timeouts);
   Section recording = root.section_or_empty("recording");
   scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
@@ -371,12 +368,13 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     scenario.structure.damping_n_s_per_m.resize(scenario.structure.size(), scenario.structure.size());
     require_consistent(scenario.structure);
     scenario.structure.damping_n_s_per_m = damping(scenario.structure);
+    apply(errors, scenario);
   });
   document.throw_if_errors();
-  report_at(root.section("time"),
-            [&] { require_stable_step(vibration_modes(scenario.structure), scenario.time.step_s); });
+  const double integrator_step_s = scenario.time.step_s * errors.step;
+  report_at(root.section("time"), [&] { require_stable_step(vibration_modes(scenario.structure), integrator_step_s); });
   scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
-                              step_s = scenario.time.step_s] { return make_integrator(type, structure, step_s); };
+                              step_s = integrator_step_s] { return make_integrator(type, structure, step_s); };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();

@@ -15,6 +15,7 @@
 #include "experimental_site/control_loop.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "launch/loop_sections.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 
 namespace hybridtest {
@@ -39,11 +40,12 @@ struct TimeoutScenario {
 struct SiteScenario {
   double control_rate_hz = 0.0;
   int periods_per_step = 1;  // the control rate, rounded up so that whole periods fill a step
-  SiteLimits limits;
-  double return_time_s = 0.0;
+  LoopScenario loop;
   std::string rig_type;
-  double compensated_delay_s = 0.0;  // what the compensator makes up for, for the preflight
-  double transfer_delay_s = 0.0;     // low-frequency delay of a simulated rig, for the preflight
+  bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
+  std::vector<TableLayout> rig_tables;  // that the rig records by itself
+  double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
+  double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
 };
 
 struct SubstructureScenario {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "core/config/error.hpp"
 #include "core/random.hpp"
 #include "launch/participant.hpp"
 
@@ -185,6 +186,12 @@ class Simulation {
 
 SimulationResult simulate(const Scenario& scenario, const SimulationSettings& settings,
                           const SimulationObserver& observer) {
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (!substructure.site.rig_is_elsewhere) continue;
+    throw ConfigError{"the rig of " + substructure.id + " is of type " + substructure.site.rig_type +
+                      ": it stands outside this process, where there is no simulated time; give it another type, "
+                      "such as `simulated`, or take `hybridtest run`"};
+  }
   return Simulation{scenario, settings, observer}.run();
 }
 

@@ -53,6 +53,7 @@ struct SimulationResult {
 
 /// Runs every participant of the scenario in this thread under simulated time and a simulated
 /// network. The same scenario and settings give the same bytes in every record.
+/// @throws ConfigError for a rig outside this process.
 [[nodiscard]] SimulationResult simulate(const Scenario& scenario, const SimulationSettings& settings,
                                         const SimulationObserver& observer);
 

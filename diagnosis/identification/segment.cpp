@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "diagnosis/signals/local_polynomial.hpp"
 
@@ -79,6 +80,22 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
   if (!passes(*this, effect.interface)) return false;
   return effect.interface != displacement_sensor || to == Channel::measured_displacement ||
          effect.make_inverse != nullptr;
+}
+
+Segment thinned(const Segment& segment, double rate_hz) {
+  const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
+  if (stride == 1 || passes(segment, compensator)) return segment;
+  const auto every = [stride](const auto& values) {
+    std::remove_cvref_t<decltype(values)> kept;
+    for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
+    return kept;
+  };
+  Segment result = segment;
+  result.period_s = segment.period_s * static_cast<double>(stride);
+  result.input = every(segment.input);
+  result.load_n = every(segment.load_n);
+  result.measured = every(segment.measured);
+  return result;
 }
 
 std::vector<Segment> segments_of(const Recording& recording, std::size_t dof_index, std::size_t position) {

@@ -33,6 +33,11 @@ struct Segment {
 /// Everything that one degree of freedom of a recording can judge, along the chain.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
+/// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
+/// left. A segment with a compensator between its channels, whose command depends on its own rate,
+/// stays as it is.
+[[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
+
 /// What the site predicts for `to`, in free simulation over the whole segment.
 /// @param added   effects beyond the model's own, behind them.
 /// @throws ConfigError for parameters that an effect refuses.

@@ -19,12 +19,10 @@ double SignalScales::of(ParameterScale scale) const noexcept {
     case ParameterScale::force_n: return ratio_or_one(force_n, 1.0);
     case ParameterScale::stiffness_n_per_m: return ratio_or_one(force_n, displacement_m);
     case ParameterScale::damping_n_s_per_m: return ratio_or_one(force_n, velocity_m_per_s);
-    case ParameterScale::damping_n_s2_per_m2:
-      return ratio_or_one(force_n, velocity_m_per_s * velocity_m_per_s);
+    case ParameterScale::damping_n_s2_per_m2: return ratio_or_one(force_n, velocity_m_per_s * velocity_m_per_s);
     case ParameterScale::stiffness_n_per_m3:
       return ratio_or_one(force_n, displacement_m * displacement_m * displacement_m);
-    case ParameterScale::compliance_m_per_n:
-      return ratio_or_one(displacement_m, force_n);
+    case ParameterScale::compliance_m_per_n: return ratio_or_one(displacement_m, force_n);
     case ParameterScale::mass_kg: return ratio_or_one(force_n, acceleration_m_per_s2);
     case ParameterScale::duration_s: return ratio_or_one(duration_s, 1.0);
     case ParameterScale::one:

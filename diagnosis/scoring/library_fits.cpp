@@ -8,17 +8,12 @@
 #include <thread>
 
 #include "core/config/error.hpp"
+#include "diagnosis/scoring/random_network.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
-
-/// A random effect leaves no path that a fit could follow.
-bool is_random(const EffectType& effect) {
-  return std::ranges::any_of(effect.parameters,
-                             [](const EffectParameter& parameter) { return parameter.name == "seed"; });
-}
 
 std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) {
   std::vector<Candidate> candidates;
@@ -39,6 +34,15 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
   // Beside the nuisances an effect has to explain something that they do not.
   const bool needed = score > nuisance_score + tuning::kNuisanceCost;
   return needed && beside.score > alone.score ? beside : alone;
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// The same fit at the full rate.
+std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
+  Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
+  candidate.score = held_out_score(problem, candidate.fit) - (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  return candidate;
 } catch (const ConfigError&) {
   return {};
 }
@@ -72,26 +76,42 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   return effects;
 }
 
-std::vector<Candidate> fit_library(const IdentificationProblem& problem, std::size_t threads,
-                                   const FitProgress& progress) {
+std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                   std::size_t threads, const FitProgress& progress) {
   const std::vector<const EffectType*> effects = judged_effects(problem);
-  const double nuisance_score = held_out_score(problem, fit_nothing(problem, true));
+  const double nuisance_score = held_out_score(coarse, fit_nothing(coarse, true));
   std::vector<std::optional<Candidate>> fitted(effects.size());
   for_each_in_parallel(
-      effects.size(), threads, [&](std::size_t i) { fitted[i] = fit_one(problem, *effects[i], nuisance_score); },
+      effects.size(), threads, [&](std::size_t i) { fitted[i] = fit_one(coarse, *effects[i], nuisance_score); },
       progress);
-  return best_first(std::move(fitted));
+  std::vector<Candidate> candidates = best_first(std::move(fitted));
+  if (candidates.empty()) return candidates;
+  // The coarse record has fewer samples: scores are compared with those of the full one relative to no effect.
+  const double offset =
+      held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
+  const double best = candidates.front().score;
+  std::vector<std::optional<Candidate>> refined(candidates.size());
+  for_each_in_parallel(candidates.size(), threads, [&](std::size_t i) {
+    const Candidate& found = candidates[i];
+    if (found.score > best - tuning::kFarBehind) {
+      refined[i] = refine(problem, found);
+    } else {
+      refined[i] = found;
+      refined[i]->score += offset;
+    }
+  });
+  return best_first(std::move(refined));
 }
 
-std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const std::vector<EffectSetting>& base,
-                                  std::size_t threads) {
+std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                  const std::vector<EffectSetting>& base, std::size_t threads) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
     return std::ranges::any_of(base, [&](const EffectSetting& setting) { return setting.type == effect; });
   });
-  IdentificationProblem extended = problem;
+  IdentificationProblem extended = coarse;
   extended.model.effects.insert(extended.model.effects.end(), base.begin(), base.end());
-  for (FitSegment& fit : extended.segments) fit.baseline = predict(problem, fit, base);
+  for (FitSegment& fit : extended.segments) fit.baseline = predict(coarse, fit, base);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
     try {
@@ -103,13 +123,14 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const st
     }
   });
   std::vector<Candidate> promising = best_first(std::move(screened));
-  promising.resize(std::min(promising.size(), tuning::kRefittedPairs));
+  if (promising.size() > tuning::kRefittedPairs) promising.resize(tuning::kRefittedPairs);
   std::vector<std::optional<Candidate>> refitted(promising.size());
   for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
     std::vector<EffectSetting> start = base;
     start.push_back(promising[i].fit.effects.front());
     try {
-      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, start, false)};
+      const FitOutcome together = refit_effects(coarse, start, false);
+      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
       candidate.score = held_out_score(problem, candidate.fit);
       refitted[i] = std::move(candidate);
     } catch (const ConfigError&) {

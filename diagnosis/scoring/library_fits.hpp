@@ -26,12 +26,16 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
 /// Every judged effect fitted, best score first; what an effect refuses to be fitted to is left out.
-[[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem, std::size_t threads,
+/// @param coarse   the same problem at a lower rate, where every effect is searched over its whole range; those
+///                 that come near the best are fitted again to `problem` from there.
+[[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
+                                                 const IdentificationProblem& coarse, std::size_t threads,
                                                  const FitProgress& progress);
 
-/// Every judged effect but those in `base` fitted together with them, best score first. All are screened with
-/// `base` as it is, the most promising ones refitted with everything free.
+/// Every judged effect but those in `base` fitted together with them, best score first. All are screened
+/// on `coarse` with `base` as it is, the most promising ones fitted to `problem` with everything free.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
+                                                const IdentificationProblem& coarse,
                                                 const std::vector<EffectSetting>& base, std::size_t threads);
 
 }  // namespace hybridtest

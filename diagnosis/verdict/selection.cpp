@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "diagnosis/scoring/random_network.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -30,15 +32,20 @@ bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& wit
 }
 
 /// The best pair that one of the leading effects is part of.
-FitOutcome best_start(const IdentificationProblem& problem, Selection& selection, std::size_t threads) {
+FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                      std::size_t threads) {
+  // A random effect is not followed by a fit, and nothing is fitted beside it.
+  if (is_random(*selection.library.front().type)) return selection.library.front().fit;
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
   FitOutcome best = first;
   double best_score = held_out_score(problem, first);
   const double total = gap_energy(problem, selection.baseline).excess();
-  if (gap_energy(problem, first).excess() < tuning::kNothingLeft * total) return best;
+  // A best effect that wants a slightly wrong model beside it has a second one coming, however little is left.
+  const double enough = selection.library.front().fit.with_nuisance ? tuning::kNothingLeft : tuning::kLittleLeft;
+  if (gap_energy(problem, first).excess() < enough * total) return best;
   const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < leaders; ++i) {
-    std::vector<Candidate> beside = fit_beside(problem, {selection.library[i].fit.effects.front()}, threads);
+    std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
     if (!beside.empty() && beside.front().score > best_score && earns_its_place(problem, first, beside.front().fit)) {
       best = beside.front().fit;
       best_score = beside.front().score;
@@ -50,21 +57,26 @@ FitOutcome best_start(const IdentificationProblem& problem, Selection& selection
 
 }  // namespace
 
-Selection select_effects(const IdentificationProblem& problem, std::size_t threads, const FitProgress& progress) {
+Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, std::size_t threads,
+                         const FitProgress& progress) {
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
-  selection.library = fit_library(problem, threads, progress);
+  selection.library = fit_library(problem, coarse, threads, progress);
+  if (std::optional<Candidate> random = fit_random_network(problem, selection.baseline)) {
+    selection.library.push_back(std::move(*random));
+    std::ranges::stable_sort(selection.library, std::greater{}, &Candidate::score);
+  }
   if (selection.library.empty()) return selection;
   selection.probabilities = probabilities_of(selection.library);
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
     return selection;
   }
-  selection.chosen = best_start(problem, selection, threads);
+  selection.chosen = best_start(problem, coarse, selection, threads);
   const double total = gap_energy(problem, selection.baseline).excess();
   while (selection.chosen.effects.size() > 1 && selection.chosen.effects.size() < tuning::kMostEffects &&
          gap_energy(problem, selection.chosen).excess() > tuning::kNothingLeft * total) {
-    const std::vector<Candidate> beside = fit_beside(problem, selection.chosen.effects, threads);
+    const std::vector<Candidate> beside = fit_beside(problem, coarse, selection.chosen.effects, threads);
     if (beside.empty() || !earns_its_place(problem, selection.chosen, beside.front().fit)) break;
     selection.chosen = beside.front().fit;
   }

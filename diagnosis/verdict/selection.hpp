@@ -17,7 +17,8 @@ struct Selection {
 
 /// Fits the library, takes the best effect and adds others for as long as each removes a good part of
 /// what is left, on held-out blocks.
-[[nodiscard]] Selection select_effects(const IdentificationProblem& problem, std::size_t threads,
-                                       const FitProgress& progress);
+/// @param coarse   the same problem at a lower rate, for the searches.
+[[nodiscard]] Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                       std::size_t threads, const FitProgress& progress);
 
 }  // namespace hybridtest

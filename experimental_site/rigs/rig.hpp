@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <string_view>
 
 #include "core/interface_vector.hpp"
+#include "core/records.hpp"
 
 namespace hybridtest {
 
@@ -21,6 +24,9 @@ struct RigFeedback {
 
 enum class RigStatus : std::uint8_t { healthy, fault };
 
+/// Where a rig finds the tables that it records by itself.
+using RigTables = std::function<RowSink&(std::string_view table)>;
+
 /// A transfer system with its specimen and sensors, real or simulated.
 ///
 /// Life cycle: constructed -> connect() -> arm() -> exchange() once per control period ->
@@ -29,6 +35,10 @@ class Rig {
  public:
   virtual ~Rig() = default;
 
+  /// Before connect(): where to append, at every exchange(), what it knows besides its feedback. The
+  /// layouts of such tables are read with the scenario (launch/compose.hpp); most rigs have none.
+  /// @param tables   the sinks outlive the rig.
+  virtual void record_to(const RigTables& /*tables*/) {}
   /// May throw; nothing moves.
   virtual void connect() = 0;
   /// May throw; motion possible afterwards.

@@ -236,7 +236,7 @@ Violations limits_violated(const KeptSimulation& run, const Scenario& scenario) 
     if (substructure.role != Role::experimental_site) continue;
     const KeptRows& rows = run.table(substructure.id, "control");
     expect_consecutive(rows, "sample", substructure.id, found);
-    const SiteLimits& limits = substructure.site.limits;
+    const SiteLimits& limits = substructure.site.loop.limits;
     const double period_s = scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step;
     // A command is made by adding the largest change to the one before: rounded once.
     const double reach_m = limits.velocity_m_per_s * period_s + kEpsilon * limits.displacement_m;

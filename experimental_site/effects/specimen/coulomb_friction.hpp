@@ -40,7 +40,7 @@ class CoulombFriction final : public Effect {
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::displacement_m,
                                                           .search_low = 1e-4,
-                                                          .search_high = 0.1,
+                                                          .search_high = 0.5,
                                                           .neutral = kNoNeutral,
                                                           .fallback = 1e-5}};
 

@@ -2,102 +2,367 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace hybridtest {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPeriod_s = 1.0e-3;
+
 InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
-
-struct Sample {
-  InterfaceVector target = one(0.01);
-  InterfaceVector velocity = one(0.1);
-  InterfaceVector command = one(0.012);
-  InterfaceVector measured = one(0.0095);
-  InterfaceVector force = one(1000.0);
-  double energy_ratio = 0.1;
-  double age_s = 0.1;
-  bool expects_commands = true;
-  bool rig_fault = false;
-
-  [[nodiscard]] InterlockVerdict judged(const SiteLimits& limits) const {
-    return judge(limits,
-                 {target, velocity, command, measured, force, energy_ratio, age_s, expects_commands, rig_fault});
-  }
-};
 
 const SiteLimits kLimits{.displacement_m = 0.1,
                          .velocity_m_per_s = 1.0,
                          .force_n = 1e5,
                          .tracking_error_m = 0.005,
                          .energy_error_ratio = 0.5,
-                         .command_age_s = 1.0};
+                         .command_age_s = 1.0,
+                         .displacement_step_m = 0.002,
+                         .force_step_n = 500.0,
+                         .stuck_samples = 20,
+                         .stuck_while_moving_m = 1e-4,
+                         .tracking_indicator = 0.3};
 
-TEST(InterlocksTest, LetPassWhatIsWithinEveryLimit) { EXPECT_EQ(Sample{}.judged(kLimits).action, SafetyAction::none); }
+/// A site in the middle of a test, handed one control sample after the other.
+class Story {
+ public:
+  explicit Story(const SiteLimits& judged_limits = kLimits) : limits{judged_limits} {}
+
+  /// One control period on.
+  const InterlockVerdict& sample() {
+    verdict = judge(limits, rules,
+                    {phase, target, velocity, command, measured, force, energy_ratio, lag_sine, age_s, expects_commands,
+                     rig_fault, emergency_stop, true, kPeriod_s},
+                    state);
+    for (int i = 0; i < verdict.trip_count; ++i) trips.push_back(verdict.trips[static_cast<std::size_t>(i)]);
+    time_s += kPeriod_s;
+    return verdict;
+  }
+  /// The same values for so long.
+  void wait(double duration_s) {
+    limits.stuck_samples.reset();
+    for (const double end_s = time_s + duration_s; time_s < end_s;) sample();
+  }
+  InterlockRule& rule(InterlockKind kind) { return rules[static_cast<std::size_t>(kind)]; }
+
+  SiteLimits limits;
+  InterlockRules rules = default_interlock_rules();
+  InterlockState state;
+  SitePhase phase = SitePhase::running;
+  InterfaceVector target = one(0.01);
+  InterfaceVector velocity = one(0.1);
+  InterfaceVector command = one(0.012);
+  InterfaceVector measured = one(0.0095);
+  InterfaceVector force = one(1000.0);
+  double energy_ratio = 0.1;
+  double lag_sine = 0.1;
+  double age_s = 0.1;
+  bool expects_commands = true;
+  bool rig_fault = false;
+  bool emergency_stop = false;
+  double time_s = 0.0;
+  InterlockVerdict verdict;
+  std::vector<InterlockTrip> trips;
+};
+
+TEST(InterlocksTest, LetPassWhatIsWithinEveryLimit) {
+  Story story;
+  for (int i = 0; i < 1000; ++i) {
+    story.measured[0] += 1e-9;  // a live sensor is never quite still
+    story.force[0] += 1e-3;
+    ASSERT_EQ(story.sample().action, SafetyAction::none);
+  }
+  EXPECT_TRUE(story.trips.empty());
+}
 
 struct Case {
+  InterlockKind kind;
   const char* what;
-  void (*change)(Sample&);
+  void (*change)(Story&);
   SafetyAction action;
-  FaultFlags fault;
+  double observed;  // NaN where there is nothing to measure
 };
 
 class InterlockCases : public testing::TestWithParam<Case> {};
 
-TEST_P(InterlockCases, TripWithTheirActionAndFault) {
-  Sample sample;
-  GetParam().change(sample);
-  const InterlockVerdict verdict = sample.judged(kLimits);
+TEST_P(InterlockCases, TripWithTheSampleThatPassesTheirLimit) {
+  Story story;
+  story.sample();
+  GetParam().change(story);
+  const InterlockVerdict verdict = story.sample();
+  ASSERT_EQ(verdict.trip_count, 1);
+  EXPECT_EQ(verdict.trips[0].kind, GetParam().kind);
+  EXPECT_EQ(verdict.trips[0].action, GetParam().action);
+  EXPECT_TRUE(verdict.trips[0].is_final);
   EXPECT_EQ(verdict.action, GetParam().action);
-  EXPECT_EQ(verdict.fault, GetParam().fault);
+  if (!std::isnan(GetParam().observed)) {
+    EXPECT_DOUBLE_EQ(verdict.trips[0].observed, GetParam().observed);
+  }
+  // It is said once, and stays in force however long the story goes on well.
+  Story healthy;
+  story.target = healthy.target;
+  story.velocity = healthy.velocity;
+  story.measured = healthy.measured;
+  story.force = healthy.force;
+  story.limits.displacement_step_m.reset();
+  story.limits.force_step_n.reset();
+  story.wait(1.0);
+  EXPECT_EQ(story.trips.size(), 1U);
+  EXPECT_EQ(story.verdict.action, GetParam().action);
 }
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
     All, InterlockCases,
     testing::Values(
-        Case{"target", [](Sample& s) { s.target = one(-0.1001); }, SafetyAction::ramp_to_zero,
-             FaultFlags::displacement_limit},
-        Case{"measured", [](Sample& s) { s.measured = one(0.1001); }, SafetyAction::ramp_to_zero,
-             FaultFlags::displacement_limit},
-        Case{"force", [](Sample& s) { s.force = one(-1.01e5); }, SafetyAction::ramp_to_zero, FaultFlags::force_limit},
-        Case{"velocity", [](Sample& s) { s.velocity = one(1.01); }, SafetyAction::ramp_to_zero,
-             FaultFlags::velocity_limit},
-        Case{"tracking", [](Sample& s) { s.measured = one(0.0041); }, SafetyAction::ramp_to_zero,
-             FaultFlags::tracking_error},
-        Case{"energy", [](Sample& s) { s.energy_ratio = -0.51; }, SafetyAction::ramp_to_zero, FaultFlags::energy_error},
-        Case{"age", [](Sample& s) { s.age_s = 1.01; }, SafetyAction::hold, FaultFlags::command_age},
-        Case{"rig", [](Sample& s) { s.rig_fault = true; }, SafetyAction::hold, FaultFlags::rig_fault},
-        Case{"nan_force", [](Sample& s) { s.force = one(kNan); }, SafetyAction::hold, FaultFlags::not_finite},
-        Case{"nan_command", [](Sample& s) { s.command = one(kNan); }, SafetyAction::hold, FaultFlags::not_finite},
-        Case{"nan_target", [](Sample& s) { s.target = one(kNan); }, SafetyAction::hold, FaultFlags::not_finite},
-        Case{"infinite", [](Sample& s) { s.measured = one(std::numeric_limits<double>::infinity()); },
-             SafetyAction::hold, FaultFlags::not_finite}),
+        Case{InterlockKind::displacement, "target",
+             [](Story& s) {
+               s.target = one(-0.1001);
+               s.limits.tracking_error_m.reset();
+             },
+             SafetyAction::ramp_to_zero, 0.1001},
+        Case{InterlockKind::displacement, "measured",
+             [](Story& s) {
+               s.measured = one(0.1001);
+               s.limits.tracking_error_m.reset();
+               s.limits.displacement_step_m.reset();
+             },
+             SafetyAction::ramp_to_zero, 0.1001},
+        Case{InterlockKind::force, "force",
+             [](Story& s) {
+               s.force = one(-1.01e5);
+               s.limits.force_step_n.reset();
+             },
+             SafetyAction::ramp_to_zero, 1.01e5},
+        Case{InterlockKind::velocity, "velocity", [](Story& s) { s.velocity = one(1.01); }, SafetyAction::ramp_to_zero,
+             1.01},
+        Case{InterlockKind::tracking_error, "tracking",
+             [](Story& s) {
+               s.measured = one(0.0041);
+               s.limits.displacement_step_m.reset();
+             },
+             SafetyAction::ramp_to_zero, 0.01 - 0.0041},
+        Case{InterlockKind::energy_error, "energy", [](Story& s) { s.energy_ratio = -0.51; },
+             SafetyAction::ramp_to_zero, 0.51},
+        Case{InterlockKind::tracking_indicator, "lag", [](Story& s) { s.lag_sine = 0.31; }, SafetyAction::ramp_to_zero,
+             0.31},
+        Case{InterlockKind::tracking_indicator, "lead", [](Story& s) { s.lag_sine = -0.31; },
+             SafetyAction::ramp_to_zero, 0.31},
+        Case{InterlockKind::command_age, "age", [](Story& s) { s.age_s = 1.01; }, SafetyAction::hold, 1.01},
+        Case{InterlockKind::displacement_step, "displacement_step", [](Story& s) { s.measured = one(0.0095 + 0.0021); },
+             SafetyAction::hold, 0.0095 + 0.0021 - 0.0095},
+        Case{InterlockKind::force_step, "force_step", [](Story& s) { s.force = one(499.0); }, SafetyAction::hold,
+             501.0},
+        Case{InterlockKind::rig_status, "rig", [](Story& s) { s.rig_fault = true; }, SafetyAction::hold, kNan},
+        Case{InterlockKind::emergency_stop, "emergency", [](Story& s) { s.emergency_stop = true; },
+             SafetyAction::release, kNan},
+        Case{InterlockKind::not_finite, "nan_force", [](Story& s) { s.force = one(kNan); }, SafetyAction::hold, kNan},
+        Case{InterlockKind::not_finite, "nan_command", [](Story& s) { s.command = one(kNan); }, SafetyAction::hold,
+             kNan},
+        Case{InterlockKind::not_finite, "nan_target", [](Story& s) { s.target = one(kNan); }, SafetyAction::hold, kNan},
+        Case{InterlockKind::not_finite, "infinite",
+             [](Story& s) { s.measured = one(std::numeric_limits<double>::infinity()); }, SafetyAction::hold, kNan}),
     [](const auto& test) { return test.param.what; });
 
+TEST(InterlocksTest, EveryoneHasANameAndAFaultOfItsOwn) {
+  std::set<std::string_view> names;
+  std::set<std::uint32_t> faults;
+  for (std::size_t i = 0; i < kInterlockCount; ++i) {
+    names.insert(name(static_cast<InterlockKind>(i)));
+    faults.insert(static_cast<std::uint32_t>(fault_of(static_cast<InterlockKind>(i))));
+  }
+  EXPECT_EQ(names.size(), kInterlockCount);
+  EXPECT_EQ(faults.size(), kInterlockCount);
+}
+
 TEST(InterlocksTest, DoNotMindSilenceWhileNoCommandIsExpected) {
-  Sample sample;
-  sample.age_s = 100.0;
-  sample.expects_commands = false;
-  EXPECT_EQ(sample.judged(kLimits).action, SafetyAction::none);
+  Story story;
+  story.age_s = 100.0;
+  story.expects_commands = false;
+  EXPECT_EQ(story.sample().action, SafetyAction::none);
 }
 
 TEST(InterlocksTest, ALimitThatIsNotSetDoesNotTrip) {
-  SiteLimits limits = kLimits;
-  limits.tracking_error_m.reset();
-  limits.energy_error_ratio.reset();
-  Sample sample;
-  sample.measured = one(-0.05);
-  sample.energy_ratio = 99.0;
-  EXPECT_EQ(sample.judged(limits).action, SafetyAction::none);
+  Story story{{.displacement_m = 0.1, .velocity_m_per_s = 1.0, .force_n = 1e5, .command_age_s = 1.0}};
+  story.sample();
+  story.measured = one(-0.05);
+  story.force = one(9e4);
+  story.energy_ratio = 99.0;
+  story.lag_sine = 1.0;
+  for (int i = 0; i < 100; ++i) {
+    story.command[0] += 1e-3;
+    EXPECT_EQ(story.sample().action, SafetyAction::none);
+  }
 }
 
-TEST(InterlocksTest, NotFiniteOutranksEverythingElse) {
-  Sample sample;
-  sample.force = one(kNan);
-  sample.target = one(5.0);
-  EXPECT_EQ(sample.judged(kLimits).fault, FaultFlags::not_finite);
+TEST(InterlocksTest, WhatIsNoNumberHidesNothingElse) {
+  Story story;
+  story.rule(InterlockKind::force).action = SafetyAction::release;
+  story.limits.force_step_n.reset();
+  story.target = one(kNan);
+  EXPECT_EQ(story.sample().action, SafetyAction::hold);
+  story.force = one(2e5);
+  EXPECT_EQ(story.sample().action, SafetyAction::release);
+
+  Story two;
+  two.limits.tracking_error_m.reset();
+  two.measured = InterfaceVector::Constant(2, kNan);
+  two.measured[1] = 0.2;
+  two.target = two.command = two.velocity = two.force = InterfaceVector::Zero(2);
+  EXPECT_EQ(two.sample().trip_count, 2);
+  EXPECT_EQ(two.verdict.trips[0].kind, InterlockKind::displacement);
+  EXPECT_EQ(two.verdict.trips[1].kind, InterlockKind::not_finite);
+}
+
+TEST(InterlocksTest, SeveralTripWithTheGravestFirst) {
+  Story story;
+  story.age_s = 2.0;            // hold
+  story.velocity = one(3.0);    // ramp
+  story.emergency_stop = true;  // release
+  story.rule(InterlockKind::energy_error).action = SafetyAction::warn;
+  story.energy_ratio = 3.0;
+  const InterlockVerdict verdict = story.sample();
+  ASSERT_EQ(verdict.trip_count, 4);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(verdict.trips[static_cast<std::size_t>(i)].action, static_cast<SafetyAction>(4 - i));
+  }
+  EXPECT_EQ(verdict.action, SafetyAction::release);
+}
+
+TEST(InterlocksTest, AStuckSensorIsOneThatStandsStillUnderAMovingCommand) {
+  for (const bool is_force : {false, true}) {
+    Story story;
+    double command_m = 0.012;
+    for (int i = 0; i < 200; ++i) {  // both stand still: no fault
+      story.sample();
+    }
+    ASSERT_TRUE(story.trips.empty());
+    int samples = 0;
+    while (story.trips.empty() && samples < 100) {
+      command_m += 2e-5;
+      story.command = one(command_m);
+      (is_force ? story.measured : story.force)[0] += 1e-6;
+      story.sample();
+      ++samples;
+    }
+    ASSERT_EQ(story.trips.size(), 1U);
+    EXPECT_EQ(story.trips[0].kind, InterlockKind::stuck_sensor);
+    // It had read the same for long: the command has to have moved by more than the 0.1 mm.
+    EXPECT_EQ(samples, 6);
+  }
+  // From motion, the number of samples decides.
+  Story story;
+  for (int i = 0; i < 50; ++i) {
+    story.command[0] += 1e-3;
+    story.measured[0] += 1e-3;
+    story.target[0] += 1e-3;
+    story.force[0] += 1.0;
+    story.sample();
+  }
+  ASSERT_TRUE(story.trips.empty());
+  story.limits.tracking_error_m.reset();
+  int samples = 0;
+  while (story.trips.empty() && samples < 100) {
+    story.command[0] += 1e-5;
+    story.force[0] += 1.0;
+    story.sample();
+    ++samples;
+  }
+  EXPECT_EQ(samples, 20);
+}
+
+TEST(InterlocksTest, AStepIsNotSeenAcrossAValueThatIsNoNumber) {
+  Story story;
+  story.rule(InterlockKind::not_finite) = {SafetyAction::warn, ClearCondition::when_cleared};
+  story.sample();
+  story.force = one(kNan);
+  story.sample();
+  story.force = one(5000.0);
+  story.sample();
+  ASSERT_EQ(story.trips.size(), 1U);
+  EXPECT_EQ(story.trips[0].kind, InterlockKind::not_finite);
+  story.force = one(0.0);
+  story.sample();
+  ASSERT_EQ(story.trips.size(), 2U);
+  EXPECT_EQ(story.trips[1].kind, InterlockKind::force_step);
+}
+
+TEST(InterlocksTest, AHoldThatClearsLetsGoOnceItsConditionHasBeenAbsentForATenthOfASecond) {
+  Story story;
+  story.rule(InterlockKind::tracking_error) = {SafetyAction::hold, ClearCondition::when_cleared};
+  story.limits.displacement_step_m.reset();
+  story.measured = one(0.0);
+  story.wait(1.0);
+  EXPECT_EQ(story.verdict.action, SafetyAction::hold);
+  EXPECT_FALSE(story.verdict.is_final);
+  story.measured = one(0.0095);
+  story.wait(0.09);
+  EXPECT_EQ(story.verdict.action, SafetyAction::hold);
+  story.measured = one(0.0);  // back before the tenth of a second is over
+  story.sample();
+  story.measured = one(0.0095);
+  story.wait(0.0985);
+  EXPECT_EQ(story.verdict.action, SafetyAction::hold);
+  story.wait(0.003);
+  EXPECT_EQ(story.verdict.action, SafetyAction::none);
+  EXPECT_EQ(story.trips.size(), 1U);
+}
+
+TEST(InterlocksTest, TheOperatorResetsWhatWaitsForHimAndItTripsAgainIfItsCauseIsThere) {
+  Story story;
+  story.rule(InterlockKind::energy_error) = {SafetyAction::hold, ClearCondition::operator_reset};
+  story.rule(InterlockKind::tracking_indicator) = {SafetyAction::warn, ClearCondition::never};
+  story.energy_ratio = 0.9;
+  story.lag_sine = 0.9;
+  story.wait(0.1);
+  story.energy_ratio = 0.1;
+  story.lag_sine = 0.1;
+  story.wait(10.0);
+  EXPECT_EQ(story.verdict.action, SafetyAction::hold) << "nobody has reset it";
+  EXPECT_TRUE(reset_by_operator(story.rules, story.state));
+  EXPECT_EQ(story.sample().action, SafetyAction::warn) << "the warning is for ever";
+  EXPECT_FALSE(reset_by_operator(story.rules, story.state));
+  story.energy_ratio = 0.9;
+  story.sample();
+  EXPECT_TRUE(reset_by_operator(story.rules, story.state));
+  EXPECT_EQ(story.sample().action, SafetyAction::hold) << "its cause is still there";
+  EXPECT_EQ(story.trips.size(), 4U);
+}
+
+TEST(InterlocksTest, WhatRampsOrReleasesNeverClears) {
+  Story story;
+  story.rule(InterlockKind::velocity) = {SafetyAction::ramp_to_zero, ClearCondition::when_cleared};
+  story.velocity = one(1.1);
+  story.sample();
+  story.velocity = one(0.0);
+  story.wait(1.0);
+  EXPECT_FALSE(reset_by_operator(story.rules, story.state));
+  EXPECT_EQ(story.sample().action, SafetyAction::ramp_to_zero);
+  EXPECT_TRUE(story.verdict.is_final);
+}
+
+TEST(InterlocksTest, AtRestTheTargetIsNotHeldAgainstLimitsButTheMeasurementIs) {
+  Story story;
+  story.phase = SitePhase::resting;
+  story.target = one(3.0);
+  story.velocity = one(30.0);
+  story.energy_ratio = 3.0;
+  story.lag_sine = 1.0;
+  EXPECT_EQ(story.sample().action, SafetyAction::none);
+  story.force = one(2e5);
+  story.limits.force_step_n.reset();
+  EXPECT_EQ(story.sample().action, SafetyAction::ramp_to_zero);
+}
+
+TEST(InterlocksTest, ARuleWithoutActionJudgesNothing) {
+  Story story;
+  story.rule(InterlockKind::velocity).action = SafetyAction::none;
+  story.velocity = one(9.0);
+  EXPECT_EQ(story.sample().trip_count, 0);
 }
 
 }  // namespace

@@ -84,11 +84,29 @@ TEST(TrajectoryTest, SlowsDownAndWaitsShortOfTheStepsEndWhenTheTargetIsLate) {
   EXPECT_TRUE(any(reached.flags & MeasurementFlags::late));
 }
 
-/// Largest second difference of the position over a run with random arrival times, over the
-/// period squared: an acceleration. A jump of the velocity by dv shows as dv / period.
-double largest_acceleration(std::uint64_t seed, double period_s) {
+struct PathCase {
+  const char* name;
+  TrajectorySettings settings;
+};
+
+const PathCase kPaths[] = {{"order_1", {.order = 1}},
+                           {"order_2", {.order = 2}},
+                           {"order_3", {.order = 3}},
+                           {"ramp_and_hold", {.type = TrajectoryType::ramp_and_hold, .hold_share = 0.2}},
+                           {"ramp_without_hold", {.type = TrajectoryType::ramp_and_hold, .hold_share = 0.0}}};
+
+/// How fast and how abruptly a path moves over a run with random arrival times.
+struct Roughness {
+  double fastest_m_per_s = 0.0;
+  /// Second difference of the position over the period squared: a jump of the velocity by dv shows
+  /// as dv / period.
+  double largest_acceleration = 0.0;
+  int reached = 0;
+};
+
+Roughness roughness(std::uint64_t seed, double period_s, const TrajectorySettings& settings) {
   Random random{seed};
-  Trajectory trajectory{1, kStep, 1.0};
+  Trajectory trajectory{1, kStep, 1.0, settings};
   ReachedTarget reached;
   trajectory.set_target(sine_target(0));
   static_cast<void>(trajectory.advance(period_s, reached));
@@ -96,29 +114,136 @@ double largest_acceleration(std::uint64_t seed, double period_s) {
   double wait_s = 0.0;
   double before = 0.0;
   double here = 0.0;
-  double worst = 0.0;
-  for (int period = 0; period < 4000; ++period) {
+  Roughness found;
+  for (double time_s = 0.0; time_s < 80.0 * kStep; time_s += period_s) {
     wait_s -= period_s;
     if (!trajectory.has_target() && wait_s <= 0.0) {
       trajectory.set_target(sine_target(next++));
       wait_s = random.uniform(0.2, 2.5) * kStep;  // from comfortably early to more than a step late
     }
-    static_cast<void>(trajectory.advance(period_s, reached));
+    if (trajectory.advance(period_s, reached)) ++found.reached;
     const double there = trajectory.point().displacement_m[0];
-    if (period > 1) worst = std::max(worst, std::abs(there - 2.0 * here + before) / (period_s * period_s));
+    if (time_s > 1.5 * period_s) {
+      found.fastest_m_per_s = std::max(found.fastest_m_per_s, std::abs(there - here) / period_s);
+      found.largest_acceleration =
+          std::max(found.largest_acceleration, std::abs(there - 2.0 * here + before) / (period_s * period_s));
+    }
     before = here;
     here = there;
   }
-  return worst;
+  return found;
 }
 
-TEST(TrajectoryTest, VelocityIsContinuousWheneverTargetsArrive) {
-  // Continuous velocity means an acceleration that stays bounded as the sampling gets finer; a
-  // jump would double it with each halving of the period.
+class EveryPath : public testing::TestWithParam<PathCase> {};
+
+TEST_P(EveryPath, PositionAndVelocityAreContinuousWheneverTargetsArrive) {
+  // A continuous position has a velocity that stays bounded as the sampling gets finer, a
+  // continuous velocity an acceleration; a jump would make it eight times as large here.
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const double coarse = largest_acceleration(seed, kStep / 50);
-    const double fine = largest_acceleration(seed, kStep / 400);
-    EXPECT_LT(fine, 2.0 * coarse) << "seed " << seed;
+    const Roughness coarse = roughness(seed, kStep / 50, GetParam().settings);
+    const Roughness fine = roughness(seed, kStep / 400, GetParam().settings);
+    EXPECT_GT(fine.reached, 30) << "seed " << seed;
+    EXPECT_LT(fine.fastest_m_per_s, 2.0 * coarse.fastest_m_per_s) << "seed " << seed;
+    EXPECT_LT(fine.largest_acceleration, 2.0 * coarse.largest_acceleration) << "seed " << seed;
+  }
+}
+
+TEST_P(EveryPath, EveryTargetIsReachedExactlyWhenItComesInTime) {
+  Trajectory trajectory{1, kStep, 1.0, GetParam().settings};
+  ReachedTarget reached;
+  trajectory.set_target(sine_target(0));
+  ASSERT_TRUE(trajectory.advance(kStep / 8, reached));
+  for (Step step = 1; step <= 100; ++step) {
+    for (int period = 1; period <= 8; ++period) {
+      if (period == 4) trajectory.set_target(sine_target(step));
+      const bool is_reached = trajectory.advance(kStep / 8, reached);
+      if (GetParam().settings.type == TrajectoryType::predictor_corrector) {
+        ASSERT_EQ(is_reached, period == 8) << step;
+      }
+    }
+    // Ramp and hold takes its whole step from when it knows the target.
+    while (trajectory.has_target()) static_cast<void>(trajectory.advance(kStep / 8, reached));
+    EXPECT_EQ(trajectory.point().displacement_m[0], sine_target(step).displacement_m[0]) << step;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, EveryPath, testing::ValuesIn(kPaths), [](const auto& path) { return path.param.name; });
+
+TEST(TrajectoryTest, PredictsMotionsOfItsOrderExactlyAndNotThoseOfTheNext) {
+  for (int order = 1; order <= 3; ++order) {
+    for (int degree = 1; degree <= 4; ++degree) {
+      // x = t^degree; the velocity and acceleration that go with it are sent.
+      const auto target = [&](Step step) {
+        const double time = static_cast<double>(step) * kStep;
+        CommandPoint point;
+        point.step = step;
+        point.model_time_s = time;
+        point.displacement_m = InterfaceVector::Constant(1, std::pow(time, degree));
+        point.velocity_m_per_s = InterfaceVector::Constant(1, degree * std::pow(time, degree - 1));
+        point.acceleration_m_per_s2 =
+            InterfaceVector::Constant(1, degree < 2 ? 0.0 : degree * (degree - 1) * std::pow(time, degree - 2));
+        return point;
+      };
+      Trajectory trajectory{1, kStep, 1.0, {.order = order}};
+      ReachedTarget reached;
+      trajectory.set_target(target(10));
+      static_cast<void>(trajectory.advance(kStep / 4, reached));
+      for (Step step = 11; step <= 12; ++step) {
+        trajectory.set_target(target(step));
+        for (int period = 0; period < 4; ++period) static_cast<void>(trajectory.advance(kStep / 4, reached));
+      }
+      static_cast<void>(trajectory.advance(kStep / 4, reached));  // predicted
+      const double time = 12.25 * kStep;
+      const double error = std::abs(trajectory.point().displacement_m[0] - std::pow(time, degree));
+      if (degree <= order) {
+        EXPECT_LT(error, 1e-15) << "order " << order << ", t^" << degree;
+      } else {
+        // The first term left out: binomial(degree, order + 1) t^(degree - order - 1) (h/4)^(order + 1).
+        EXPECT_GT(error, 0.5 * std::pow(0.12, degree - order - 1) * std::pow(kStep / 4, order + 1))
+            << "order " << order << ", t^" << degree;
+      }
+    }
+  }
+}
+
+TEST(TrajectoryTest, RampAndHoldStandsStillInTheLastShareOfTheStepAndUntilTheNextTarget) {
+  Trajectory trajectory{1, kStep, 1.0, {.type = TrajectoryType::ramp_and_hold, .hold_share = 0.25}};
+  ReachedTarget reached;
+  trajectory.set_target(sine_target(0));
+  static_cast<void>(trajectory.advance(kStep / 20, reached));
+  trajectory.set_target(sine_target(1));
+  const double target_m = sine_target(1).displacement_m[0];
+  for (int period = 1; period <= 100; ++period) {
+    const bool is_reached = trajectory.advance(kStep / 20, reached);
+    EXPECT_EQ(is_reached, period == 20);
+    const double x = std::min(1.0, period / 15.0);
+    EXPECT_NEAR(trajectory.point().displacement_m[0], 0.5 * (1.0 - std::cos(std::numbers::pi * x)) * target_m, 1e-16);
+    if (period >= 15) {
+      EXPECT_EQ(trajectory.point().velocity_m_per_s[0], 0.0);
+    }
+  }
+  EXPECT_EQ(reached.flags, MeasurementFlags::none) << "to wait is what it is for";
+}
+
+TEST(TrajectoryTest, AfterAHaltItPicksUpFromRestWhereItStood) {
+  constexpr double kPeriod = kStep / 100;
+  for (const PathCase& path : kPaths) {
+    Trajectory trajectory{1, kStep, 1.0, path.settings};
+    ReachedTarget reached;
+    trajectory.set_target(sine_target(0));
+    static_cast<void>(trajectory.advance(kPeriod, reached));
+    trajectory.set_target(sine_target(1));
+    for (int period = 0; period < 30; ++period) static_cast<void>(trajectory.advance(kPeriod, reached));
+    const double stood_m = trajectory.point().displacement_m[0];
+    const double moved_m_per_s = trajectory.point().velocity_m_per_s[0];
+    trajectory.halt();
+    EXPECT_EQ(trajectory.point().velocity_m_per_s[0], 0.0);
+    static_cast<void>(trajectory.advance(kPeriod, reached));
+    // The rate picks up by kRateRecovery a step: in the first hundredth, that much of the velocity.
+    EXPECT_NEAR(trajectory.point().displacement_m[0], stood_m, 0.025 * moved_m_per_s * kPeriod) << path.name;
+    bool is_reached = false;
+    for (int period = 0; period < 200 && !is_reached; ++period) is_reached = trajectory.advance(kPeriod, reached);
+    EXPECT_TRUE(is_reached) << path.name;
   }
 }
 

@@ -32,7 +32,7 @@ TEST_F(ScenarioTest, ReadsWhatTheFileSays) {
   ASSERT_EQ(scenario.substructures.size(), 2U);
   const SubstructureScenario& site = scenario.substructures[0];
   EXPECT_EQ(site.role, Role::experimental_site);
-  EXPECT_EQ(site.site.limits.displacement_m, 0.2);
+  EXPECT_EQ(site.site.loop.limits.displacement_m, 0.2);
   EXPECT_EQ(site.site.periods_per_step, 2) << "1024 Hz rounded up to whole periods in a step";
   EXPECT_EQ(site.interface[0].relative_to, InterfaceDof::kGround);
   const SubstructureScenario& model = scenario.substructures[1];
@@ -253,7 +253,7 @@ TEST_F(ScenarioTest, OverridesReplaceValuesAndTheLastOneWins) {
   const Scenario scenario =
       file_.read(kScenarioText, {"substructures[storey_1].limits.force_n=1.0e3", "substructures[1].id=upper",
                                  "substructures[storey_1].limits.force_n=2.0e3"});
-  EXPECT_EQ(scenario.substructures[0].site.limits.force_n, 2.0e3);
+  EXPECT_EQ(scenario.substructures[0].site.loop.limits.force_n, 2.0e3);
   EXPECT_EQ(scenario.substructures[1].id, "upper");
   EXPECT_EQ(file_.read(scenario.effective).digest, scenario.digest);
 }

@@ -98,7 +98,7 @@ class Draw {
             one_of(LifecycleState::refused),
             digest(),
             step(),
-            static_cast<FaultFlags>(up_to(0x1fff)),
+            static_cast<FaultFlags>(up_to(0x1ffff)),
             clock()};
   }
   DisplacementCommand command() {
@@ -132,7 +132,7 @@ class Draw {
     return {text<48>(),
             any<Incarnation>(),
             one_of(Severity::fault),
-            one_of(EventCode::emergency_stop),
+            one_of(EventCode::real_time_refused),
             step(),
             time_s(),
             text<48>(),

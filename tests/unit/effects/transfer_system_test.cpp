@@ -47,5 +47,29 @@ TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
   }
 }
 
+std::vector<double> moved(const char* name, double value, const std::vector<double>& path) {
+  return along(*made(EffectInterface::transfer_system, name, {value}), path, through);
+}
+
+TEST(TransferSystemEffects, FollowTheirDefinitionsAlongAPath) {
+  const auto expect = [](const std::vector<double>& moved, const std::vector<double>& expected) {
+    for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(moved[i], expected[i], 1e-12) << i;
+  };
+  const std::vector<double> path{0.0, 0.05, 0.5, 0.45, 0.2, 0.35};
+  expect(moved("backlash", 0.2, path), {0.0, 0.0, 0.4, 0.4, 0.3, 0.3});
+  expect(moved("deadband", 0.1, path), {0.0, 0.0, 0.4, 0.35, 0.1, 0.25});
+  expect(moved("velocity_limit", 100.0, path), {0.0, 0.05, 0.15, 0.25, 0.2, 0.3});  // 0.1 m in a sample
+  expect(moved("stroke_limit", 0.4, path), {0.0, 0.05, 0.4, 0.4, 0.2, 0.35});
+  expect(moved("stiction", 0.1, path), {0.0, 0.0, 0.5, 0.5, 0.2, 0.35});
+  expect(moved("gain", 0.1, path), {0.0, 0.055, 0.55, 0.495, 0.22, 0.385});
+}
+
+TEST(TransferSystemEffects, ComplianceGivesWayUnderTheForce) {
+  const auto effect = made(EffectInterface::transfer_system, "compliance", {2e-8});
+  double displacement_m = 0.01;
+  effect->after({.time_s = 0.0, .motion = {}, .force_n = 1.0e5}, {}, displacement_m);
+  EXPECT_DOUBLE_EQ(displacement_m, 0.008);
+}
+
 }  // namespace
 }  // namespace hybridtest

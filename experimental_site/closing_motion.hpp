@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/interface_vector.hpp"
+
+namespace hybridtest {
+
+struct ClosingMotionSettings {
+  double period_s = 0.0;
+  double halt_s = 0.0;         // from moving to standing
+  double return_time_s = 0.0;  // at least, from there to zero; longer when the velocity limit asks for it
+  double displacement_limit_m = 0.0;
+  double velocity_limit_m_per_s = 0.0;
+};
+
+/// The last motion of a site: comes to a stand with constant deceleration, and returns to zero
+/// along a raised cosine that stays below half the velocity limit, or stays where it stands.
+/// Position and velocity are continuous when it is told how fast the site moves. Real-time safe.
+class ClosingMotion {
+ public:
+  ClosingMotion(const ClosingMotionSettings& settings, int dofs) noexcept;
+
+  /// @param velocity_m_per_s   zero to return at once, as an interlock does.
+  void begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s, bool returns) noexcept;
+
+  /// One control period on.
+  void advance() noexcept;
+
+  [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }
+  [[nodiscard]] bool is_over() const noexcept { return period_ >= halt_periods_ + return_periods_; }
+
+ private:
+  void halt() noexcept;
+  void begin_return() noexcept;
+
+  ClosingMotionSettings settings_;
+  bool returns_ = true;
+  InterfaceVector begin_m_;
+  InterfaceVector velocity_m_per_s_;
+  InterfaceVector displacement_m_;
+  std::int64_t halt_periods_ = 0;
+  std::int64_t return_periods_ = 0;
+  std::int64_t period_ = 0;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/faults.hpp"
+#include "core/interface_vector.hpp"
+#include "core/records.hpp"
+
+namespace hybridtest {
+
+/// What one control period leaves behind.
+struct ControlSample {
+  std::int64_t sample = 0;
+  double time_s = 0.0;        // since arming
+  double model_time_s = 0.0;  // along the path
+  const InterfaceVector& target_displacement_m;
+  const InterfaceVector& command_displacement_m;
+  const InterfaceVector& measured_displacement_m;
+  const InterfaceVector& measured_force_n;
+  const InterfaceVector& compensated_force_n;
+  double energy_error_j = 0.0;
+  double tracking_lag_sine = 0.0;  // see TrackingIndicator
+  FaultFlags faults = FaultFlags::none;
+};
+
+/// The table `control` of a site: one row per control period. Appending allocates nothing.
+class ControlRecord {
+ public:
+  ControlRecord(int dofs, RowSink& sink);
+
+  void append(const ControlSample& sample) noexcept;
+
+  [[nodiscard]] static TableLayout layout(int dofs);
+
+ private:
+  RowSink& sink_;
+  std::vector<double> row_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/interface_vector.hpp"
+
+namespace hybridtest {
+
+/// A difference that fades away, so that a path which does not begin where the actuators stand is
+/// joined without a step in position or velocity: the cubic from a displacement and a velocity to
+/// zero displacement and zero velocity. Real-time safe.
+class FadingOffset {
+ public:
+  explicit FadingOffset(int dofs) noexcept;
+
+  /// @param duration_s   above 0.
+  void begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
+             double duration_s) noexcept;
+  void end() noexcept;
+  void advance(double interval_s) noexcept;
+
+  /// Exactly zero once the duration has passed.
+  [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }
+  [[nodiscard]] const InterfaceVector& velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
+  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+
+ private:
+  void evaluate() noexcept;
+
+  double duration_s_ = 1.0;
+  double since_s_ = 0.0;
+  bool is_over_ = true;
+  InterfaceVector begin_displacement_m_;
+  InterfaceVector begin_velocity_m_per_s_;
+  InterfaceVector displacement_m_;
+  InterfaceVector velocity_m_per_s_;
+};
+
+}  // namespace hybridtest

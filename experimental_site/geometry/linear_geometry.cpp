@@ -1,0 +1,37 @@
+#include "experimental_site/geometry/linear_geometry.hpp"
+
+#include <Eigen/QR>
+#include <string>
+
+#include "core/config/error.hpp"
+
+namespace hybridtest {
+namespace {
+
+InterfaceMatrix checked_matrix(const Eigen::MatrixXd& matrix) {
+  const auto size = std::to_string(matrix.rows()) + " actuators for " + std::to_string(matrix.cols()) +
+                    " interface degrees of freedom";
+  if (matrix.cols() < 1 || matrix.rows() < matrix.cols() || matrix.rows() > kMaxInterfaceDofs) {
+    throw ConfigError{"a geometry of " + size + "; expected at least as many actuators, at most " +
+                      std::to_string(kMaxInterfaceDofs)};
+  }
+  if (!matrix.allFinite()) throw ConfigError{"a geometry with a number that is not finite"};
+  if (matrix.colPivHouseholderQr().rank() < matrix.cols()) {
+    throw ConfigError{"a geometry of " + size + " that leaves one of them free: its columns depend on each other"};
+  }
+  return matrix;
+}
+
+}  // namespace
+
+LinearGeometry::LinearGeometry(const Eigen::MatrixXd& matrix) : matrix_{checked_matrix(matrix)} {}
+
+void LinearGeometry::strokes(const InterfaceVector& pose, InterfaceVector& stroke_m) const noexcept {
+  stroke_m.noalias() = matrix_.lazyProduct(pose);
+}
+
+void LinearGeometry::derivative(const InterfaceVector& /*pose*/, InterfaceMatrix& jacobian) const noexcept {
+  jacobian = matrix_;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,44 @@
+#include "experimental_site/geometry/setup_geometry.hpp"
+
+#include <Eigen/QR>
+
+namespace hybridtest {
+namespace {
+
+constexpr int kIterations = 20;
+/// [m] and [rad]: a thousandth of what the best transducers resolve.
+constexpr double kTolerance = 1e-12;
+
+}  // namespace
+
+bool find_pose(const SetupGeometry& geometry, const InterfaceVector& stroke_m, InterfaceVector& pose) noexcept {
+  InterfaceVector found = pose;
+  InterfaceVector difference_m = stroke_m;
+  InterfaceMatrix jacobian{geometry.actuators(), geometry.dofs()};
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    geometry.strokes(found, difference_m);
+    difference_m = stroke_m - difference_m;
+    geometry.derivative(found, jacobian);
+    if (!difference_m.allFinite() || !jacobian.allFinite()) return false;
+    const Eigen::ColPivHouseholderQR<InterfaceMatrix> factors{jacobian};
+    if (factors.rank() < geometry.dofs()) return false;
+    const InterfaceVector step = factors.solve(difference_m);
+    // What is below the tolerance is left out, so that strokes at rest are a pose at rest, to the last bit.
+    if (step.cwiseAbs().maxCoeff() <= kTolerance) {
+      pose = found;
+      return true;
+    }
+    found += step;
+  }
+  return false;
+}
+
+void transfer_forces(const SetupGeometry& geometry, const InterfaceVector& pose, const InterfaceVector& force_n,
+                     InterfaceVector& dof_force) noexcept {
+  InterfaceMatrix jacobian{geometry.actuators(), geometry.dofs()};
+  geometry.derivative(pose, jacobian);
+  // lazyProduct: coefficient by coefficient, with no buffer to allocate.
+  dof_force.noalias() = jacobian.transpose().lazyProduct(force_n);
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,45 @@
+#include "experimental_site/tracking_indicator.hpp"
+
+#include <cmath>
+
+namespace hybridtest {
+
+TrackingIndicator::TrackingIndicator(int dofs, double period_s, double window_s, double least_displacement_m) noexcept
+    : kept_{std::exp(-period_s / window_s)},
+      least_square_m2_{least_displacement_m * least_displacement_m},
+      least_change_square_m2_{least_square_m2_ * (period_s / window_s) * (period_s / window_s)},
+      wanted_m_{InterfaceVector::Zero(dofs)},
+      measured_m_{wanted_m_},
+      mean_growth_m2_{wanted_m_},
+      mean_square_m2_{wanted_m_},
+      mean_change_square_m2_{wanted_m_} {}
+
+void TrackingIndicator::sample(const InterfaceVector& wanted_m, const InterfaceVector& measured_m) noexcept {
+  if (has_sample_) {
+    const auto into = [this](InterfaceVector& mean, Eigen::Index k, double value) {
+      mean[k] = kept_ * mean[k] + (1.0 - kept_) * value;
+    };
+    for (Eigen::Index k = 0; k < wanted_m.size(); ++k) {
+      const double change_m = wanted_m[k] - wanted_m_[k];
+      into(mean_growth_m2_, k, 0.5 * (wanted_m_[k] * measured_m[k] - wanted_m[k] * measured_m_[k]));
+      into(mean_square_m2_, k, wanted_m[k] * wanted_m[k]);
+      into(mean_change_square_m2_, k, change_m * change_m);
+    }
+  }
+  has_sample_ = true;
+  wanted_m_ = wanted_m;
+  measured_m_ = measured_m;
+}
+
+double TrackingIndicator::lag_sine() const noexcept {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < mean_growth_m2_.size(); ++k) {
+    const double scale_m2 =
+        std::sqrt((mean_square_m2_[k] + least_square_m2_) * (mean_change_square_m2_[k] + least_change_square_m2_));
+    const double lag_sine = scale_m2 > 0.0 ? mean_growth_m2_[k] / scale_m2 : 0.0;
+    if (std::fabs(lag_sine) > std::fabs(largest)) largest = lag_sine;
+  }
+  return largest;
+}
+
+}  // namespace hybridtest

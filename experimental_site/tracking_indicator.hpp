@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/interface_vector.hpp"
+
+namespace hybridtest {
+
+/// Tracking indicator (Mercan and Ricles, 2009) in a form that runs along and forgets.
+///
+/// The indicator grows by half the difference of the areas that the synchronisation subspace
+/// plot of measured m against wanted displacement c encloses with its two axes, in one sample
+/// dT = 1/2 (c' m - c m'), c' and m' the values of the sample before. For a sine of amplitude X
+/// that is measured with a phase lag phi, dT is 1/2 X^2 sin(phi) sin(omega dt) in each sample.
+/// Means of dT, of c^2 and of the squared change of c over a sliding exponential window then
+/// give, whatever amplitude and frequency,
+///
+///   lag_sine = mean(dT) / sqrt(mean(c^2) mean(dc^2)) = sin(phi) cos(omega dt / 2),
+///
+/// positive when the measured displacement lags and negative when it leads; a gain g of the
+/// measurement multiplies it. Motion smaller than `least_displacement_m` in a window counts as
+/// that large, so that noise at rest is no lag. One value per degree of freedom; a value type.
+class TrackingIndicator {
+ public:
+  TrackingIndicator() = default;
+  /// @param window_s   time constant of forgetting, at least one period.
+  TrackingIndicator(int dofs, double period_s, double window_s, double least_displacement_m) noexcept;
+
+  /// Finite values; one that is not would stay in the means.
+  void sample(const InterfaceVector& wanted_m, const InterfaceVector& measured_m) noexcept;
+
+  /// Of the degree of freedom where it is largest in magnitude, with its sign [-].
+  [[nodiscard]] double lag_sine() const noexcept;
+
+ private:
+  double kept_ = 0.0;                    // share of a mean that outlives a sample
+  double least_square_m2_ = 0.0;         // added to mean(c^2)
+  double least_change_square_m2_ = 0.0;  // added to mean(dc^2)
+  bool has_sample_ = false;
+  InterfaceVector wanted_m_;
+  InterfaceVector measured_m_;
+  InterfaceVector mean_growth_m2_;
+  InterfaceVector mean_square_m2_;
+  InterfaceVector mean_change_square_m2_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/interface_vector.hpp"
+#include "experimental_site/rigs/rig.hpp"
+
+namespace hybridtest {
+
+/// What the sensors read while the rig stands at zero, averaged over the first samples after
+/// arming and from then on taken off what is measured. Real-time safe.
+class ZeroOffsets {
+ public:
+  /// Five periods of the mains, whose hum averages out; noise of a 1 kHz loop down to a tenth.
+  static constexpr double kAveraged_s = 0.1;
+
+  ZeroOffsets(int dofs, double period_s) noexcept
+      : wanted_samples_{std::max<std::int64_t>(1, std::llround(kAveraged_s / period_s))},
+        mean_{InterfaceVector::Zero(dofs), InterfaceVector::Zero(dofs)},
+        offset_{mean_} {}
+
+  void reset() noexcept {
+    mean_.displacement_m.setZero();
+    mean_.force_n.setZero();
+    offset_ = mean_;
+    samples_ = 0;
+  }
+  /// Values that are not finite are another's to act upon, and are left out.
+  void capture(const RigFeedback& feedback) noexcept {
+    if (!feedback.displacement_m.allFinite() || !feedback.force_n.allFinite()) return;
+    ++samples_;
+    const double share = 1.0 / static_cast<double>(samples_);
+    mean_.displacement_m += share * (feedback.displacement_m - mean_.displacement_m);
+    mean_.force_n += share * (feedback.force_n - mean_.force_n);
+    if (is_captured()) offset_ = mean_;
+  }
+  [[nodiscard]] bool is_captured() const noexcept { return samples_ >= wanted_samples_; }
+
+  void take_off(RigFeedback& feedback) const noexcept {
+    feedback.displacement_m -= offset_.displacement_m;
+    feedback.force_n -= offset_.force_n;
+  }
+  /// Zero until captured.
+  [[nodiscard]] const RigFeedback& offset() const noexcept { return offset_; }
+
+ private:
+  std::int64_t wanted_samples_;
+  RigFeedback mean_;
+  RigFeedback offset_;
+  std::int64_t samples_ = 0;
+};
+
+}  // namespace hybridtest

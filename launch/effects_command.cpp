@@ -1,0 +1,24 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/exit_code.hpp"
+#include "launch/commands.hpp"
+#include "launch/effects_text.hpp"
+
+namespace hybridtest {
+
+void add_effects_command(CLI::App& app, CommandAction& action) {
+  CLI::App* command =
+      app.add_subcommand("effects", "List the effects that a simulated rig can have: equations, parameters, bounds");
+  auto markdown = std::make_shared<bool>(false);
+  command->add_flag("--markdown", *markdown, "As the tables of the documentation");
+  command->callback([markdown, &action] {
+    action = [markdown] {
+      fmt::print("{}", *markdown ? effects_markdown() : effects_text());
+      return kExitCompleted;
+    };
+  });
+}
+
+}  // namespace hybridtest
