@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "diagnosis/intake/read_recording.hpp"
+#include "diagnosis/intake/intake.hpp"
 #include "experimental_site/transfer_systems/delay.hpp"
 #include "experimental_site/transfer_systems/ideal.hpp"
 #include "mechanics/elastic.hpp"
