@@ -127,14 +127,16 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
 
 GapPlace place_of(const report::InterfaceSeries& series) {
   constexpr std::size_t kWindows = 24;
+  constexpr std::size_t kMotionBins = 6;
   constexpr double kMostOfIt = 0.5;
   std::vector<double> residual(series.measured.size());
   std::ranges::transform(series.measured, series.model, residual.begin(), std::minus{});
   const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
-  GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}};
+  GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}, .regions = {}};
   place.time_windows = windows_holding(gap_over_time(signals, std::min(kWindows, signals.size())), kMostOfIt);
   const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
   place.bands = bands_holding(gap_over_frequency(signals, spectra), kMostOfIt);
+  place.regions = regions_holding(gap_over_motion(signals, kMotionBins, kMotionBins), kMostOfIt);
   return place;
 }
 
