@@ -14,6 +14,7 @@
 #include "experimental_site/transfer_systems/first_order.hpp"
 #include "experimental_site/transfer_systems/ideal.hpp"
 #include "experimental_site/transfer_systems/second_order.hpp"
+#include "experimental_site/transfer_systems/servo_hydraulic.hpp"
 #include "launch/compose_effects.hpp"
 #include "launch/named_type.hpp"
 
@@ -71,11 +72,39 @@ TransferSystemReading read_second_order(Section& section) {
           .pure_delay_s = delay_s};
 }
 
+TransferSystemReading read_servo_hydraulic(Section& section) {
+  ServoHydraulic::Parameters p;
+  const auto required = [&](std::string_view key, double& value) { value = section.number(key, kPositive); };
+  const auto optional = [&](std::string_view key, double& value) { value = section.number(key, kNotNegative, value); };
+  required("piston_area_m2", p.piston_area_m2);
+  required("supply_pressure_pa", p.supply_pressure_pa);
+  required("rated_flow_m3_per_s", p.rated_flow_m3_per_s);
+  required("stroke_m", p.stroke_m);
+  required("oil_volume_m3", p.oil_volume_m3);
+  required("moving_mass_kg", p.moving_mass_kg);
+  required("valve_frequency_hz", p.valve_frequency_hz);
+  required("proportional_gain_per_m", p.proportional_gain_per_m);
+  p.load_stiffness_n_per_m = section.number("load_stiffness_n_per_m", kNotNegative);
+  optional("bulk_modulus_pa", p.bulk_modulus_pa);
+  optional("leakage_m3_per_s_pa", p.leakage_m3_per_s_pa);
+  optional("damping_n_s_per_m", p.damping_n_s_per_m);
+  optional("valve_damping_ratio", p.valve_damping_ratio);
+  optional("integral_gain_per_m_s", p.integral_gain_per_m_s);
+  optional("derivative_gain_s_per_m", p.derivative_gain_s_per_m);
+  optional("command_gain", p.command_gain);
+  // The loop's integrator, x' = Kp Qr / A (u - x), and the valve in front of it.
+  const double loop_s = p.piston_area_m2 / (p.proportional_gain_per_m * p.rated_flow_m3_per_s);
+  const double rate_s = p.derivative_gain_s_per_m / p.proportional_gain_per_m;
+  return {.make = [p](double period_s, double) { return std::make_unique<ServoHydraulic>(p, from_seconds(period_s)); },
+          .delay_s = std::max(0.0, loop_s - rate_s)};
+}
+
 TransferSystemReading read_transfer_system(Section section) {
   return read_type<TransferSystemReading>(section, {{"ideal", read_ideal},
                                                     {"delay", read_delay},
                                                     {"first_order", read_first_order},
-                                                    {"second_order", read_second_order}});
+                                                    {"second_order", read_second_order},
+                                                    {"servo_hydraulic", read_servo_hydraulic}});
 }
 
 void expect_count(Section& section, std::string_view key, std::size_t found, int expected) {

@@ -68,8 +68,9 @@ TransferStage::TransferStage(const SiteModel& model, double sample_period_s)
                     effects_at(model, At::displacement_sensor, sample_period_s)} {}
 
 double TransferStage::step(const StageSample& sample) noexcept {
-  displacement_m_ = transfer_effects_.step(
-      sample, [this](const Motion& command) { return transfer_system_->step(command.displacement_m); });
+  displacement_m_ = transfer_effects_.step(sample, [&](const Motion& command) {
+    return transfer_system_->step_loaded(command.displacement_m, sample.force_n);
+  });
   return read(sample);
 }
 

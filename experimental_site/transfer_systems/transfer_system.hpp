@@ -12,6 +12,11 @@ class TransferSystem {
 
   /// Actuator displacement [m] at this sample, the command displacement [m] at this sample given.
   [[nodiscard]] virtual double step(double command_m) noexcept = 0;
+  /// The same under the force [N] with which the specimen resists, of the sample before; one that no
+  /// load moves does not look at it.
+  [[nodiscard]] virtual double step_loaded(double command_m, double /*load_force_n*/) noexcept {
+    return step(command_m);
+  }
   /// At rest at zero displacement.
   virtual void reset() noexcept = 0;
 };

@@ -1,15 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
-#include "mechanics/bouc_wen_baber_noori.hpp"
+#include "experimental_site/effects/specimen/hysteretic_path.hpp"
 
 namespace hybridtest {
 
 /// A hysteretic element beside the model's law that slips where its force changes sign, as cracked concrete and
-/// loose bolts do (Baber and Noori, J. Vib. Acoust. 108, 1986; mechanics): Bouc and Wen's with n = 1 and
+/// loose bolts do (Baber and Noori, J. Vib. Acoust. 108, 1986): Bouc and Wen's with n = 1 and
 /// s = 1/2, softer around z = 0 by the pinching ratio.
 class Pinching final : public Effect {
  public:
@@ -53,31 +55,27 @@ class Pinching final : public Effect {
                                                           .fallback = 0.3}};
 
   Pinching(std::span<const double> values, double /*sample_period_s*/)
-      : yield_force_n_{values[0]}, yield_displacement_m_{values[1]}, element_{element(values[2], values[3])} {}
+      : yield_force_n_{values[0]}, yield_displacement_m_{values[1]}, ratio_{values[2]}, width_{values[3]} {}
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
-    force_n += yield_force_n_ * element_.trial(motion.displacement_m / yield_displacement_m_, 0.0);
-    element_.commit();
+    const double way = (motion.displacement_m - displacement_m_) / yield_displacement_m_;
+    displacement_m_ = motion.displacement_m;
+    z_ = carried_along(z_, way, kSubstep * std::clamp(2.0 * width_, 0.2, 1.0), [this](double z, double direction) {
+      const double loading = z * direction > 0.0 ? std::abs(z) : 0.0;
+      return (1.0 - ratio_ * std::exp(-(z / width_) * (z / width_))) * (1.0 - loading);
+    });
+    force_n += yield_force_n_ * z_;
   }
-  void reset() noexcept override { element_.reset(); }
+  void reset() noexcept override { z_ = displacement_m_ = 0.0; }
 
  private:
-  /// In units of yield force and yield displacement; it pinches from the beginning.
-  static BoucWenBaberNoori element(double ratio, double width) {
-    return BoucWenBaberNoori{{.stiffness_n_per_m = 1.0,
-                              .alpha = 0.0,
-                              .n = 1.0,
-                              .gamma_per_m = 0.5,
-                              .beta_per_m = 0.5,
-                              .ao = 1.0,
-                              .pinching = ratio,
-                              .pinching_rate_per_j = 1e12,
-                              .pinching_width_m = width / (1.0 + ratio),
-                              .width_share = 1.0}};
-  }
+  static constexpr double kSubstep = 0.1;
 
   double yield_force_n_;
   double yield_displacement_m_;
-  BoucWenBaberNoori element_;
+  double ratio_;
+  double width_;
+  double z_ = 0.0;
+  double displacement_m_ = 0.0;
 };
 
 }  // namespace hybridtest
