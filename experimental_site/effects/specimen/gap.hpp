@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
+#include "mechanics/gap_spring.hpp"
 
 namespace hybridtest {
 
@@ -36,8 +36,7 @@ class Gap final : public Effect {
 
   Gap(std::span<const double> values, double /*sample_period_s*/) : stiffness_n_per_m_{values[0]}, gap_m_{values[1]} {}
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
-    const double displacement_m = motion.displacement_m;
-    force_n += stiffness_n_per_m_ * (displacement_m - std::clamp(displacement_m, -gap_m_, gap_m_));
+    force_n += stiffness_n_per_m_ * beyond_gap_m(motion.displacement_m, gap_m_);
   }
   void reset() noexcept override {}
 
