@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
+#include "mechanics/gap_spring.hpp"
 
 namespace hybridtest {
 
