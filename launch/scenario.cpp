@@ -225,6 +225,7 @@ void read_site(Section& section, const TimeScenario& time, const std::filesystem
     return made;
   };
   site.loop = read_loop(section, time.mode, site_step_s);
+  site.real_time = read_real_time(section, time.mode);
 }
 
 SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
