@@ -72,7 +72,8 @@ Panel over_frequency(const Located& located) {
           {"error in the band [%]", false, 0.0},
           located.lines([](const Localisation& where, Steps& steps) {
             for (const BandShare& band : where.bands) {
-              if (band.low_hz > 0.0) steps.add(band.low_hz, band.high_hz, band.nrmse);
+              // The first band begins at zero, which a logarithmic axis does not show.
+              steps.add(band.low_hz > 0.0 ? band.low_hz : 0.5 * band.high_hz, band.high_hz, band.nrmse);
             }
           })};
 }

@@ -55,8 +55,11 @@ std::string response_rows(const ResponseShrink& response) {
 std::string shrink_part(const DiagnosisReport& report) {
   if (!report.interface_shrink) return "";
   const Shrink& shrink = *report.interface_shrink;
-  std::string html =
-      "<h2>How far the gap shrinks</h2>\n<p>Energy of the gap on data that was not used to find the cause: ";
+  const bool is_held_out = std::ranges::any_of(
+      report.recordings, [](const ReportedRecording& recording) { return recording.role == RecordingRole::held_out; });
+  std::string html = "<h2>How far the gap shrinks</h2>\n<p>Energy of the gap ";
+  html += is_held_out ? "on recordings that were not used to find the cause: "
+                      : "on the recordings of the fit themselves, since none was held out: ";
   html += fmt::format("<b>{}</b> removed", percent(shrink.variance_removed));
   if (shrink.ci95) html += fmt::format(" (95 %: {})", between_percent(*shrink.ci95));
   if (shrink.explainable_fraction)
