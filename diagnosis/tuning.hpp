@@ -27,6 +27,10 @@ inline constexpr std::size_t kRefinedStarts = 2;
 inline constexpr double kIndependentPerSecond = 5.0;
 /// What leaving the model's slightly wrong parameters free costs a candidate [nats].
 inline constexpr double kNuisanceCost = 3.0;
+/// Share of the secant stiffness by which a slightly wrong model may be off.
+inline constexpr double kSlightlyWrong = 0.25;
+/// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
+inline constexpr double kSensorPrior = 1.0;
 /// An effect so far behind the best one on the coarse record is not looked at again [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are refitted together with the first.
@@ -41,7 +45,7 @@ inline constexpr double kAnotherEffectLeaves = 0.6;
 inline constexpr double kAnotherEffectExplains = 0.03;
 /// Of the gap: with less left than this nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
-inline constexpr double kLittleLeft = 0.05;
+inline constexpr double kLittleLeft = 0.02;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;
