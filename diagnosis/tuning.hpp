@@ -11,7 +11,7 @@ inline constexpr double kFitRate_hz = 250.0;
 
 /// Share of the signal that no model is expected to reproduce: keeps noise-free records from being
 /// judged by rounding, and weighs interfaces against each other.
-inline constexpr double kModelAllowance = 0.003;
+inline constexpr double kModelAllowance = 0.0005;
 
 /// Held-out blocks per recording; as many as cycles allow within these.
 inline constexpr double kFewestBlocks = 5.0;
