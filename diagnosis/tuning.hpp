@@ -53,7 +53,7 @@ inline constexpr std::size_t kMostEffects = 4;
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
 /// A gap above this multiple of its floor that nothing reduces is unknown.
-inline constexpr double kUnknownOverFloor = 1.0;
+inline constexpr double kUnknownOverFloor = 2.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.

@@ -81,6 +81,15 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
          effect.make_inverse != nullptr;
 }
 
+Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width) {
+  const std::vector<double>& displacement_m = dof.of(Channel::measured_displacement);
+  const LocalPolynomial polynomial{half_width, segment.period_s};
+  Segment result = segment;
+  result.input = polynomial.motion(displacement_m);
+  result.noise = smoothed_noise(polynomial, white_noise_level(displacement_m), displacement_m.size());
+  return result;
+}
+
 Segment thinned(const Segment& segment, double rate_hz) {
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
   if (stride == 1 || passes(segment, compensator)) return segment;

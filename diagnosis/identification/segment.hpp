@@ -34,6 +34,10 @@ struct Segment {
 /// Everything that one degree of freedom of a recording can judge, along the chain.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
+/// The specimen's segment with the motion smoothed over windows of that half width instead of those that the
+/// displacement alone asks for.
+[[nodiscard]] Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width);
+
 /// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
 /// left. A segment with a compensator between its channels, whose command depends on its own rate,
 /// stays as it is.

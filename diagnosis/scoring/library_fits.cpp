@@ -155,7 +155,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     try {
       const FitOutcome together = refit_effects(coarse, start, false);
       Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit);
+      candidate.score = held_out_score(problem, candidate.fit) + prior(*candidate.type);
       refitted[i] = std::move(candidate);
     } catch (const ConfigError&) {
       refitted[i].reset();

@@ -91,7 +91,7 @@ TEST_F(ServoHydraulicActuator, HasABandwidthAndNoDelay) {
 }
 
 TEST_F(ServoHydraulicActuator, HasABandwidthBesideTheBestDelay) {
-  const Diagnosis diagnosis = answer(delayed_actuator(0.0166), recordings_);
+  const Diagnosis diagnosis = answer(delayed_actuator(0.0166), {*measured("servo_hydraulic_mr_damper_0A")});
   EXPECT_TRUE(names(diagnosis, "transfer_system", "bandwidth"));
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.98);
 }
