@@ -155,16 +155,18 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
 constexpr std::size_t kLeastToLocalise = 64;
 
 GapPlace place_of(const report::InterfaceSeries& series) {
+  constexpr std::size_t kWindows = 24;
+  constexpr std::size_t kMotionBins = 6;
+  constexpr double kMostOfIt = 0.5;
   GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}, .regions = {}};
   if (series.measured.size() < kLeastToLocalise) return place;
   std::vector<double> residual(series.measured.size());
   std::ranges::transform(series.measured, series.model, residual.begin(), std::minus{});
   const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
-  Localisation found =
-      localise(signals, series.unit == "N" ? InterfaceKind::force_out : InterfaceKind::displacement_out);
-  place.time_windows = std::move(found.main_windows);
-  place.bands = std::move(found.main_bands);
-  place.regions = std::move(found.main_regions);
+  place.time_windows = windows_holding(gap_over_time(signals, std::min(kWindows, signals.size())), kMostOfIt);
+  const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
+  place.bands = bands_holding(gap_over_frequency(signals, spectra), kMostOfIt);
+  place.regions = regions_holding(gap_over_motion(signals, kMotionBins, kMotionBins), kMostOfIt);
   return place;
 }
 

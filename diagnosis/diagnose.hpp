@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/localisation/band_shares.hpp"
 #include "diagnosis/localisation/localise.hpp"
+#include "diagnosis/localisation/time_windows.hpp"
 #include "diagnosis/recording.hpp"
 #include "diagnosis/report/diagnosis_report.hpp"
 #include "experimental_site/rigs/site_model.hpp"
@@ -22,7 +24,7 @@ struct DiagnoseSettings {
   std::function<void(std::size_t done, std::size_t all)> progress;  // one call at a time, from any thread
 };
 
-/// Where in time, frequency and motion the better part of the gap of one interface lies.
+/// Where in time, frequency and motion the gap of one interface lies.
 struct GapPlace {
   std::string interface;
   std::vector<TimeWindow> time_windows;

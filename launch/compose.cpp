@@ -8,8 +8,12 @@
 #include "launch/named_type.hpp"
 #include "mechanics/bilinear.hpp"
 #include "mechanics/bouc_wen.hpp"
+#include "mechanics/bouc_wen_baber_noori.hpp"
 #include "mechanics/elastic.hpp"
+#include "mechanics/friction.hpp"
+#include "mechanics/gap_spring.hpp"
 #include "mechanics/giuffre_menegotto_pinto.hpp"
+#include "mechanics/viscous.hpp"
 #include "numerical_substructure/elastic_matrix.hpp"
 #include "numerical_substructure/matrix_market.hpp"
 #include "numerical_substructure/shear_building.hpp"
@@ -65,12 +69,57 @@ Maker<Law> read_bouc_wen(Section& section) {
   });
 }
 
+Maker<Law> read_bouc_wen_baber_noori(Section& section) {
+  const BoucWenBaberNoori::Parameters none;
+  return maker_of<BoucWenBaberNoori>(BoucWenBaberNoori::Parameters{
+      .stiffness_n_per_m = section.number("stiffness_n_per_m", kPositive),
+      .alpha = section.number("alpha", {.low = 0.0, .high = 1.0}),
+      .n = section.number("n", {.low = 1.0, .high = 100.0}, none.n),
+      .gamma_per_m = section.number("gamma_per_m"),
+      .beta_per_m = section.number("beta_per_m", kNotNegative),
+      .ao = section.number("ao", kPositive, none.ao),
+      .strength_degradation_per_j = section.number("strength_degradation_per_j", kNotNegative, 0.0),
+      .stiffness_degradation_per_j = section.number("stiffness_degradation_per_j", kNotNegative, 0.0),
+      .pinching = section.number("pinching", kShareBelowOne, 0.0),
+      .pinching_rate_per_j = section.number("pinching_rate_per_j", kNotNegative, 0.0),
+      .pinching_level = section.number("pinching_level", {.low = 0.0, .high = 1.0}, 0.0),
+      .pinching_width_m = section.number("pinching_width_m", kPositive, none.pinching_width_m),
+      .width_rate_m_per_j = section.number("width_rate_m_per_j", kNotNegative, 0.0),
+      .width_share = section.number("width_share", kPositive, none.width_share),
+  });
+}
+
+Maker<Law> read_friction(Section& section) {
+  return maker_of<Friction>(Friction::Parameters{
+      .friction_force_n = section.number("friction_force_n", kNotNegative),
+      .presliding_displacement_m = section.number("presliding_displacement_m", kPositive, 1e-5),
+  });
+}
+
+Maker<Law> read_gap(Section& section) {
+  return maker_of<GapSpring>(GapSpring::Parameters{
+      .stiffness_n_per_m = section.number("stiffness_n_per_m", kPositive),
+      .gap_m = section.number("gap_m", kNotNegative),
+  });
+}
+
+Maker<Law> read_viscous(Section& section) {
+  return maker_of<Viscous>(Viscous::Parameters{
+      .damping_n_s_per_m = section.number("damping_n_s_per_m", kNotNegative),
+      .exponent = section.number("exponent", {.low = 0.1, .high = 3.0}, 1.0),
+  });
+}
+
 const std::vector<NamedType<Maker<Law>>>& laws() {
   static const std::vector<NamedType<Maker<Law>>> table{
       {"elastic", read_elastic},
       {"bilinear", read_bilinear},
       {"giuffre_menegotto_pinto", read_giuffre_menegotto_pinto},
       {"bouc_wen", read_bouc_wen},
+      {"bouc_wen_baber_noori", read_bouc_wen_baber_noori},
+      {"friction", read_friction},
+      {"gap", read_gap},
+      {"viscous", read_viscous},
   };
   return table;
 }

@@ -45,7 +45,8 @@ struct RigReading {
   std::vector<TableLayout> tables;  // that it records by itself, see Rig::record_to()
 };
 /// @param directory   where files that it names are looked for.
-[[nodiscard]] RigReading read_rig(config::Section section, int dofs, const std::filesystem::path& directory);
+/// @param site        counts the sites of a test, so that no two of one seed have the same noise.
+[[nodiscard]] RigReading read_rig(config::Section section, int dofs, const std::filesystem::path& directory, int site);
 
 struct CompensatorReading {
   std::function<std::unique_ptr<Compensator>(double control_period_s)> make;

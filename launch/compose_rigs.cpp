@@ -106,13 +106,14 @@ RigReading behind(const GeometryReading& geometry, RigReading rig) {
 
 }  // namespace
 
-RigReading read_rig(Section section, int dofs, const std::filesystem::path& directory) {
+RigReading read_rig(Section section, int dofs, const std::filesystem::path& directory, int site) {
+  const auto first_noise_stream = static_cast<std::uint64_t>(site) * 2 * kMaxInterfaceDofs;
   struct RigType {
     std::string name;
     std::function<RigReading(int actuators)> read;
   };
   const std::vector<RigType> types{
-      {"simulated", [&](int actuators) { return read_simulated_rig(section, actuators); }},
+      {"simulated", [&](int actuators) { return read_simulated_rig(section, actuators, first_noise_stream); }},
       {"udp", [&](int actuators) { return read_udp_rig(section, actuators); }},
       {"replay", [&](int actuators) { return read_replay_rig(section, actuators, directory); }},
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -23,7 +24,8 @@ enum class AbsentPart { refused, ideal };
 
 [[nodiscard]] SimulatedSiteReading read_simulated_site(config::Section& section, int dofs, AbsentPart absent);
 
-/// The rest of a rig's section of `type: simulated`.
-[[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs);
+/// The rest of a rig's section of `type: simulated`, or of the site file that its key `model` names.
+/// @param first_noise_stream   two for each actuator from here on.
+[[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs, std::uint64_t first_noise_stream);
 
 }  // namespace hybridtest

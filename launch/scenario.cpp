@@ -194,12 +194,14 @@ void check_model(Section section, int dofs) {
   section.finish();
 }
 
-void read_site(Section& section, const TimeScenario& time, const std::filesystem::path& directory,
+void read_site(Section& section, const Scenario& scenario, const std::filesystem::path& directory,
                SubstructureScenario& substructure) {
+  const TimeScenario& time = scenario.time;
   const auto dofs = substructure.interface.size();
   SiteScenario& site = substructure.site;
   substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
-  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory);
+  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory,
+                            static_cast<int>(scenario.substructures.size()));
   site.rig_type = rig.type;
   site.rig_is_elsewhere = rig.is_elsewhere;
   site.rig_tables = std::move(rig.tables);
@@ -225,6 +227,7 @@ void read_site(Section& section, const TimeScenario& time, const std::filesystem
     return made;
   };
   site.loop = read_loop(section, time.mode, site_step_s);
+  site.real_time = read_real_time(section, time.mode);
 }
 
 SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
@@ -239,7 +242,7 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   if (is_numerical) {
     substructure.make_model = read_model(section.section("model"), dofs, directory);
   } else {
-    read_site(section, scenario.time, directory, substructure);
+    read_site(section, scenario, directory, substructure);
   }
   section.finish();
   return substructure;

@@ -41,6 +41,10 @@ double BoucWenBaberNoori::initial_stiffness_n_per_m() const noexcept {
 double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
   trial_ = committed_;
   const double increment_m = displacement_m - committed_.displacement_m;
+  if (std::isnan(increment_m)) {  // has no number of substeps
+    trial_.displacement_m = trial_.hysteretic_m = increment_m;
+    return increment_m;
+  }
   const double pinching = pinching_at(committed_.energy_j);
   double length_m = ultimate_m(committed_.energy_j) / parameters_.ao;
   if (parameters_.pinching > 0.0) length_m = std::min(length_m, pinching_width_m(committed_.energy_j, pinching));

@@ -16,7 +16,7 @@ namespace hybridtest {
 ///
 /// Rate-independent: between two exchanges x is taken to move one way, and the equation is integrated
 /// along that way by the classical Runge-Kutta method in substeps of at most a sixteenth of zu and of
-/// zeta2, to about 1e-5 of zu.
+/// zeta2, to about 1e-4 of zu (at the kink where z changes sign).
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {

@@ -27,7 +27,8 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
     entry["regions"].push_back(
         {{"displacement_m", Json::array({region.displacement_low_m, region.displacement_high_m})},
          {"velocity_m_per_s", Json::array({region.velocity_low_m_per_s, region.velocity_high_m_per_s})},
-         {"share", region.share}});
+         {"share", region.share},
+         {"time_share", region.time_share}});
   }
   return entry;
 }

@@ -134,6 +134,24 @@ TEST(Effects, AWrongNumberIsTheScenarioWithThatNumber) {
                        "damping_ratio: 0.9, delay_s: 0.001}"}));
 }
 
+TEST(Effects, AServoHydraulicActuatorCarriesTheTest) {
+  const KeptSimulation run = shaken(
+      {"substructures[storey_1].rig.transfer_system={type: servo_hydraulic, piston_area_m2: 1.0e-2, "
+       "supply_pressure_pa: 21.0e6, rated_flow_m3_per_s: 1.0e-2, stroke_m: 0.15, oil_volume_m3: 3.0e-3, "
+       "leakage_m3_per_s_pa: 1.0e-11, moving_mass_kg: 200.0, damping_n_s_per_m: 5.0e3, valve_frequency_hz: 80.0, "
+       "proportional_gain_per_m: 40.0, load_stiffness_n_per_m: 4.0e6}"});
+  EXPECT_EQ(run.result.coordinator.reason, StopReason::completed);
+  EXPECT_NE(run.digest(), without().digest());
+  const KeptRows& control = run.table("storey_1", "control");
+  const auto commanded_m = control.column_values("command_displacement_m");
+  const auto measured_m = control.column_values("measured_displacement_m");
+  std::vector<double> error_m;
+  for (std::size_t i = 0; i < commanded_m.size(); ++i) error_m.push_back(commanded_m[i] - measured_m[i]);
+  // The loop of Kp Qr / A = 40 rad/s follows 1.3 Hz with an error of about omega / 40 = a fifth.
+  EXPECT_LT(peak(error_m), 0.6 * peak(commanded_m));
+  EXPECT_GT(peak(measured_m), 0.5 * peak(commanded_m));
+}
+
 TEST(Effects, DampAndLimitAsTheyShould) {
   const auto force_n = [](const KeptSimulation& run) {
     return run.table("storey_1", "control").column_values("measured_force_n");

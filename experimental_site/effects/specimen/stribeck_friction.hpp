@@ -5,7 +5,7 @@
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
-#include "experimental_site/effects/specimen/presliding_element.hpp"
+#include "mechanics/presliding_element.hpp"
 
 namespace hybridtest {
 

@@ -11,7 +11,10 @@
 #include "core/random.hpp"
 #include "mechanics/bilinear.hpp"
 #include "mechanics/bouc_wen.hpp"
+#include "mechanics/bouc_wen_baber_noori.hpp"
 #include "mechanics/elastic.hpp"
+#include "mechanics/friction.hpp"
+#include "mechanics/gap_spring.hpp"
 #include "mechanics/giuffre_menegotto_pinto.hpp"
 
 namespace hybridtest {
@@ -132,6 +135,30 @@ INSTANTIATE_TEST_SUITE_P(
                 [] {
                   return std::make_unique<BoucWen>(BoucWen::Parameters{
                       .stiffness_n_per_m = 4.0e6, .alpha = 0.1, .n = 1.4, .gamma_per_m = 150.0, .beta_per_m = 350.0});
+                }},
+        LawCase{"bouc_wen_baber_noori",
+                [] {
+                  return std::make_unique<BoucWenBaberNoori>(
+                      BoucWenBaberNoori::Parameters{.stiffness_n_per_m = 4.0e6,
+                                                    .alpha = 0.1,
+                                                    .n = 1.4,
+                                                    .gamma_per_m = 150.0,
+                                                    .beta_per_m = 350.0,
+                                                    .strength_degradation_per_j = 1.0e-5,
+                                                    .stiffness_degradation_per_j = 2.0e-5,
+                                                    .pinching = 0.8,
+                                                    .pinching_rate_per_j = 1.0e-4,
+                                                    .pinching_level = 0.1,
+                                                    .pinching_width_m = 0.003});
+                }},
+        LawCase{"friction",
+                [] {
+                  return std::make_unique<Friction>(
+                      Friction::Parameters{.friction_force_n = 500.0, .presliding_displacement_m = 0.01});
+                }},
+        LawCase{"gap",
+                [] {
+                  return std::make_unique<GapSpring>(GapSpring::Parameters{.stiffness_n_per_m = 4.0e6, .gap_m = 0.01});
                 }}),
     [](const testing::TestParamInfo<LawCase>& law) { return law.param.name; });
 
