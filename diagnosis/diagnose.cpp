@@ -1,7 +1,9 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "diagnosis/localisation/gap_signals.hpp"
 #include "diagnosis/scoring/score.hpp"
@@ -26,13 +28,38 @@ bool is_modelled(const SiteModel& model, const Segment& segment) {
       model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
 }
 
+/// Where the model has inertia, the force follows the acceleration, which no displacement sensor measures well: windows
+/// as wide as the displacement bears smear it, narrow ones drown it in noise. The width is then the one with which
+/// the model comes nearest to the force.
+Segment best_for_inertia(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
+  constexpr std::array<std::size_t, 8> kHalfWidths{3, 4, 5, 7, 10, 14, 20, 28};
+  const EffectType* const inertia = find_effect(EffectInterface::specimen, "inertia");
+  const bool has_inertia =
+      std::ranges::any_of(model.effects, [&](const EffectSetting& e) { return e.type == inertia; });
+  if (segment.to != Channel::measured_force || !has_inertia) return segment;
+  Segment best = segment;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t half_width : kHalfWidths) {
+    if (2 * half_width + 1 > segment.measured.size()) break;
+    Segment tried = with_half_width(segment, dof, half_width);
+    const std::vector<double> predicted = predict(model, tried);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < predicted.size(); ++i) squares += std::pow(segment.measured[i] - predicted[i], 2);
+    if (squares < least) {
+      least = squares;
+      best = std::move(tried);
+    }
+  }
+  return best;
+}
+
 std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Recording> recordings, RecordingRole role,
                                       std::size_t dof) {
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
-    for (Segment& segment : segments_of(recordings[i], dof, i)) {
-      if (is_modelled(model, segment)) segments.push_back(std::move(segment));
+    for (const Segment& segment : segments_of(recordings[i], dof, i)) {
+      if (is_modelled(model, segment)) segments.push_back(best_for_inertia(model, segment, recordings[i].dofs[dof]));
     }
   }
   return segments;
@@ -239,6 +266,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   worst_first(report.series);
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
+  report.why_no_response = "Recordings of a site alone do not say of what structure it was a part.";
   add_notes(diagnosis, segments);
   return diagnosis;
 }

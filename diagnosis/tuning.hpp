@@ -11,7 +11,7 @@ inline constexpr double kFitRate_hz = 250.0;
 
 /// Share of the signal that no model is expected to reproduce: keeps noise-free records from being
 /// judged by rounding, and weighs interfaces against each other.
-inline constexpr double kModelAllowance = 0.003;
+inline constexpr double kModelAllowance = 0.0005;
 
 /// Held-out blocks per recording; as many as cycles allow within these.
 inline constexpr double kFewestBlocks = 5.0;
@@ -27,6 +27,10 @@ inline constexpr std::size_t kRefinedStarts = 2;
 inline constexpr double kIndependentPerSecond = 5.0;
 /// What leaving the model's slightly wrong parameters free costs a candidate [nats].
 inline constexpr double kNuisanceCost = 3.0;
+/// Share of the secant stiffness by which a slightly wrong model may be off.
+inline constexpr double kSlightlyWrong = 0.25;
+/// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
+inline constexpr double kSensorPrior = 1.0;
 /// An effect so far behind the best one on the coarse record is not looked at again [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are refitted together with the first.
@@ -41,7 +45,7 @@ inline constexpr double kAnotherEffectLeaves = 0.6;
 inline constexpr double kAnotherEffectExplains = 0.03;
 /// Of the gap: with less left than this nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
-inline constexpr double kLittleLeft = 0.05;
+inline constexpr double kLittleLeft = 0.02;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;
@@ -49,7 +53,7 @@ inline constexpr std::size_t kMostEffects = 4;
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
 /// A gap above this multiple of its floor that nothing reduces is unknown.
-inline constexpr double kUnknownOverFloor = 1.0;
+inline constexpr double kUnknownOverFloor = 2.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.

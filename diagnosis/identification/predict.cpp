@@ -88,4 +88,25 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
                                                : predict_displacement(extended, segment);
 }
 
+std::vector<double> predicted_noise(const SiteModel& model, const Segment& segment) {
+  if (segment.noise.empty()) return {};
+  Segment noisy = segment;
+  for (std::size_t i = 0; i < noisy.input.size(); ++i) {
+    noisy.input[i].displacement_m += segment.noise[i].displacement_m;
+    noisy.input[i].velocity_m_per_s += segment.noise[i].velocity_m_per_s;
+    noisy.input[i].acceleration_m_per_s2 += segment.noise[i].acceleration_m_per_s2;
+  }
+  std::vector<double> difference = predict(model, noisy);
+  const std::vector<double> quiet = predict(model, segment);
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= quiet[i];
+  return difference;
+}
+
+double noise_floor(const SiteModel& model, const Segment& segment) {
+  double squares = 0.0;
+  const std::vector<double> noise = predicted_noise(model, segment);
+  for (const double value : noise) squares += value * value / static_cast<double>(noise.size());
+  return std::hypot(segment.measured_noise, std::sqrt(squares));
+}
+
 }  // namespace hybridtest

@@ -82,7 +82,10 @@ FitSegment prepare(const SiteModel& model, Segment segment) {
       1, static_cast<std::size_t>(std::floor(1.0 / (tuning::kFitRate_hz * fit.segment.period_s))));
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
-  fit.floor = fit.segment.floor / std::sqrt(static_cast<double>(fit.averaged));
+  fit.sample_floor = noise_floor(model, fit.segment);
+  const std::vector<double> noise = predicted_noise(model, fit.segment);
+  fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(static_cast<double>(fit.averaged)),
+                         noise.empty() ? 0.0 : root_mean_square(fit.average(noise)));
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.block_begins = blocks_of(fit);

@@ -58,7 +58,9 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
         neutral.values.push_back(parameter.fallback);
       } else if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        plan.linear.push_back({i, j, unit, parameter.low - parameter.neutral, parameter.high - parameter.neutral});
+        // What is searched for above zero only is nothing that real sites have below.
+        const double low = parameter.search_low >= 0.0 ? std::max(0.0, parameter.low) : parameter.low;
+        plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
         removed_by_linear = true;
       } else {
         plan.searched.push_back(searched(problem, effect, i, j));

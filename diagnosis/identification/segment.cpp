@@ -5,12 +5,16 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/random.hpp"
 #include "diagnosis/signals/local_polynomial.hpp"
 
 namespace hybridtest {
 namespace {
 
 using enum EffectInterface;
+
+/// Of the one draw of noise that floors are taken from.
+constexpr std::uint64_t kNoiseSeed = 1;
 
 constexpr std::array kDisplacementChain{Channel::sent_displacement, Channel::target_displacement,
                                         Channel::command_displacement, Channel::measured_displacement};
@@ -24,18 +28,12 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-double root_mean_square(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
-}
-
-/// Noise of the input that smoothing leaves, as it arrives in the output; by the ratio of the signals'
-/// sizes, which for a specimen is its secant stiffness.
-double input_floor(const DofRecording& dof, Channel from, Channel to, double noise_share) {
-  const double size = root_mean_square(dof.of(from));
-  return size > 0.0 ? root_mean_square(dof.of(to)) / size * white_noise_level(dof.of(from)) * std::sqrt(noise_share)
-                    : 0.0;
+/// One draw of white noise of that level, smoothed as the signal is.
+std::vector<Motion> smoothed_noise(const LocalPolynomial& polynomial, double level, std::size_t samples) {
+  Random random{kNoiseSeed};
+  std::vector<double> noise(samples);
+  for (double& value : noise) value = level * random.normal();
+  return polynomial.motion(noise);
 }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
@@ -53,9 +51,10 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
+  } else {
+    segment.noise = smoothed_noise(polynomial, white_noise_level(dof.of(from)), segment.input.size());
   }
-  const double from_input = to == Channel::measured_force ? input_floor(dof, from, to, polynomial.noise_share()) : 0.0;
-  segment.floor = std::hypot(white_noise_level(segment.measured), from_input);
+  segment.measured_noise = white_noise_level(segment.measured);
   return segment;
 }
 
@@ -82,6 +81,15 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
          effect.make_inverse != nullptr;
 }
 
+Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width) {
+  const std::vector<double>& displacement_m = dof.of(Channel::measured_displacement);
+  const LocalPolynomial polynomial{half_width, segment.period_s};
+  Segment result = segment;
+  result.input = polynomial.motion(displacement_m);
+  result.noise = smoothed_noise(polynomial, white_noise_level(displacement_m), displacement_m.size());
+  return result;
+}
+
 Segment thinned(const Segment& segment, double rate_hz) {
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
   if (stride == 1 || passes(segment, compensator)) return segment;
@@ -94,6 +102,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.period_s = segment.period_s * static_cast<double>(stride);
   result.input = every(segment.input);
   result.load_n = every(segment.load_n);
+  result.noise = every(segment.noise);
   result.measured = every(segment.measured);
   return result;
 }

@@ -23,8 +23,9 @@ struct Segment {
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded
-  // Standard deviation of what white noise in both channels makes of the residual, per sample.
-  double floor = 0.0;
+  std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
+  // Standard deviation of the white noise of `measured`.
+  double measured_noise = 0.0;
 
   /// An effect at that interface changes what this segment predicts.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
@@ -32,6 +33,10 @@ struct Segment {
 
 /// Everything that one degree of freedom of a recording can judge, along the chain.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
+
+/// The specimen's segment with the motion smoothed over windows of that half width instead of those that the
+/// displacement alone asks for.
+[[nodiscard]] Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width);
 
 /// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
 /// left. A segment with a compensator between its channels, whose command depends on its own rate,
@@ -43,5 +48,12 @@ struct Segment {
 /// @throws ConfigError for parameters that an effect refuses.
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
+
+/// What the noise of the input makes of the prediction: another draw of it less none, sample by sample.
+/// Empty where the input has no noise.
+[[nodiscard]] std::vector<double> predicted_noise(const SiteModel& model, const Segment& segment);
+
+/// Standard deviation of the residual that noise in both channels leaves of a right model, per sample.
+[[nodiscard]] double noise_floor(const SiteModel& model, const Segment& segment);
 
 }  // namespace hybridtest

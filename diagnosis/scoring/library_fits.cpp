@@ -24,15 +24,38 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
   return candidates;
 }
 
+/// A stiffness that is far from the model's is no slightly wrong number any more: with it a hysteretic element beside
+/// the specimen turns into a specimen that yields, which is another effect.
+bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
+  const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
+  std::size_t column = 0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    if (!fit.segments[i].touched) continue;
+    for (const EffectType* type : problem.segments[i].nuisance_types) {
+      const double most = tuning::kSlightlyWrong * problem.scales.of(ParameterScale::stiffness_n_per_m);
+      if (type == stiffness && std::abs(fit.nuisance[column]) > most) return false;
+      ++column;
+    }
+  }
+  return true;
+}
+
+/// Of two effects that a recording cannot tell apart the one that is not the sensor's comes first.
+double prior(const EffectType& effect) {
+  const bool is_sensor =
+      effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
+  return is_sensor ? -tuning::kSensorPrior : 0.0;
+}
+
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
   Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
-  alone.score = held_out_score(problem, alone.fit);
+  alone.score = held_out_score(problem, alone.fit) + prior(effect);
   Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
   const double score = held_out_score(problem, beside.fit);
-  beside.score = score - tuning::kNuisanceCost;
+  beside.score = score - tuning::kNuisanceCost + prior(effect);
   // Beside the nuisances an effect has to explain something that they do not.
-  const bool needed = score > nuisance_score + tuning::kNuisanceCost;
+  const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
   return needed && beside.score > alone.score ? beside : alone;
 } catch (const ConfigError&) {
   return {};
@@ -41,7 +64,8 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
 /// The same fit at the full rate.
 std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
   Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
-  candidate.score = held_out_score(problem, candidate.fit) - (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  candidate.score = held_out_score(problem, candidate.fit) + prior(*found.type) -
+                    (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
   return candidate;
 } catch (const ConfigError&) {
   return {};
@@ -131,7 +155,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     try {
       const FitOutcome together = refit_effects(coarse, start, false);
       Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit);
+      candidate.score = held_out_score(problem, candidate.fit) + prior(*candidate.type);
       refitted[i] = std::move(candidate);
     } catch (const ConfigError&) {
       refitted[i].reset();

@@ -16,7 +16,7 @@ bool stands_above_floor(const IdentificationProblem& problem, const Selection& s
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double gap = selection.baseline.segments[i].mean_square - fit.floor * fit.floor;
-    const double floor = fit.segment.floor;
+    const double floor = fit.sample_floor;
     const double allowance = std::max(0.0, 1.0 / (fit.weight * fit.weight) - fit.floor * fit.floor);
     if (gap > multiple * multiple * floor * floor + allowance) return true;
   }

@@ -66,7 +66,7 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
   for (std::size_t i = 0; i < leaders; ++i) {
     std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
     const Candidate* const second = first_that_earns(problem, first, beside, total);
-    if (second != nullptr && second->score > best_score) {
+    if (second != nullptr && second->score > best_score + static_cast<double>(i > 0) * tuning::kSensorPrior) {
       best = second->fit;
       best_score = second->score;
     }

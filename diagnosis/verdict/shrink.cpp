@@ -33,6 +33,7 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
   const std::vector<double> before = predict(model, segment);
   const std::vector<double> after = predict(model, segment, causes);
   const std::size_t n = segment.measured.size();
+  const double floor = noise_floor(model, segment);
   double output = 0.0;
   for (const double value : segment.measured) output += value * value / static_cast<double>(n);
   if (output <= 0.0) return;
@@ -41,7 +42,7 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
     for (std::size_t i = n * b / kBlocks; i < n * (b + 1) / kBlocks; ++i) {
       block.before += std::pow(segment.measured[i] - before[i], 2) / output;
       block.after += std::pow(segment.measured[i] - after[i], 2) / output;
-      block.floor += segment.floor * segment.floor / output;
+      block.floor += floor * floor / output;
       block.samples += 1.0;
     }
     blocks.push_back(block);

@@ -88,7 +88,7 @@ std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, c
     const double output = measured.squaredNorm();
     if (output <= 0.0) continue;
     squares[k] += (measured - model).squaredNorm() / output;
-    floors[k] += fit.segment.floor * fit.segment.floor * static_cast<double>(measured.size()) / output;
+    floors[k] += fit.sample_floor * fit.sample_floor * static_cast<double>(measured.size()) / output;
     judged[k] += 1.0;
   }
   std::vector<report::InterfaceGap> where;

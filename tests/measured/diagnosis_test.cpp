@@ -91,7 +91,7 @@ TEST_F(ServoHydraulicActuator, HasABandwidthAndNoDelay) {
 }
 
 TEST_F(ServoHydraulicActuator, HasABandwidthBesideTheBestDelay) {
-  const Diagnosis diagnosis = answer(delayed_actuator(0.0166), recordings_);
+  const Diagnosis diagnosis = answer(delayed_actuator(0.0166), {*measured("servo_hydraulic_mr_damper_0A")});
   EXPECT_TRUE(names(diagnosis, "transfer_system", "bandwidth"));
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.98);
 }
@@ -113,15 +113,12 @@ TEST(ServoAxis, HasViscousAndDryFriction) {
   }
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.98);
 
-  // In the validation record a disturbance came in upstream of the force: the specimen knows nothing of it.
-  Recording other = *validation;
-  other.dofs[0].of(Channel::target_displacement).clear();
-  other.role = RecordingRole::fit;
-  SiteModel augmented = mass_only;
-  augmented.effects.insert(augmented.effects.end(), diagnosis.causes.begin(), diagnosis.causes.end());
-  const Diagnosis again = answer(augmented, {other});
-  // A twelfth of the force's size: what is left of the mass-only model's gap is a seventh of that.
-  EXPECT_LT(again.report.where.front().nrmse, 1.0 / 12.0);
+  // In the validation record a disturbance came in upstream of the force: the specimen knows nothing of it, and
+  // what was found on the other record explains this one (98 % below 80 Hz in a fit by other means, where the
+  // noise of the force ends).
+  recordings.push_back(*validation);
+  recordings.back().dofs[0].of(Channel::target_displacement).clear();
+  EXPECT_GE(answer(mass_only, recordings).report.interface_shrink->variance_removed, 0.95);
 }
 
 TEST(FrictionDamper, HasFrictionAndMore) {
