@@ -28,6 +28,12 @@ Verdict verdict_by_remainder(double left) noexcept {
   return left <= tuning::kPartialLeaves ? Verdict::partial : Verdict::unknown;
 }
 
+/// Several effects that only together come near a gap, and leave part of it, are a curve through it and no cause.
+bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total) {
+  return selection.chosen.effects.size() > 1 &&
+         gap_energy(problem, selection.library.front().fit).excess() > tuning::kPartialLeaves * total;
+}
+
 /// Most probable first, until together they are probable enough.
 std::vector<std::size_t> credible(const Selection& selection) {
   std::vector<std::size_t> members;
@@ -53,6 +59,9 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   const double total = gap_energy(problem, selection.baseline).excess();
   judgement.gap_left = total > 0.0 ? gap_energy(problem, selection.chosen).excess() / total : 0.0;
   judgement.verdict = verdict_by_remainder(judgement.gap_left);
+  if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total)) {
+    judgement.verdict = Verdict::unknown;
+  }
   const bool is_single = selection.chosen.effects.size() == 1;
   if (judgement.verdict == Verdict::unknown || !is_single) return judgement;
   judgement.indistinguishable = credible(selection);
