@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "diagnosis/localisation/gap_signals.hpp"
-#include "diagnosis/localisation/spectra.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
@@ -125,17 +124,37 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
   return series;
 }
 
+/// Shorter recordings are too short to say where in them a gap lies.
+constexpr std::size_t kLeastToLocalise = 64;
+
 GapPlace place_of(const report::InterfaceSeries& series) {
   constexpr std::size_t kWindows = 24;
+  constexpr std::size_t kMotionBins = 6;
   constexpr double kMostOfIt = 0.5;
+  GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}, .regions = {}};
+  if (series.measured.size() < kLeastToLocalise) return place;
   std::vector<double> residual(series.measured.size());
   std::ranges::transform(series.measured, series.model, residual.begin(), std::minus{});
   const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
-  GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}};
   place.time_windows = windows_holding(gap_over_time(signals, std::min(kWindows, signals.size())), kMostOfIt);
   const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
   place.bands = bands_holding(gap_over_frequency(signals, spectra), kMostOfIt);
+  place.regions = regions_holding(gap_over_motion(signals, kMotionBins, kMotionBins), kMostOfIt);
   return place;
+}
+
+/// Those that a cause touches first, then those with the larger gap.
+void worst_first(std::vector<report::InterfaceSeries>& series) {
+  const auto rank = [](const report::InterfaceSeries& one) {
+    double gap = 0.0;
+    double size = 0.0;
+    for (std::size_t i = 0; i < one.measured.size(); ++i) {
+      gap += std::pow(one.measured[i] - one.model[i], 2);
+      size += std::pow(one.measured[i], 2);
+    }
+    return std::pair{one.augmented.empty(), size > 0.0 ? -gap / size : 0.0};
+  };
+  std::ranges::stable_sort(series, {}, rank);
 }
 
 std::string next_experiment(const Selection& selection, const Judgement& judgement,
@@ -217,8 +236,9 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   if (has_causes) report.interface_shrink = shrink_on(model, diagnosis.causes, judged, settings.seed);
   for (const Segment& segment : judged) {
     report.series.push_back(series_of(model, segment, recordings[segment.recording], diagnosis, settings.dof));
-    diagnosis.places.push_back(place_of(report.series.back()));
   }
+  worst_first(report.series);
+  for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
   add_notes(diagnosis, segments);
   return diagnosis;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/localisation/band_shares.hpp"
+#include "diagnosis/localisation/localise.hpp"
 #include "diagnosis/localisation/time_windows.hpp"
 #include "diagnosis/recording.hpp"
 #include "diagnosis/report/diagnosis_report.hpp"
@@ -23,11 +24,12 @@ struct DiagnoseSettings {
   std::function<void(std::size_t done, std::size_t all)> progress;  // one call at a time, from any thread
 };
 
-/// Where in time and frequency the gap of one interface lies.
+/// Where in time, frequency and motion the gap of one interface lies.
 struct GapPlace {
   std::string interface;
   std::vector<TimeWindow> time_windows;
   std::vector<BandShare> bands;
+  std::vector<GapRegion> regions;
 };
 
 struct Diagnosis {

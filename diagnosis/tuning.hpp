@@ -37,15 +37,19 @@ inline constexpr double kDetectionGain = 5.0;
 /// A further effect is taken when it gains so much [nats] and leaves less than this share of what was left.
 inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
+/// Share of the whole gap [variance] that it has to explain unless it is but a wrong number of the model.
+inline constexpr double kAnotherEffectExplains = 0.03;
 /// Of the gap: with less left than this nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
-inline constexpr double kLittleLeft = 0.03;
+inline constexpr double kLittleLeft = 0.05;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;
 
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
+/// A gap above this multiple of its floor that nothing reduces is unknown.
+inline constexpr double kUnknownOverFloor = 1.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.

@@ -60,6 +60,7 @@ ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteComp
   no_motion_ = zero;
   feedback_ = {zero, zero};
   feedback_before_ = feedback_;
+  reading_ = feedback_;
   compensated_force_n_ = zero;
   compensated_force_before_n_ = zero;
 }
@@ -271,7 +272,8 @@ void ControlLoop::limit_motion() noexcept {
 
 void ControlLoop::exchange() noexcept {
   feedback_before_ = feedback_;
-  rig_fault_ = rig_.exchange(command_, feedback_) != RigStatus::healthy;
+  rig_fault_ = rig_.exchange(command_, reading_) != RigStatus::healthy;
+  feedback_ = reading_;
   zero_offsets_.take_off(feedback_);
 }
 

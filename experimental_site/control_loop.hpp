@@ -138,7 +138,8 @@ class ControlLoop final : public Node {
   bool is_reached_ = false;           // there is one
   TrajectoryPoint target_;            // with the offset at the start
   InterfaceVector no_motion_;
-  RigFeedback feedback_;
+  RigFeedback reading_;   // of the rig; with a fault it may stay as it was
+  RigFeedback feedback_;  // less the zero offsets
   RigFeedback feedback_before_;
   InterfaceVector compensated_force_n_;
   InterfaceVector compensated_force_before_n_;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "core/exit_code.hpp"
@@ -100,7 +101,16 @@ int score(const BlindOptions& options) {
 CLI::App* add(CLI::App& commands, const char* name, const char* what, const std::shared_ptr<BlindOptions>& options,
               int (*act)(const BlindOptions&), CommandAction& action) {
   CLI::App* command = commands.add_subcommand(name, what);
-  command->callback([options, act, &action] { action = [options, act] { return act(*options); }; });
+  command->callback([options, act, &action] {
+    action = [options, act] {
+      try {
+        return act(*options);
+      } catch (const std::runtime_error& error) {  // a batch, key or answer that is not as it was made
+        fmt::print(stderr, "{}\n", error.what());
+        return kExitDataInvalid;
+      }
+    };
+  });
   return command;
 }
 

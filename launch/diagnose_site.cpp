@@ -8,6 +8,7 @@
 
 #include "core/config/error.hpp"
 #include "diagnosis/report/diagnosis_json.hpp"
+#include "diagnosis/report/diagnosis_page.hpp"
 
 namespace hybridtest {
 namespace {
@@ -73,6 +74,7 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
   std::filesystem::create_directories(directory, failed);
   if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
   write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
+  write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
   std::vector<ListedEffect> causes;
   for (const EffectSetting& cause : diagnosis.diagnosis.causes) {
     causes.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(diagnosis.dof)} : std::nullopt});

@@ -22,7 +22,7 @@ struct SiteDiagnosis {
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                                           DiagnoseSettings settings);
 
-/// Writes diagnosis.json and, where there are causes, augmented_model.yaml.
+/// Writes diagnosis.json, diagnosis.html and augmented_model.yaml: the model with the causes, if there are any.
 /// @throws ConfigError when the directory cannot be written to.
 void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
                      const std::filesystem::path& directory);

@@ -1,6 +1,7 @@
 #include "launch/executor.hpp"
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <ctime>
 #include <thread>
@@ -26,6 +27,16 @@ void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::f
     between(now);
     if (is_done()) return;
     if (wake > now) static_cast<void>(waker.wait_until(clock.deadline(wake)));
+  }
+}
+
+void rest_until(const ProcessClock& clock, Instant instant) noexcept {
+  // steady_clock of libstdc++ on Linux is CLOCK_MONOTONIC.
+  const auto since_boot =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(clock.deadline(instant).time_since_epoch());
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(since_boot);
+  const timespec deadline{static_cast<time_t>(seconds.count()), static_cast<long>((since_boot - seconds).count())};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
   }
 }
 

@@ -36,6 +36,9 @@ class ProcessClock {
 void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::function<bool()>& is_done,
                const std::function<void(Instant)>& between);
 
+/// Sleeps until then, whatever signals come. No lock, no allocation.
+void rest_until(const ProcessClock& clock, Instant instant) noexcept;
+
 /// Sleeps, a millisecond at a time, while the condition holds.
 void wait_while(const std::function<bool()>& condition);
 

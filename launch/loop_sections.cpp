@@ -157,4 +157,15 @@ LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s) {
   return loop;
 }
 
+RealTimeRequest read_real_time(Section& site, CouplingMode mode) {
+  RealTimeRequest request;
+  if (mode == CouplingMode::lockstep && !site.has("real_time")) return request;
+  Section section = site.section_or_empty("real_time");
+  request.priority = static_cast<int>(section.integer("priority", 1, 99, request.priority));
+  if (section.has("cpu")) request.cpu = static_cast<int>(section.integer("cpu", 0, 1023));
+  request.allow_degraded = section.boolean("allow_degraded", true);
+  section.finish();
+  return request;
+}
+
 }  // namespace hybridtest

@@ -4,6 +4,7 @@
 #include "core/messages.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/trajectory.hpp"
+#include "launch/real_time_thread.hpp"
 
 namespace hybridtest {
 
@@ -23,5 +24,8 @@ struct LoopScenario {
 /// @param site          the experimental substructure's section.
 /// @param site_step_s   coupling step in site time.
 [[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s);
+
+/// Reads `real_time`. In lockstep, where the loop has no thread and no deadlines, it is not read.
+[[nodiscard]] RealTimeRequest read_real_time(config::Section& site, CouplingMode mode);
 
 }  // namespace hybridtest

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   hybridtest::add_export_command(app, action);
   hybridtest::add_summary_command(app, action);
   hybridtest::add_diagnose_command(app, action);
+  hybridtest::add_replay_command(app, action);
   hybridtest::add_study_command(app, action);
   hybridtest::add_blind_command(app, action);
   try {

@@ -91,7 +91,7 @@ std::vector<TableLayout> NumericalParticipant::tables(const SubstructureScenario
 }
 
 SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
-                                 const ParticipantSurroundings& surroundings, Waker* loop_waker)
+                                 const ParticipantSurroundings& surroundings, bool runs_loop)
     : Participant{scenario, substructure.id, Role::experimental_site, surroundings},
       announcements_{surroundings.transport.announcement_inbox()},
       commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
@@ -100,9 +100,8 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
       requests_{kLoopQueue},
       reports_{kLoopQueue},
       signals_{1024},
-      waking_requests_{requests_, loop_waker},
-      waking_reports_{reports_, loop_waker == nullptr ? nullptr : &surroundings.transport.waker()},
-      node_{loop_waker == nullptr} {
+      waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()},
+      node_{runs_loop} {
   const ControlLoopSettings settings = loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
   rig_ = substructure.make_rig(control_period_s);
@@ -116,7 +115,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   link_ = std::make_unique<SiteLink>(
       scenario.index_of(substructure), settings.dofs, presence_,
       MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
-      SiteLinkPorts{*commands_, *measurements_, *signal_blocks_, waking_requests_, reports_, signals_},
+      SiteLinkPorts{*commands_, *measurements_, *signal_blocks_, requests_, reports_, signals_},
       surroundings.sink("steps"));
   node_.set(*link_, *loop_);
 }
@@ -134,7 +133,7 @@ std::unique_ptr<Participant> make_substructure_participant(const Scenario& scena
   if (substructure.role == Role::numerical_substructure) {
     return std::make_unique<NumericalParticipant>(scenario, substructure, surroundings);
   }
-  return std::make_unique<SiteParticipant>(scenario, substructure, surroundings, nullptr);
+  return std::make_unique<SiteParticipant>(scenario, substructure, surroundings, true);
 }
 
 std::vector<TableLayout> substructure_tables(const SubstructureScenario& substructure) {

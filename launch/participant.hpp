@@ -93,10 +93,10 @@ class NumericalParticipant final : public Participant {
 class SiteParticipant final : public Participant {
  public:
   /// Connects the rig. @throws whatever Rig::connect() throws.
-  /// @param loop_waker   signalled for each request to the control loop when it has a thread of
-  ///                     its own; nullptr when node() runs both on one thread.
+  /// @param runs_loop   node() runs the control loop as well; else it has a thread of its own,
+  ///                    which looks for requests by itself.
   SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
-                  const ParticipantSurroundings& surroundings, Waker* loop_waker);
+                  const ParticipantSurroundings& surroundings, bool runs_loop);
 
   /// Link and loop on one thread, or the link alone.
   [[nodiscard]] Node& node() noexcept override { return node_; }
@@ -151,7 +151,6 @@ class SiteParticipant final : public Participant {
   RingPort<LoopRequest> requests_;
   RingPort<LoopReport> reports_;
   RingPort<SignalSample> signals_;
-  WakingOutbox<LoopRequest> waking_requests_;
   WakingOutbox<LoopReport> waking_reports_;
   std::unique_ptr<Rig> rig_;
   std::unique_ptr<ControlLoop> loop_;

@@ -1,19 +1,20 @@
 #include "launch/participant_process.hpp"
 
 #include <CLI/CLI.hpp>
-#include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <iterator>
 #include <memory>
-#include <thread>
 
 #include "core/assert.hpp"
 #include "core/config/error.hpp"
 #include "launch/event_log.hpp"
 #include "launch/executor.hpp"
 #include "launch/incarnation.hpp"
+#include "launch/loop_thread.hpp"
 #include "launch/network_options.hpp"
 #include "launch/participant.hpp"
 #include "launch/run_directory.hpp"
@@ -143,27 +144,54 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
   return exit_code_of(participant, process.recorder());
 }
 
+void report_grant(Presence& presence, Instant now, const RealTimeRequest& request, const RealTimeGrant& grant) {
+  const auto report = [&](const char* what, int error, double asked_for) {
+    if (error == 0) {
+      presence.report(now, Severity::information, EventCode::real_time_granted, what, {asked_for, 0.0});
+    } else {
+      presence.report(now, Severity::warning, EventCode::real_time_refused, what,
+                      {static_cast<double>(error), asked_for});
+    }
+  };
+  report("scheduling", grant.scheduling_error, request.priority);
+  if (grant.affinity_error) report("affinity", *grant.affinity_error, *request.cpu);
+  report("memory", grant.memory_error, 0.0);
+}
+
+/// The link on this thread, the control loop on its own.
+void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
+                               const Scenario& scenario, const SubstructureScenario& substructure) {
+  const RealTimeRequest& request = substructure.site.real_time;
+  LoopThread loop{participant.control_loop(), clock, request,
+                  from_seconds(scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step)};
+  report_grant(participant.presence(), clock.now(), request, loop.grant());
+  process.event_log().write();
+  if (!loop.grant().is_complete() && !request.allow_degraded) {
+    throw ConfigError{substructure.id +
+                      ": not all of real_time was granted, see the lines above; "
+                      "real_time.allow_degraded: true starts all the same"};
+  }
+  run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
+    loop.stop();
+    record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
+                       process.recorder().sink("loop_start_lateness"));
+  });
+}
+
 int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
              const ParticipantProcessOptions& options, const ProcessClock& clock) {
-  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure)};
-  const bool has_loop_thread = scenario.time.mode == CouplingMode::paced;
-  Waker loop_waker;
-  SiteParticipant participant{scenario, substructure, process.surroundings(), has_loop_thread ? &loop_waker : nullptr};
+  const bool has_loop_thread = scenario.time.mode != CouplingMode::lockstep;
+  std::vector<TableLayout> tables = substructure_tables(substructure);
+  if (has_loop_thread) std::ranges::move(loop_timing_tables(), std::back_inserter(tables));
+  ProcessSurroundings process{scenario, options, substructure.role, tables};
+  SiteParticipant participant{scenario, substructure, process.surroundings(), !has_loop_thread};
   set_assert_action([](void* rig) noexcept { static_cast<Rig*>(rig)->stop_motion(); }, &participant.rig());
   stop_on_signals(process.transport().waker());
-
-  std::thread loop_thread;
-  std::atomic<bool> link_is_done{false};
   if (has_loop_thread) {
-    loop_thread = std::thread{[&] {
-      run_until(
-          participant.control_loop(), loop_waker, clock, [&] { return link_is_done.load(); }, [](Instant) {});
-    }};
+    run_site_with_loop_thread(participant, process, clock, scenario, substructure);
+  } else {
+    run_to_the_end(participant, process, clock, scenario.time.mode);
   }
-  run_to_the_end(participant, process, clock, scenario.time.mode);
-  link_is_done = true;
-  loop_waker.signal();
-  if (loop_thread.joinable()) loop_thread.join();
   set_assert_action(nullptr, nullptr);
   return exit_code_of(participant, process.recorder());
 }

@@ -6,6 +6,7 @@
 #include "core/config/error.hpp"
 #include "launch/child_process.hpp"
 #include "launch/commands.hpp"
+#include "launch/diagnose_run.hpp"
 #include "launch/executor.hpp"
 #include "launch/finish_run.hpp"
 #include "launch/network_options.hpp"
@@ -23,6 +24,7 @@ struct RunOptions {
   std::filesystem::path scenario_file;
   std::vector<std::string> overrides;
   std::filesystem::path directory;
+  bool diagnose = false;
   std::vector<std::string> remote;
   NetworkOptions network;
 };
@@ -66,6 +68,7 @@ void print_log(const ChildProcess& child) {
 int run(RunOptions options) {
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   check_remote(options, scenario);
+  if (options.diagnose) require_models(scenario);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name);
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);
@@ -92,7 +95,9 @@ int run(RunOptions options) {
       print_log(*monitor.children().front());
     }
   }
-  return finish_run(options.directory, coordinator_exit);
+  const int exit_code = finish_run(options.directory, coordinator_exit);
+  if (options.diagnose) diagnose_run(scenario, options.directory, std::cout);
+  return exit_code;
 }
 
 }  // namespace
@@ -102,6 +107,8 @@ void add_run_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand("run", "Run a test: every process of it on this machine, over DDS");
   command->add_option("FILE", options->scenario_file, "Scenario")->required();
   command->add_option("--out", options->directory, "Run directory")->default_str("runs/<name>_<time>");
+  command->add_flag("--diagnose", options->diagnose,
+                    "In the end, diagnose every site against the `model` beside its rig, into RUN/diagnosis");
   command->add_option("--set", options->overrides, "Override one value, key.path=value; repeatable");
   command->add_option("--remote", options->remote,
                       "Id of a substructure that is started by hand on another machine; repeatable");

@@ -11,9 +11,11 @@
 #include "core/config/section.hpp"
 #include "experimental_site/energy_error.hpp"
 #include "launch/compose.hpp"
+#include "launch/compose_simulated_rig.hpp"
 #include "launch/numerical_effects.hpp"
 #include "launch/participant.hpp"
 #include "launch/scenario_digest.hpp"
+#include "launch/sites_in_place.hpp"
 #include "numerical_substructure/scaled_model.hpp"
 
 namespace hybridtest {
@@ -185,6 +187,13 @@ std::vector<Reading> read_each(Section& section, std::string_view key, std::size
   return readings;
 }
 
+/// Of a site, beside its rig: checked before the test, used after it.
+void check_model(Section section, int dofs) {
+  if (section.has("type")) static_cast<void>(section.choice("type", {"simulated"}));
+  static_cast<void>(read_simulated_site(section, dofs, AbsentPart::ideal));
+  section.finish();
+}
+
 void read_site(Section& section, const Scenario& scenario, const std::filesystem::path& directory,
                SubstructureScenario& substructure) {
   const TimeScenario& time = scenario.time;
@@ -201,6 +210,8 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
     section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
   }
   substructure.make_rig = std::move(rig.make);
+  site.has_model = section.has_optional("model");
+  if (site.has_model) check_model(section.section("model"), static_cast<int>(dofs));
   site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
 
   const double site_step_s = time.step_s * time.time_scale;
@@ -216,6 +227,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
     return made;
   };
   site.loop = read_loop(section, time.mode, site_step_s);
+  site.real_time = read_real_time(section, time.mode);
 }
 
 SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
@@ -326,7 +338,7 @@ SubstructureIndex Scenario::index_of(const SubstructureScenario& substructure) c
 }
 
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  config::Document document = config::Document::load(file, overrides);
+  config::Document document = config::Document::load(file, with_sites_in_place(file, overrides));
   Section root = document.root();
   Scenario scenario;
   scenario.file = file;

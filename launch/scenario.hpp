@@ -16,6 +16,7 @@
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/rigs/rig.hpp"
 #include "launch/loop_sections.hpp"
+#include "launch/real_time_thread.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 
 namespace hybridtest {
@@ -41,9 +42,11 @@ struct SiteScenario {
   double control_rate_hz = 0.0;
   int periods_per_step = 1;  // the control rate, rounded up so that whole periods fill a step
   LoopScenario loop;
+  RealTimeRequest real_time;  // not in lockstep
   std::string rig_type;
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
+  bool has_model = false;            // of the site, beside its rig: what a diagnosis of the run compares with
   double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
   double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
 };

@@ -2,11 +2,13 @@
 
 #include <atomic>
 #include <fstream>
+#include <iostream>
 #include <map>
 
 #include "core/config/error.hpp"
 #include "core/event_text.hpp"
 #include "launch/commands.hpp"
+#include "launch/diagnose_run.hpp"
 #include "launch/executor.hpp"
 #include "launch/finish_run.hpp"
 #include "launch/incarnation.hpp"
@@ -23,6 +25,7 @@ struct SimulateOptions {
   std::filesystem::path scenario_file;
   std::vector<std::string> overrides;
   std::filesystem::path directory;
+  bool diagnose = false;
   std::uint64_t seed = 0;
   double latency_us = 50.0;
   double jitter_us = 0.0;
@@ -127,6 +130,7 @@ void write_event(std::FILE* log, const Event& event) {
 int simulate_scenario(SimulateOptions options) {
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   const SimulationSettings settings = settings_from(options, scenario);
+  if (options.diagnose) require_models(scenario);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);
@@ -162,7 +166,9 @@ int simulate_scenario(SimulateOptions options) {
     result.coordinator.running_time = clock.now().time_since_epoch();
   }
   recording.close(result);
-  return finish_run(options.directory, exit_code_for(result.coordinator.reason));
+  const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason));
+  if (options.diagnose) diagnose_run(scenario, options.directory, std::cout);
+  return exit_code;
 }
 
 }  // namespace
@@ -176,6 +182,8 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
   command->add_option("--seed", options->seed, "Draws the network and the clocks; the same seed gives the same bytes")
       ->required();
   command->add_option("--out", options->directory, "Run directory")->default_str("runs/<name>_simulated_<time>");
+  command->add_flag("--diagnose", options->diagnose,
+                    "In the end, diagnose every site against the `model` beside its rig, into RUN/diagnosis");
   command->add_option("--set", options->overrides, "Override one value, key.path=value; repeatable");
   command->add_option("--latency-us", options->latency_us, "Time of every message on its way")
       ->check(CLI::Range(0.0, 1e7))

@@ -38,7 +38,8 @@ SitePlace site_of_scenario(Section& root, std::string_view id) {
     return {.rig = root.section_or_empty("rig"), .beside = root, .dofs = {}};
   }
   const auto dofs = static_cast<int>(sites.front().sections("interface").size());
-  return {.rig = sites.front().section("rig"), .beside = sites.front(), .dofs = std::max(1, dofs)};
+  const char* const rig = sites.front().has("model") ? "model" : "rig";
+  return {.rig = sites.front().section(rig), .beside = sites.front(), .dofs = std::max(1, dofs)};
 }
 
 SitePlace site_in(Section& root, std::string_view id) {
@@ -81,6 +82,17 @@ void try_out(const std::vector<SiteModel>& dofs, double period_s) {
     if (dof.make_compensator) static_cast<void>(dof.make_compensator(period_s));
     for (const EffectInterface interface : site_interfaces()) static_cast<void>(effects_at(dof, interface, period_s));
   }
+}
+
+/// The section with a word for everything that a scenario wants to see.
+std::string whole_rig(const Section& rig) {
+  std::string text = "type: simulated\n";
+  text += rig.has("transfer_system") ? rig.effective("transfer_system") : "transfer_system: {type: ideal}\n";
+  text += rig.has("specimen") ? rig.effective("specimen") : "specimen: {type: none}\n";
+  for (const char* key : {"sensors", "effects"}) {
+    if (rig.has(key)) text += rig.effective(key);
+  }
+  return text;
 }
 
 constexpr double kUsualControlRate_hz = 1024.0;
@@ -140,6 +152,7 @@ SiteModelFile read_site_model(const std::filesystem::path& file, std::string_vie
     if (place.beside.has("compensator")) model.text += place.beside.effective("compensator");
   }
   model.text += place.rig.effective();
+  model.rig = whole_rig(place.rig);
   return model;
 }
 

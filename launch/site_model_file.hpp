@@ -13,7 +13,7 @@ namespace hybridtest {
 
 /// A file that says what is known of a site: a scenario's `rig` section at the top level (`type` left
 /// out if one likes), the same under `rig`, or a whole scenario. Beside it, optional: `name`,
-/// `compensator`, `control_rate_hz`. What is left out: an ideal transfer system, a specimen without
+/// `compensator`, `control_rate_hz`. Of a scenario's site, `model` goes before `rig`. What is left out: an ideal transfer system, a specimen without
 /// force, no compensator.
 struct SiteModelFile {
   std::filesystem::path file;
@@ -21,6 +21,7 @@ struct SiteModelFile {
   std::vector<SiteModel> dofs;   // one per degree of freedom, at least one
   double control_rate_hz = 0.0;  // 0 when the file gives none
   std::string text;              // as a site file, with defaults filled in; read_site_model() accepts it
+  std::string rig;               // as a scenario's `rig` section, whole: what was left out is written out
 
   /// `text` with effects added behind those it has.
   [[nodiscard]] std::string with_effects(std::span<const ListedEffect> effects) const;

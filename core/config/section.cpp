@@ -129,6 +129,11 @@ bool Section::has(std::string_view key) const { return state_->find(key) != null
 
 bool Section::has_optional(std::string_view key) { return state_->read(key) != nullptr; }
 
+bool Section::has_mapping(std::string_view key) const {
+  const Node* const node = state_->find(key);
+  return node != nullptr && node->kind == Node::Kind::mapping;
+}
+
 std::string Section::path() const { return state_->path(); }
 
 double Section::number(std::string_view key, Range range, std::optional<double> fallback) {

@@ -46,6 +46,8 @@ class Section {
   [[nodiscard]] bool has(std::string_view key) const;
   /// The same of an optional key, which from then on is one that the advice on unknown keys names.
   [[nodiscard]] bool has_optional(std::string_view key);
+  /// Whether the key has a mapping, where a text or a number would do as well.
+  [[nodiscard]] bool has_mapping(std::string_view key) const;
   /// `substructures[0].rig`, for messages.
   [[nodiscard]] std::string path() const;
 

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/blind/library_terms.hpp"
+
 namespace hybridtest::blind {
 namespace {
 
@@ -111,8 +113,10 @@ nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blin
   json["truth"] = name_of(truth.kind);
   json["effects"] = nlohmann::ordered_json::array();
   for (const PlantEffect& effect : truth.effects) {
-    json["effects"].push_back(
-        {{"interface", effect.interface}, {"effect", effect.name}, {"parameters", effect.parameters}});
+    nlohmann::ordered_json entry{{"interface", effect.interface}, {"effect", effect.name}};
+    entry["parameters"] = in_library_terms(blind_case.setting.site, effect);
+    entry["plant_parameters"] = effect.parameters;
+    json["effects"].push_back(std::move(entry));
   }
   json["acceptable"] = nlohmann::ordered_json::array();
   for (const Cause& cause : truth.acceptable) json["acceptable"].push_back(cause_json(cause));

@@ -65,13 +65,23 @@ void add_nuisances(FitSegment& fit) {
   add_nuisance(fit, displacement_sensor, "bias", ones);
 }
 
+std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit) {
+  if (!model.make_law || fit.segment.to != Channel::measured_force) return predict(model, fit.segment);
+  const auto memory = std::make_shared<LawMemory>();
+  SiteModel remembered = model;
+  remembered.make_law = [&] { return remembering(model.make_law(), *memory); };
+  std::vector<double> predicted = predict(remembered, fit.segment);
+  fit.law = memory;
+  return predicted;
+}
+
 FitSegment prepare(const SiteModel& model, Segment segment) {
   FitSegment fit;
   fit.segment = std::move(segment);
   fit.averaged = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::floor(1.0 / (tuning::kFitRate_hz * fit.segment.period_s))));
   fit.measured = fit.average(fit.segment.measured);
-  fit.baseline = fit.average(predict(model, fit.segment));
+  fit.baseline = fit.average(predict_remembering(model, fit));
   fit.floor = fit.segment.floor / std::sqrt(static_cast<double>(fit.averaged));
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
@@ -100,7 +110,11 @@ Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& 
                         std::span<const EffectSetting> added) {
   const bool touched =
       std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
-  return touched ? segment.average(predict(problem.model, segment.segment, added)) : segment.baseline;
+  if (!touched) return segment.baseline;
+  if (segment.law == nullptr) return segment.average(predict(problem.model, segment.segment, added));
+  SiteModel remembered = problem.model;
+  remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };
+  return segment.average(predict(remembered, segment.segment, added));
 }
 
 }  // namespace hybridtest

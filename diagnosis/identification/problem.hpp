@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "diagnosis/identification/remembered_law.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/identification/signal_scales.hpp"
 
@@ -20,7 +22,8 @@ struct FitSegment {
   std::vector<const EffectType*> nuisance_types;  // one per column
   double weight = 1.0;                            // one over what counts as a standard deviation here
   double floor = 0.0;                             // noise of `measured`, after averaging
-  std::vector<Eigen::Index> block_begins;         // held-out blocks, one more than there are
+  std::shared_ptr<const LawMemory> law;    // of the specimen, along the recorded motion; null where there is none
+  std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
 
   [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
 };

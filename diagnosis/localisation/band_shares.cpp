@@ -21,7 +21,7 @@ void accumulate(BandShare& band, const Spectra& spectra, std::size_t line, doubl
 
 std::vector<BandShare> gap_over_frequency(const GapSignals& signals, const Spectra& spectra) {
   const double whole = std::accumulate(spectra.output.begin(), spectra.output.end(), 0.0) * spectra.resolution_hz;
-  const double output = variance(signals.measured);
+  const double output = mean_square(signals.measured);
   const double half_rate_hz = spectra.frequency_hz(spectra.output.size() - 1);
   std::vector<BandShare> bands;
   double low_hz = 0.0;

@@ -23,7 +23,7 @@ double largest_magnitude(std::span<const double> values) {
 /// Turns sums of squares, kept in `share`, into shares and relative root mean squares.
 void finish(std::vector<GapBin>& bins, const GapSignals& signals) {
   const double whole = mean_square(signals.residual) * static_cast<double>(signals.size());
-  const double output = variance(signals.measured);
+  const double output = mean_square(signals.measured);
   for (GapBin& bin : bins) {
     const double squares = bin.share;
     bin.share = whole > 0.0 ? squares / whole : 0.0;

@@ -50,7 +50,7 @@ std::vector<GapRegion> regions_holding(const MotionMap& map, double share) {
 Localisation localise(const GapSignals& signals, InterfaceKind kind) {
   HYBRIDTEST_ASSERT(signals.size() >= kLeastSamples && signals.input_m.size() == signals.size() &&
                     signals.measured.size() == signals.size());
-  const double output = variance(signals.measured);
+  const double output = mean_square(signals.measured);
   Localisation found;
   found.nrmse = output > 0.0 ? std::sqrt(mean_square(signals.residual) / output) : 0.0;
   found.floor = repeatability_floor(signals);

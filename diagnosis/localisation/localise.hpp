@@ -25,7 +25,7 @@ struct GapRegion {
 
 /// Where inside one interface its gap lies.
 struct Localisation {
-  double nrmse = 0.0;  // root mean square of the residual over that of the output about its mean
+  double nrmse = 0.0;  // root mean square of the residual over that of the output
   RepeatabilityFloor floor;
   std::vector<TimeWindow> windows;
   std::vector<BandShare> bands;

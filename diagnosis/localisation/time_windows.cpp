@@ -8,7 +8,7 @@ namespace hybridtest {
 std::vector<TimeWindow> gap_over_time(const GapSignals& signals, std::size_t count) {
   const std::size_t size = signals.size();
   const double whole = mean_square(signals.residual) * static_cast<double>(size);
-  const double output = variance(signals.measured);
+  const double output = mean_square(signals.measured);
   std::vector<TimeWindow> windows;
   for (std::size_t i = 0; i < std::min(count, size); ++i) {
     const std::size_t begin = i * size / std::min(count, size);

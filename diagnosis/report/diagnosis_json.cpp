@@ -23,6 +23,13 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
   for (const BandShare& band : place->bands) {
     entry["bands_hz"].push_back({{"low_hz", band.low_hz}, {"high_hz", band.high_hz}, {"share", band.share}});
   }
+  for (const GapRegion& region : place->regions) {
+    entry["regions"].push_back(
+        {{"displacement_m", Json::array({region.displacement_low_m, region.displacement_high_m})},
+         {"velocity_m_per_s", Json::array({region.velocity_low_m_per_s, region.velocity_high_m_per_s})},
+         {"share", region.share},
+         {"time_share", region.time_share}});
+  }
   return entry;
 }
 

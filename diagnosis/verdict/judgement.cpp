@@ -11,14 +11,14 @@ namespace {
 
 using report::Verdict;
 
-/// Some gap stands clear of its interface's floor.
-bool stands_above_floor(const IdentificationProblem& problem, const Selection& selection) {
+/// Some gap exceeds that multiple of its interface's floor.
+bool stands_above_floor(const IdentificationProblem& problem, const Selection& selection, double multiple) {
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double gap = selection.baseline.segments[i].mean_square - fit.floor * fit.floor;
     const double floor = fit.segment.floor;
     const double allowance = std::max(0.0, 1.0 / (fit.weight * fit.weight) - fit.floor * fit.floor);
-    if (gap > tuning::kGapOverFloor * tuning::kGapOverFloor * floor * floor + allowance) return true;
+    if (gap > multiple * multiple * floor * floor + allowance) return true;
   }
   return false;
 }
@@ -43,7 +43,13 @@ std::vector<std::size_t> credible(const Selection& selection) {
 
 Judgement judge(const IdentificationProblem& problem, const Selection& selection) {
   Judgement judgement;
-  if (selection.chosen.effects.empty() || !stands_above_floor(problem, selection)) return judgement;
+  if (!stands_above_floor(problem, selection, tuning::kGapOverFloor)) return judgement;
+  if (selection.chosen.effects.empty()) {
+    if (!stands_above_floor(problem, selection, tuning::kUnknownOverFloor)) return judgement;
+    judgement.verdict = Verdict::unknown;
+    judgement.gap_left = 1.0;
+    return judgement;
+  }
   const double total = gap_energy(problem, selection.baseline).excess();
   judgement.gap_left = total > 0.0 ? gap_energy(problem, selection.chosen).excess() / total : 0.0;
   judgement.verdict = verdict_by_remainder(judgement.gap_left);

@@ -23,12 +23,31 @@ std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
   return probabilities;
 }
 
-/// Another effect has to earn its place on data that was not fitted, and to matter.
-bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& without, const FitOutcome& with) {
-  const double gain = held_out_score(problem, with) - held_out_score(problem, without);
-  const double left = gap_energy(problem, with).excess();
-  return gain > tuning::kAnotherEffectGain &&
-         left < tuning::kAnotherEffectLeaves * gap_energy(problem, without).excess();
+/// A number of the user's model that is a little off, as every model's are.
+bool is_nuisance(const IdentificationProblem& problem, const EffectType& type) {
+  return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+    return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
+  });
+}
+
+/// Another effect has to earn its place on data that was not fitted, and to matter: a wrong number
+/// for what it leaves, anything else for the whole gap as well, of which the shape of a right effect is never
+/// quite the real one.
+bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& without, const Candidate& with,
+                     double total) {
+  const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
+  const double before = gap_energy(problem, without).excess();
+  const double left = gap_energy(problem, with.fit).excess();
+  const bool matters = is_nuisance(problem, *with.type) || before - left > tuning::kAnotherEffectExplains * total;
+  return gain > tuning::kAnotherEffectGain && left < tuning::kAnotherEffectLeaves * before && matters;
+}
+
+/// The best of `beside` that earns its place; null when there is none.
+const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& without,
+                                  const std::vector<Candidate>& beside, double total) {
+  const auto found = std::ranges::find_if(
+      beside, [&](const Candidate& candidate) { return earns_its_place(problem, without, candidate, total); });
+  return found == beside.end() ? nullptr : &*found;
 }
 
 /// The best pair that one of the leading effects is part of.
@@ -46,9 +65,10 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
   const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < leaders; ++i) {
     std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
-    if (!beside.empty() && beside.front().score > best_score && earns_its_place(problem, first, beside.front().fit)) {
-      best = beside.front().fit;
-      best_score = beside.front().score;
+    const Candidate* const second = first_that_earns(problem, first, beside, total);
+    if (second != nullptr && second->score > best_score) {
+      best = second->fit;
+      best_score = second->score;
     }
     if (i == 0) selection.seconds = std::move(beside);
   }
@@ -77,8 +97,9 @@ Selection select_effects(const IdentificationProblem& problem, const Identificat
   while (selection.chosen.effects.size() > 1 && selection.chosen.effects.size() < tuning::kMostEffects &&
          gap_energy(problem, selection.chosen).excess() > tuning::kNothingLeft * total) {
     const std::vector<Candidate> beside = fit_beside(problem, coarse, selection.chosen.effects, threads);
-    if (beside.empty() || !earns_its_place(problem, selection.chosen, beside.front().fit)) break;
-    selection.chosen = beside.front().fit;
+    const Candidate* const next = first_that_earns(problem, selection.chosen, beside, total);
+    if (next == nullptr) break;
+    selection.chosen = next->fit;
   }
   return selection;
 }

@@ -43,12 +43,24 @@ struct EnergyError {
   double final_j = 0.0;
 };
 
+/// How well a site's control loop kept its time, where it had a thread of its own.
+struct LoopTimingSummary {
+  std::int64_t starts = 0;        // control periods that began by the clock
+  Percentiles start_lateness_us;  // from a control period's time to its start
+  Percentiles busy_us;            // from there to its end
+  std::int64_t overruns = 0;      // control periods that were over when they began
+  bool memory_locked = false;
+  int fifo_priority = 0;     // 0: ordinary scheduling
+  std::optional<int> cpu{};  // that the loop stayed on
+};
+
 struct SubstructureSummary {
   std::string id;
   std::vector<Peak> peak_force_n;  // restoring force per interface degree of freedom
   std::optional<ExchangeSummary> exchange;
   std::vector<TrackingError> tracking;  // of a site
   std::optional<EnergyError> energy_error;
+  std::optional<LoopTimingSummary> loop_timing;
 };
 
 struct InterlockSummary {

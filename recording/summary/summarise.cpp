@@ -17,6 +17,7 @@ constexpr std::string_view kSteps = "steps";
 constexpr std::string_view kControl = "control";
 constexpr std::string_view kExchanges = "exchanges";
 constexpr std::string_view kTest = "test";
+constexpr std::string_view kLoopTiming = "loop_timing";
 
 std::string count_of(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -137,6 +138,25 @@ std::optional<EnergyError> energy_error_of(const RunFileReader& file) {
   std::erase_if(energy_j, [](double value) { return !std::isfinite(value); });
   if (energy_j.empty()) return {};
   return EnergyError{peak_of("", energy_j, {})->value, energy_j.back()};
+}
+
+std::optional<LoopTimingSummary> loop_timing_of(const RunFileReader& file) {
+  if (file.row_count(kLoopTiming) == 0) return {};
+  const auto value = [&](std::string_view column) {
+    return last_of(column_if_any(file, kLoopTiming, column)).value_or(0.0);
+  };
+  const auto percentiles_of = [&](const std::string& quantity) {
+    return Percentiles{value(quantity + "_p50_us"), value(quantity + "_p99_us"), value(quantity + "_max_us")};
+  };
+  LoopTimingSummary timing;
+  timing.starts = static_cast<std::int64_t>(value("starts"));
+  timing.start_lateness_us = percentiles_of("start_lateness");
+  timing.busy_us = percentiles_of("busy");
+  timing.overruns = static_cast<std::int64_t>(value("overruns"));
+  timing.memory_locked = value("memory_locked") != 0.0;
+  timing.fifo_priority = static_cast<int>(value("fifo_priority"));
+  if (const double cpu = value("cpu"); cpu >= 0.0) timing.cpu = static_cast<int>(cpu);
+  return timing;
 }
 
 std::vector<Peak> peak_forces_of(const RunFileReader& file) {
@@ -290,6 +310,7 @@ void Summariser::summarise_substructures() {
       substructure.peak_force_n = peak_forces_of(*file);
       substructure.tracking = tracking_of(*file);
       substructure.energy_error = energy_error_of(*file);
+      substructure.loop_timing = loop_timing_of(*file);
     } else {
       summary_.remarks.push_back(ids[i] + ": no file in this directory; if it ran on another host, copy its file here");
     }

@@ -58,6 +58,16 @@ Json json(const TrackingError& error) {
           {"samples", error.samples}};
 }
 
+Json json(const LoopTimingSummary& timing) {
+  return {{"starts", timing.starts},
+          {"start_lateness_us", json(std::optional{timing.start_lateness_us})},
+          {"busy_us", json(std::optional{timing.busy_us})},
+          {"overruns", timing.overruns},
+          {"memory_locked", timing.memory_locked},
+          {"fifo_priority", timing.fifo_priority},
+          {"cpu", optional(timing.cpu)}};
+}
+
 Json json(const SubstructureSummary& substructure) {
   Json tracking = Json::array();
   for (const TrackingError& error : substructure.tracking) tracking.push_back(json(error));
@@ -70,7 +80,8 @@ Json json(const SubstructureSummary& substructure) {
           {"peak_force", json(substructure.peak_force_n, "force_n")},
           {"exchange", substructure.exchange ? json(*substructure.exchange) : Json(nullptr)},
           {"tracking", tracking},
-          {"energy_error", energy}};
+          {"energy_error", energy},
+          {"loop_timing", substructure.loop_timing ? json(*substructure.loop_timing) : Json(nullptr)}};
 }
 
 Json json(const InterlockSummary& interlock) {

@@ -80,9 +80,11 @@ void print_head(const RunSummary& summary, std::ostream& stream) {
 
 /// A limit's unit for people and its factor from SI.
 std::pair<double, std::string> unit_of(const std::string& limit_name) {
-  if (limit_name == "displacement_limit" || limit_name == "tracking_error") return {kMillimetres, " mm"};
+  if (limit_name == "displacement_limit" || limit_name == "tracking_error" || limit_name == "displacement_step") {
+    return {kMillimetres, " mm"};
+  }
   if (limit_name == "velocity_limit") return {kMillimetres, " mm/s"};
-  if (limit_name == "force_limit") return {kKilonewtons, " kN"};
+  if (limit_name == "force_limit" || limit_name == "force_step") return {kKilonewtons, " kN"};
   if (limit_name == "command_age") return {kMilliseconds, " ms"};
   return {1.0, ""};
 }
@@ -132,11 +134,19 @@ void print_exchanges(const RunSummary& summary, std::ostream& stream) {
 void print_sites(const RunSummary& summary, std::ostream& stream) {
   TextTable tracking{{"tracking error", "RMS mm", "RMS %", "peak mm", "delay ms", "amplitude"}};
   TextTable energy{{"energy error", "peak J", "final J"}};
+  TextTable timing{{"control loop", "late p50 us", "p99 us", "max us", "busy p99 us", "overruns", "priority", "cpu"}};
   for (const SubstructureSummary& substructure : summary.substructures) {
     for (const TrackingError& error : substructure.tracking) {
       tracking.add({substructure.id + " " + error.dof, fixed(error.rms_m * kMillimetres, 4),
                     fixed(error.rms_relative, kPercent, 2), fixed(error.peak_m * kMillimetres, 4),
                     fixed(error.equivalent_delay_s, kMilliseconds, 2), fixed(error.amplitude, 1.0, 4)});
+    }
+    if (substructure.loop_timing) {
+      const LoopTimingSummary& loop = *substructure.loop_timing;
+      timing.add({substructure.id, fixed(loop.start_lateness_us.p50, 0), fixed(loop.start_lateness_us.p99, 0),
+                  fixed(loop.start_lateness_us.max, 0), fixed(loop.busy_us.p99, 0), std::to_string(loop.overruns),
+                  loop.fifo_priority > 0 ? "FIFO " + std::to_string(loop.fifo_priority) : "ordinary",
+                  loop.cpu ? std::to_string(*loop.cpu) : "any"});
     }
     if (substructure.energy_error) {
       energy.add(
@@ -145,6 +155,7 @@ void print_sites(const RunSummary& summary, std::ostream& stream) {
   }
   tracking.print(stream);
   energy.print(stream);
+  timing.print(stream);
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ SiteCompensation compensation(bool compensates, Duration control_period) {
   return made;
 }
 
-ControlLoopSettings wide_limits(CouplingMode mode) {
+ControlLoopSettings wide_limits(CouplingMode mode, double command_age_s) {
   ControlLoopSettings settings;
   settings.mode = mode;
   settings.periods_per_step = kPeriodsPerStep;
@@ -95,12 +95,12 @@ ControlLoopSettings wide_limits(CouplingMode mode) {
   settings.limits.force_n = 1.0e6;
   settings.limits.tracking_error_m = 0.5;
   settings.limits.energy_error_ratio = 1.0e3;
-  settings.limits.command_age_s = 1.0;
+  settings.limits.command_age_s = command_age_s;
   settings.return_time_s = 0.2;
   return settings;
 }
 
-RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates)
+RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, double command_age_s)
     : step_record_{width(Coordinator::steps_layout({"floor_1", "floor_2"})), kRows},
       exchange_record_{width(Coordinator::exchanges_layout()), kRows},
       numerical_record_{width(NumericalNode::steps_layout({"floor_2"})), kRows},
@@ -112,7 +112,8 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates)
       numerical_presence_{Identity{"storey_2", Role::numerical_substructure, 3, {}}, kLease, numerical_statuses_,
                           from_numerical_, events_},
       rig_{noisy_rig(kControlPeriod)},
-      loop_{std::make_unique<ControlLoop>(wide_limits(mode), *rig_, compensation(compensates, kControlPeriod),
+      loop_{std::make_unique<ControlLoop>(wide_limits(mode, command_age_s), *rig_,
+                                          compensation(compensates, kControlPeriod),
                                           EnergyErrorMonitor{InterfaceMatrix::Constant(1, 1, 4.0e6), 0.01},
                                           ControlLoopPorts{requests_, reports_, signals_}, control_record_)},
       link_{std::make_unique<SiteLink>(
@@ -126,6 +127,18 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates)
           settings(mode, last_step), std::make_unique<CentralDifference>(two_storeys(), kStep_s), coordinator_presence_,
           CoordinatorPorts{announcements_, coordinator_control_, control_, measurements_, commands_},
           CoordinatorRecord{step_record_, exchange_record_})} {}
+
+void RingCoupling::advance_all_but_loop(Instant now) noexcept {
+  static_cast<void>(coordinator_->advance(now));
+  static_cast<void>(numerical_->advance(now));
+  advance_link(now);
+}
+
+std::vector<double> RingCoupling::take_control_row() {
+  std::vector<double> row(control_record_.row_width());
+  if (control_record_.take(row) == 0) row.clear();
+  return row;
+}
 
 void RingCoupling::advance(Duration passed) noexcept {
   now_ += passed;

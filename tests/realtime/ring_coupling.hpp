@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "coordinator/coordinator.hpp"
 #include "core/presence.hpp"
@@ -47,10 +48,18 @@ class RingCoupling {
  public:
   static constexpr double kStep_s = 0.001;
 
-  RingCoupling(CouplingMode mode, Step last_step, bool compensates);
+  RingCoupling(CouplingMode mode, Step last_step, bool compensates, double command_age_s = 1.0);
 
   /// Everyone runs once, `passed` later.
   void advance(Duration passed) noexcept;
+  /// For a control loop on a thread of its own: everyone else runs once, or the site's link alone,
+  /// as when the network hangs.
+  void advance_all_but_loop(Instant now) noexcept;
+  void advance_link(Instant now) noexcept { static_cast<void>(link_->advance(now)); }
+  [[nodiscard]] Node& control_loop() noexcept { return *loop_; }
+  /// Oldest row of the control loop's record that was not taken yet; empty when there is none.
+  [[nodiscard]] std::vector<double> take_control_row();
+  [[nodiscard]] FaultFlags site_faults() const noexcept { return site_presence_.faults(); }
 
   [[nodiscard]] CoordinatorReport report() const noexcept { return coordinator_->report(); }
   [[nodiscard]] bool is_done() const noexcept {
@@ -105,6 +114,6 @@ class RingCoupling {
 [[nodiscard]] std::unique_ptr<SimulatedRig> noisy_rig(Duration control_period);
 [[nodiscard]] SiteCompensation compensation(bool compensates, Duration control_period);
 /// Every interlock on, none near.
-[[nodiscard]] ControlLoopSettings wide_limits(CouplingMode mode);
+[[nodiscard]] ControlLoopSettings wide_limits(CouplingMode mode, double command_age_s = 1.0);
 
 }  // namespace hybridtest

@@ -60,18 +60,12 @@ Forecast forecast_of(const KeyCase& key, const Answer& answer) {
   return {std::clamp(probability, 0.0, 1.0), cause_is_right(key, answer)};
 }
 
-/// Of a number that is 1 where nothing is wrong, what counts is by how much it is not.
-double relative_error(const std::string& name, double answered, double truth) {
-  const bool is_about_one = name == "gain" || name == "stiffness_ratio";
-  return std::abs(answered - truth) / std::abs(is_about_one ? truth - 1.0 : truth);
-}
-
 std::vector<ParameterError> errors_of(const PlantEffect& effect, const AnsweredCause& cause) {
   std::vector<ParameterError> errors;
   for (const auto& [name, truth] : effect.parameters) {
     const auto found = cause.parameters.find(name);
     if (found == cause.parameters.end() || truth == 0.0) continue;
-    ParameterError error{effect.name + "." + name, relative_error(name, found->second.value, truth), {}};
+    ParameterError error{effect.name + "." + name, std::abs(found->second.value / truth - 1.0), {}};
     if (const auto& interval = found->second.ci95) {
       error.is_in_interval = interval->first <= truth && truth <= interval->second;
     }

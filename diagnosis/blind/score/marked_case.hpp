@@ -11,8 +11,8 @@
 namespace hybridtest::blind {
 
 struct ParameterError {
-  std::string name;       // coulomb_friction.friction_force_n
-  double relative = 0.0;  // of gains and ratios: of what they differ from 1
+  std::string name;  // coulomb_friction.friction_force_n
+  double relative = 0.0;
   std::optional<bool> is_in_interval;
 };
 

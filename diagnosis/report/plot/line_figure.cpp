@@ -36,7 +36,8 @@ std::vector<LegendEntry> legend_of(const LineFigure& figure) {
       if (std::ranges::find(legend, line.name, &LegendEntry::name) != legend.end()) continue;
       Stroke stroke = kBackground;
       if (!line.is_background) {
-        stroke = {kColours[coloured % kColours.size()], 1.6, kDashes[(coloured / kColours.size()) % kDashes.size()]};
+        stroke = {kColours[coloured % kColours.size()], line.is_emphasised ? 3.0 : 1.6,
+                  kDashes[(coloured / kColours.size()) % kDashes.size()]};
         ++coloured;
       }
       legend.push_back({line.name, stroke});

@@ -13,6 +13,7 @@ struct Line {
   std::vector<double> x{};
   std::vector<double> y{};
   bool is_background = false;  // grey and behind: what the others are compared with
+  bool is_emphasised = false;  // thicker
 };
 
 struct Panel {

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
-#include "mechanics/bouc_wen.hpp"
+#include "experimental_site/effects/specimen/hysteretic_path.hpp"
 
 namespace hybridtest {
 
-/// A smooth hysteretic element beside the model's law (Bouc, 1967; Wen, J. Eng. Mech. Div. ASCE 102, 1976;
-/// mechanics): z in units of the yield displacement xy, beta + gamma = 1, s = beta / (beta + gamma).
+/// A smooth hysteretic element beside the law of the model (Bouc, 1967; Wen, J. Eng. Mech. Div. ASCE 102,
+/// 1976): z in units of the yield displacement xy, beta + gamma = 1, s = beta / (beta + gamma).
 class BoucWenHysteresis final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fy z, dz = (1 - (s sign(z dx) + 1 - s) |z|^n) dx / xy";
@@ -53,23 +54,29 @@ class BoucWenHysteresis final : public Effect {
 
   BoucWenHysteresis(std::span<const double> values, double /*sample_period_s*/)
       : yield_force_n_{values[0]},
-        element_{{.stiffness_n_per_m = 1.0,
-                  .alpha = 0.0,
-                  .n = values[2],
-                  .gamma_per_m = 1.0 - values[3],
-                  .beta_per_m = values[3],
-                  .ao = 1.0}},
-        yield_displacement_m_{values[1]} {}
+        yield_displacement_m_{values[1]},
+        exponent_{values[2]},
+        unloading_{1.0 - 2.0 * values[3]} {}
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
-    force_n += yield_force_n_ * element_.trial(motion.displacement_m / yield_displacement_m_, 0.0);
-    element_.commit();
+    const double way = (motion.displacement_m - displacement_m_) / yield_displacement_m_;
+    displacement_m_ = motion.displacement_m;
+    z_ = carried_along(z_, way, kSubstep, [this](double z, double direction) {
+      const double share = exponent_ == 1.0 ? std::abs(z) : std::pow(std::abs(z), exponent_);
+      return 1.0 - (z * direction < 0.0 ? unloading_ : 1.0) * share;
+    });
+    force_n += yield_force_n_ * z_;
   }
-  void reset() noexcept override { element_.reset(); }
+  void reset() noexcept override { z_ = displacement_m_ = 0.0; }
 
  private:
+  static constexpr double kSubstep = 0.1;
+
   double yield_force_n_;
-  BoucWen element_;  // in units of the yield displacement
   double yield_displacement_m_;
+  double exponent_;
+  double unloading_;  // gamma - beta
+  double z_ = 0.0;
+  double displacement_m_ = 0.0;
 };
 
 }  // namespace hybridtest

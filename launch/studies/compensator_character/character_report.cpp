@@ -48,7 +48,11 @@ std::string response_figure(const CharacterStudy& study, Responses responses, do
       for (const Character& character : study.characters) {
         const bool is_yardstick = character.name == "none";
         if ((character.group != group && !is_yardstick) || (character.*responses).empty()) continue;
-        plot::Line line{.name = character.name, .x = study.frequencies_hz, .y = {}, .is_background = is_yardstick};
+        plot::Line line{.name = character.name,
+                        .x = study.frequencies_hz,
+                        .y = {},
+                        .is_background = is_yardstick,
+                        .is_emphasised = character.is_ours};
         for (std::size_t i = 0; i < study.frequencies_hz.size(); ++i) {
           line.y.push_back(value_of((character.*responses)[i], study.frequencies_hz[i]));
         }
@@ -155,8 +159,10 @@ std::string noise_figure(const CharacterStudy& study) {
       .rows = {}};
   for (const Character& character : study.characters) {
     const NoiseGain& noise = character.noise;
-    figure.rows.push_back(
-        {character.name, {noise.target_to_command, noise.displacement_to_command, noise.force_to_force}, "", false});
+    figure.rows.push_back({character.name,
+                           {noise.target_to_command, noise.displacement_to_command, noise.force_to_force},
+                           "",
+                           character.is_ours});
   }
   return to_svg(figure);
 }
@@ -165,13 +171,17 @@ std::string damping_figure(const CharacterStudy& study) {
   plot::LineFigure figure{.panels = {}, .columns = 3, .panel_width = 420.0, .panel_height = 300.0};
   for (const auto& [group, group_name] : kGroups) {
     plot::Panel panel{.title = group_name,
-                      .x = {.label = "omega delay [rad]", .is_logarithmic = true, .low = 0.02, .high = 2.5},
+                      .x = {.label = "ω × delay [rad]", .is_logarithmic = true, .low = 0.02, .high = 2.5},
                       .y = {.label = "damping ratio [%]", .is_logarithmic = false, .low = -10.0, .high = 10.0},
                       .lines = {}};
     for (const Character& character : study.characters) {
       const bool is_yardstick = character.name == "none";
       if ((character.group != group && !is_yardstick) || character.loop_damping.empty()) continue;
-      plot::Line line{.name = character.name, .x = study.omega_delays, .y = {}, .is_background = is_yardstick};
+      plot::Line line{.name = character.name,
+                      .x = study.omega_delays,
+                      .y = {},
+                      .is_background = is_yardstick,
+                      .is_emphasised = character.is_ours};
       for (const double damping : character.loop_damping) line.y.push_back(100.0 * damping);
       panel.lines.push_back(std::move(line));
     }

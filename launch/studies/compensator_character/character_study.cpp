@@ -25,6 +25,7 @@ Character measured(const CompensationMethod& method, const CharacterStudy& study
   Character character;
   character.name = method.name;
   character.group = method.group;
+  character.is_ours = method.is_ours;
   character.on_pure_delay = responses(method, pure_delay_stand(), study.frequencies_hz);
   character.on_benchmark = responses(method, benchmark_stand(), study.frequencies_hz);
   character.noise = measured_noise_gain(method, benchmark_stand());

@@ -14,6 +14,7 @@ namespace hybridtest::character {
 struct Character {
   std::string name;
   MethodGroup group = MethodGroup::extrapolation;
+  bool is_ours = false;
   std::vector<std::complex<double>> on_pure_delay;  // by frequency; empty where the method does not fit the stand
   std::vector<std::complex<double>> on_benchmark;   // by frequency
   NoiseGain noise;                                  // on the benchmark stand

@@ -43,7 +43,7 @@ std::string floor_figure(std::span<const CandidateMeans> means) {
 /// Share of a candidate's runs that stay below a value.
 plot::Line distribution(const std::string& name, std::vector<double> values, std::size_t of) {
   std::ranges::sort(values);
-  plot::Line line{.name = name, .x = {}, .y = {}};
+  plot::Line line{.name = name, .x = {}, .y = {}, .is_emphasised = name == kOurs};
   for (std::size_t i = 0; i < values.size(); ++i) {
     line.x.push_back(values[i]);
     line.y.push_back(100.0 * static_cast<double>(i + 1) / static_cast<double>(of));

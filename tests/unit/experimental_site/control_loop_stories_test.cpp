@@ -222,6 +222,28 @@ TEST(ControlLoopStories, CapturesZeroOffsetsAtArmingAndTakesThemOff) {
   EXPECT_NEAR(measured[0].measurement.force_n[0], 0.0, 2.0);
 }
 
+TEST(ControlLoopStories, ZeroOffsetsAreTakenOffOnceFromAReadingThatAFaultLeavesAsItWas) {
+  ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
+  settings.captures_zero_offsets = true;
+  bool is_silent = false;
+  Bench bench{settings, [&](const ActuatorCommand&, RigFeedback& feedback) {
+                if (is_silent) return RigStatus::fault;  // the feedback stays the last good one
+                feedback.displacement_m[0] = 0.0123;
+                feedback.force_n[0] = -456.0;
+                return RigStatus::healthy;
+              }};
+  bench.ask(LoopRequest::Kind::arm);
+  for (int i = 0; i < 100; ++i) bench.advance();
+  bench.ask(LoopRequest::Kind::start);
+  bench.target(0, 0.0);
+  bench.advance();
+  is_silent = true;
+  for (int i = 0; i < 50; ++i) bench.advance();
+  // What the mean of 100 equal numbers is off them by rounding.
+  EXPECT_NEAR(bench.record.column_values("measured_displacement_m").back(), 0.0, 1e-15);
+  EXPECT_NEAR(bench.record.column_values("measured_force_n").back(), 0.0, 1e-10);
+}
+
 TEST(ControlLoopStories, OffsetsBeyondTheLimitsAreAFaultAndNotTakenOff) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::lockstep);
   settings.captures_zero_offsets = true;

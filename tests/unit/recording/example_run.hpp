@@ -24,6 +24,7 @@ struct ExampleRun {
   std::uint64_t site_dropped = 0;
   bool site_at_rest = false;
   bool site_skips_steps_100_to_102 = false;
+  bool site_has_loop_thread = false;
   bool with_test_row = true;
   StopReason stop_reason = StopReason::completed;
   int exit_code = 0;
@@ -99,8 +100,26 @@ struct ExampleRun {
   }
 
   void write_site(const std::filesystem::path& path) const {
-    RunFileWriter writer{path, header("storey_1", Role::experimental_site), site_tables()};
+    std::vector<TableLayout> tables = site_tables();
+    if (site_has_loop_thread) {
+      tables.push_back({"loop_timing",
+                        {{"starts", "-"},
+                         {"start_lateness_p50_us", "us"},
+                         {"start_lateness_p99_us", "us"},
+                         {"start_lateness_max_us", "us"},
+                         {"busy_p50_us", "us"},
+                         {"busy_p99_us", "us"},
+                         {"busy_max_us", "us"},
+                         {"overruns", "-"},
+                         {"memory_locked", "-"},
+                         {"fifo_priority", "-"},
+                         {"cpu", "-"}}});
+    }
+    RunFileWriter writer{path, header("storey_1", Role::experimental_site), tables};
     append_site(writer);
+    if (site_has_loop_thread) {
+      writer.append(2, std::vector{61440.0, 8.0, 21.0, 345.0, 5.0, 12.0, 99.0, 3.0, 1.0, 80.0, 1.0});
+    }
     writer.close();
   }
 

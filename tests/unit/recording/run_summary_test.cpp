@@ -247,6 +247,29 @@ TEST(RunSummary, TheJsonIsSiAndCompleteAndHasNullWhereNothingIsKnown) {
   EXPECT_EQ(json.at("participants").at(1).at("role"), "experimental_site");
 }
 
+TEST(RunSummary, TellsHowWellAControlLoopOnItsOwnThreadKeptItsTime) {
+  EXPECT_FALSE(summary_of({}).substructures[0].loop_timing.has_value());
+  ExampleRun run;
+  run.site_has_loop_thread = true;
+  const RunSummary summary = summary_of(run);
+  ASSERT_TRUE(summary.substructures[0].loop_timing.has_value());
+  EXPECT_FALSE(summary.substructures[1].loop_timing.has_value());
+  const LoopTimingSummary& timing = *summary.substructures[0].loop_timing;
+  EXPECT_EQ(timing.starts, 61440);
+  EXPECT_EQ(timing.start_lateness_us.p99, 21.0);
+  EXPECT_EQ(timing.busy_us.max, 99.0);
+  EXPECT_EQ(timing.overruns, 3);
+  EXPECT_TRUE(timing.memory_locked);
+  EXPECT_EQ(timing.fifo_priority, 80);
+  EXPECT_EQ(timing.cpu, 1);
+  EXPECT_THAT(printed(summary), HasSubstr("FIFO 80"));
+  std::ostringstream stream;
+  write_summary_json(summary, stream);
+  const auto json = nlohmann::json::parse(stream.str());
+  EXPECT_EQ(json.at("substructures").at(0).at("loop_timing").at("start_lateness_us").at("max"), 345.0);
+  EXPECT_TRUE(json.at("substructures").at(1).at("loop_timing").is_null());
+}
+
 TEST(RunSummary, ThePrintedFormStartsWithTheVerdictAndUsesEngineeringUnits) {
   const std::string text = printed(summary_of({}));
   EXPECT_TRUE(text.starts_with("COMPLETED  (exit 0)  two_storey\n")) << text;

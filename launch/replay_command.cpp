@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/config/error.hpp"
+#include "core/exit_code.hpp"
+#include "diagnosis/replay/replay.hpp"
+#include "launch/commands.hpp"
+#include "launch/read_recording.hpp"
+#include "launch/site_model_file.hpp"
+
+namespace hybridtest {
+namespace {
+
+struct ReplayOptions {
+  std::filesystem::path model;
+  std::string site;
+  std::filesystem::path recording;
+  std::filesystem::path out;
+};
+
+void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
+  fmt::print("  {:<18} {:<28} {:<28} {:>8} {:>8} {:>7}\n", "interface", "from", "to", "NRMSE", "floor", "share");
+  for (std::size_t dof = 0; dof < replays.size(); ++dof) {
+    if (replays.size() > 1) fmt::print("  degree of freedom {}\n", dof + 1);
+    for (const ReplayedChannel& channel : replays[dof]) {
+      fmt::print("  {:<18} {:<28} {:<28} {:>8.4f} {:>8.4f} {:>5.1f} %\n", channel.interface, column_name(channel.from),
+                 column_name(channel.to), channel.nrmse, channel.floor_nrmse, 100.0 * channel.share);
+    }
+  }
+}
+
+int replay_recording(const ReplayOptions& options) {
+  const SiteModelFile model = read_site_model(options.model, options.site);
+  const Recording recording = read_recording(options.recording, RecordingRole::held_out, options.site);
+  std::vector<std::vector<ReplayedChannel>> replays;
+  std::size_t channels = 0;
+  for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+    replays.push_back(replay(model.dofs[dof], recording, dof));
+    channels += replays.back().size();
+  }
+  if (channels == 0) {
+    fmt::print(stderr,
+               "{}: nothing to compare. A command with a measured displacement, or a measured displacement with a "
+               "measured force and a specimen in the model, would be.\n",
+               recording.file);
+    return kExitDataInvalid;
+  }
+  print_gaps(replays);
+  std::ofstream file{options.out, std::ios::binary};
+  file << replay_csv(recording, replays);
+  if (!file.flush()) throw ConfigError{"--out " + options.out.string() + ": cannot be written"};
+  fmt::print("  written to {}\n", options.out.string());
+  return kExitCompleted;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, CommandAction& action) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command =
+      app.add_subcommand("replay",
+                         "Drive a model of a site stage by stage with what was recorded, and print the gap of each\n"
+                         "interface. Exit code 4: the recording has nothing to compare.");
+  command->add_option("--model", options->model, "Model of the site: a rig section, or a scenario")->required();
+  command->add_option("--site", options->site, "Id of the substructure, where a scenario or run has several");
+  command->add_option("--recording", options->recording, "CSV or run directory")->required();
+  command->add_option("--out", options->out, "CSV for the recorded and predicted channels")->required();
+  command->callback([options, &action] { action = [options] { return replay_recording(*options); }; });
+}
+
+}  // namespace hybridtest

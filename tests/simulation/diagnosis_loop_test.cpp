@@ -1,0 +1,98 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "launch/diagnose_run.hpp"
+#include "recording/run_file_reader.hpp"
+#include "tests/simulation/kept_simulation.hpp"
+#include "tests/simulation/recorded_simulation.hpp"
+#include "tests/unit/recording/temporary_directory.hpp"
+
+/// Run, diagnose, add, run again: the gap is gone. The rig has a friction that the model beside it lacks.
+namespace hybridtest {
+namespace {
+
+const std::string kModel =
+    "transfer_system: {type: second_order, natural_frequency_hz: 15.0, damping_ratio: 0.9, delay_s: 0.004}, "
+    "specimen: {type: bilinear, stiffness_n_per_m: 4.0e6, yield_force_n: 40.0e3, hardening_ratio: 0.05}";
+const std::string kNoise = ", sensors: {displacement_noise_m: 1.0e-6, force_noise_n: 20.0, seed: 7}";
+const std::string kFriction = ", effects: [{interface: specimen, effect: coulomb_friction, friction_force_n: 6000}]";
+
+std::string in_rig(const std::string& rig) { return "substructures[storey_1].rig={type: simulated, " + rig + "}"; }
+
+class DiagnosisLoop : public testing::Test {
+ protected:
+  Scenario simulate(const std::string& run, std::vector<std::string> overrides) {
+    overrides.emplace_back("time.duration_s=8");
+    const Scenario scenario = shipped_scenario("two_storey_one_site", overrides);
+    prepare_run_directory(directory_ / run, scenario);
+    RecordedSimulation simulation{scenario, directory_ / run, std::size_t{1} << 14U};
+    SimulationSettings settings;
+    settings.seed = 1;
+    EXPECT_EQ(simulation.run(settings), StopReason::completed);
+    return scenario;
+  }
+  [[nodiscard]] std::vector<double> response(const std::string& run) const {
+    return RunFileReader{directory_ / run / "coordinator.h5"}.column("steps", "displacement_floor_1_m");
+  }
+  /// Root mean square of the difference over that of the real test.
+  [[nodiscard]] double gap(const std::string& run) const {
+    const std::vector<double> real = response("real");
+    const std::vector<double> other = response(run);
+    EXPECT_EQ(real.size(), other.size());
+    double squares = 0.0;
+    double whole = 0.0;
+    for (std::size_t i = 0; i < real.size(); ++i) {
+      squares += (real[i] - other[i]) * (real[i] - other[i]);
+      whole += real[i] * real[i];
+    }
+    return std::sqrt(squares / whole);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(DiagnosisLoop, WhatADiagnosisAddsClosesTheGap) {
+  const Scenario real =
+      simulate("real", {in_rig(kModel + kNoise + kFriction), "substructures[storey_1].model={" + kModel + "}"});
+  std::ostringstream said;
+  diagnose_run(real, directory_ / "real", said);
+  const std::filesystem::path diagnosis = directory_ / "real" / "diagnosis";
+  ASSERT_TRUE(std::filesystem::exists(diagnosis / "augmented_model.yaml")) << said.str();
+  EXPECT_TRUE(std::filesystem::exists(diagnosis / "diagnosis.json"));
+  EXPECT_TRUE(std::filesystem::exists(diagnosis / "diagnosis.html"));
+  EXPECT_THAT(said.str(), testing::HasSubstr("specimen: coulomb_friction"));
+
+  simulate("model", {in_rig(kModel)});
+  simulate("augmented", {in_rig("model: " + (diagnosis / "augmented_model.yaml").string())});
+  EXPECT_GT(gap("model"), 0.05) << "without the friction the building answers otherwise";
+  // What is left is the noise of the sensors, and of the friction what the fit leaves.
+  EXPECT_LT(gap("augmented"), 0.1 * gap("model")) << said.str();
+}
+
+TEST_F(DiagnosisLoop, ARealRigWithoutAModelCannotBeDiagnosed) {
+  const Scenario simulated = shipped_scenario("two_storey_one_site", {});
+  EXPECT_NO_THROW(require_models(simulated));
+  Scenario real = simulated;
+  for (SubstructureScenario& substructure : real.substructures) substructure.site.rig_type = "udp";
+  EXPECT_THAT([&] { require_models(real); }, testing::ThrowsMessage<ConfigError>(testing::HasSubstr("storey_1")));
+  for (SubstructureScenario& substructure : real.substructures) substructure.site.has_model = true;
+  EXPECT_NO_THROW(require_models(real));
+}
+
+TEST_F(DiagnosisLoop, ASiteThatRecordedElsewhereIsLeftOut) {
+  const Scenario scenario = shipped_scenario("two_storey_one_site", {});
+  prepare_run_directory(directory_ / "empty", scenario);
+  std::ostringstream said;
+  diagnose_run(scenario, directory_ / "empty", said);
+  EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its records are not in"));
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,84 @@
+#include "diagnosis/identification/effect_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+using enum EffectInterface;
+
+double spring_n(double time_s) { return kMadeStiffness_n_per_m * made_motion_m(time_s); }
+
+IdentificationProblem problem_of(const Recording& recording) {
+  return make_problem(made_model(), segments_of(recording, 0, 0));
+}
+
+TEST(FitEffects, FindsADelayOfTheActuator) {
+  const double delay_s = 0.0137;
+  const auto measured_m = [&](double t) { return t > delay_s ? made_motion_m(t - delay_s) : 0.0; };
+  const auto problem =
+      problem_of(made_recording(measured_m, [&](double t) { return kMadeStiffness_n_per_m * measured_m(t); }));
+  const FitOutcome fit = fit_effects(problem, {find_effect(transfer_system, "delay")}, false);
+  // Noise of 1e-6 m on a velocity of 0.1 m/s, 6000 times: 1e-7 s; the line interpolates between samples of 2 ms.
+  EXPECT_NEAR(fit.effects[0].values[0], delay_s, 2e-5);
+  EXPECT_FALSE(fit.parameters[0][0].at_bound);
+}
+
+TEST(FitEffects, FindsADryFrictionMadeByTheSignOfTheVelocity) {
+  const auto friction_n = [](double t) {
+    const double velocity = made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4);
+    return velocity == 0.0 ? 0.0 : std::copysign(3000.0, velocity);
+  };
+  const auto problem = problem_of(made_recording(made_motion_m, [&](double t) { return spring_n(t) + friction_n(t); }));
+  const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "coulomb_friction")}, false);
+  // The pre-sliding element turns over a way instead of at once, some samples in each of 30 reversals.
+  EXPECT_NEAR(fit.effects[0].values[0], 3000.0, 0.01 * 3000.0);
+}
+
+TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
+  const auto problem = problem_of(made_recording(made_motion_m, [](double t) {
+    const double velocity = made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4);
+    return spring_n(t) - (velocity == 0.0 ? 0.0 : std::copysign(3000.0, velocity));
+  }));
+  const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "coulomb_friction")}, false);
+  EXPECT_EQ(fit.effects[0].values[0], 0.0);  // friction that pushes is none
+  EXPECT_TRUE(fit.parameters[0][0].at_bound);
+}
+
+TEST(FitEffects, HeldOutBlocksAreThoseOfAFitWithoutThem) {
+  const auto problem = problem_of(made_recording(
+      made_motion_m, [](double t) { return spring_n(t) + 500.0 * std::sin(3.0 * t); }, 200.0));
+  const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "stiffness_error")}, false);
+  const FitSegment& segment = problem.segments.back();
+  const Eigen::VectorXd residual = segment.measured - segment.baseline;
+  const Eigen::VectorXd displacement = segment.nuisance.col(0);
+  for (std::size_t b = 0; b + 1 < segment.block_begins.size(); ++b) {
+    const Eigen::Index first = segment.block_begins[b];
+    const Eigen::Index size = segment.block_begins[b + 1] - first;
+    const auto x = displacement.segment(first, size);
+    const auto r = residual.segment(first, size);
+    const double stiffness = (displacement.dot(residual) - x.dot(r)) / (displacement.squaredNorm() - x.squaredNorm());
+    const double squares = (r - stiffness * x).squaredNorm();
+    // The ridges of 1e-9 that keep singular fits finite.
+    EXPECT_NEAR(fit.segments.back().held_out_squares[b], squares, 1e-6 * squares) << b;
+    EXPECT_GT(squares, 0.0);
+  }
+}
+
+TEST(FitEffects, RandomStretchesAreNotFittedIntoADetection) {
+  const auto problem = problem_of(made_recording(made_motion_m, spring_n));
+  const FitOutcome nothing = fit_nothing(problem, false);
+  for (const char* name : {"stiffness_error", "viscous_damping", "cubic_stiffness", "coulomb_friction"}) {
+    const FitOutcome fit = fit_effects(problem, {find_effect(specimen, name)}, false);
+    const FitSegment& segment = problem.segments.back();
+    // Held out, a parameter that noise has drawn makes the residual larger by about 1 / N, not smaller.
+    EXPECT_GT(fit.segments.back().held_out_mean_square(segment),
+              0.995 * nothing.segments.back().held_out_mean_square(segment))
+        << name;
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest
