@@ -57,11 +57,11 @@ Lateness read_cyclictest(const std::filesystem::path& log) {
     lateness.count += count;
   }
   if (lateness.count == 0) throw std::runtime_error{"cyclictest gave no histogram; see " + log.string()};
-  long long so_far = 0;
+  double so_far = 0.0;
   for (const auto& [us, count] : bins) {
     if (so_far < 0.5 * static_cast<double>(lateness.count)) lateness.p50_us = static_cast<double>(us);
     if (so_far < 0.99 * static_cast<double>(lateness.count)) lateness.p99_us = static_cast<double>(us);
-    so_far += count;
+    so_far += static_cast<double>(count);
   }
   return lateness;
 }

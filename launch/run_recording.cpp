@@ -116,6 +116,16 @@ void add_control_table(RawRecording& raw, const RunFileReader& site) {
   raw.time_s = site.column("control", std::string{kTimeColumn});
 }
 
+/// Leaves out what comes after the last target: the site returning to rest, alone and without its
+/// compensator, is no part of the test.
+void cut_return(RawRecording& raw, const RunFileReader& site) {
+  const std::vector<double> model_time_s = site.column("control", "model_time_s");
+  const auto last = std::ranges::max_element(model_time_s);  // the first of equals: path time stands still from there
+  const auto samples = std::min(raw.time_s.size(), static_cast<std::size_t>(last - model_time_s.begin()) + 1);
+  raw.time_s.resize(samples);
+  for (RawColumn& column : raw.columns) column.values.resize(samples);
+}
+
 }  // namespace
 
 std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
@@ -132,6 +142,7 @@ RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_
   add_control_table(raw, file);
   const std::filesystem::path coordinator = run_file(run, kCoordinatorId);
   if (std::filesystem::exists(coordinator)) add_sent(raw, file, scenario, substructure, coordinator);
+  cut_return(raw, file);
   return raw;
 } catch (const RecordingError& error) {
   throw ConfigError{error.what()};

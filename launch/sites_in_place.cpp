@@ -34,6 +34,8 @@ std::optional<std::string> file_of_model(Section& substructure) {
 std::vector<std::string> with_sites_in_place(const std::filesystem::path& scenario,
                                              std::vector<std::string> overrides) {
   config::Document document = config::Document::load(scenario, overrides);
+  // What is wrong already is listed, with everything else, by who reads the scenario itself.
+  if (document.has_errors()) return overrides;
   Section root = document.root();
   if (!root.has("substructures")) return overrides;
   std::vector<std::string> in_place;

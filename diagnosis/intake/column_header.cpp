@@ -9,8 +9,8 @@
 namespace hybridtest {
 namespace {
 
-constexpr std::array<std::string_view, 5> kLeftAside{"sample", "model_time_s", "compensated_force_n", "energy_error_j",
-                                                     "faults"};
+constexpr std::array<std::string_view, 6> kLeftAside{"sample",         "model_time_s",      "compensated_force_n",
+                                                     "energy_error_j", "tracking_lag_sine", "faults"};
 constexpr std::string_view kPredicted = "predicted_";
 
 Channel channel_at(std::size_t index) { return static_cast<Channel>(index); }

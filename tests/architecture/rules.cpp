@@ -68,7 +68,7 @@ const std::vector<Library>& libraries() {
       {"DDS",
        {"fastdds/", "fastrtps/", "fastcdr/", "hybridtest.h", "hybridtestPubSubTypes.h"},
        {"transport/fast_dds", "idl", "benchmarks", "tests/contract", "tests/fuzz", "tests/unit/transport"}},
-      {"yaml-cpp", {"yaml-cpp/"}, {"core/config"}},
+      {"yaml-cpp", {"yaml-cpp/"}, {"core/config", "tests/unit/launch"}},
       {"HDF5", {"hdf5.h", "H5", "hdf5/", "hdf5_hl.h"}, {"recording", "tests"}},
       {"nlohmann-json", {"nlohmann/"}, {"recording", "diagnosis", "tests"}},
       {"spdlog", {"spdlog/"}, {"launch"}},

@@ -39,7 +39,7 @@ class BoucWenHysteresis final : public Effect {
                                                           .low = 1.0,
                                                           .high = 20.0,
                                                           .search_low = 1.0,
-                                                          .search_high = 5.0,
+                                                          .search_high = 1.0,
                                                           .neutral = kNoNeutral,
                                                           .fallback = 1.0},
                                           EffectParameter{.name = "dissipation_share",
@@ -60,9 +60,8 @@ class BoucWenHysteresis final : public Effect {
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
     const double way = (motion.displacement_m - displacement_m_) / yield_displacement_m_;
     displacement_m_ = motion.displacement_m;
-    z_ = carried_along(z_, way, kSubstep, [this](double z, double direction) {
-      const double share = exponent_ == 1.0 ? std::abs(z) : std::pow(std::abs(z), exponent_);
-      return 1.0 - (z * direction < 0.0 ? unloading_ : 1.0) * share;
+    z_ = exponent_ == 1.0 ? exponential(way) : carried_along(z_, way, kSubstep, [this](double z, double direction) {
+      return 1.0 - (z * direction < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(z), exponent_);
     });
     force_n += yield_force_n_ * z_;
   }
@@ -70,6 +69,26 @@ class BoucWenHysteresis final : public Effect {
 
  private:
   static constexpr double kSubstep = 0.1;
+  /// Below this the unloading branch is as good as straight.
+  static constexpr double kStraight = 1e-9;
+
+  /// z after the way, exact for n = 1; w is z counted positive in the direction of motion.
+  [[nodiscard]] double exponential(double way) const noexcept {
+    double left = std::abs(way);
+    double w = way < 0.0 ? -z_ : z_;
+    if (w < 0.0) {
+      const bool straight = std::abs(unloading_) < kStraight;
+      const double to_zero = straight ? -w : -std::log1p(unloading_ * w) / unloading_;
+      if (left < to_zero) {
+        w = straight ? w + left : w * std::exp(unloading_ * left) + std::expm1(unloading_ * left) / unloading_;
+        return way < 0.0 ? -w : w;
+      }
+      left -= to_zero;
+      w = 0.0;
+    }
+    w = 1.0 - (1.0 - w) * std::exp(-left);
+    return way < 0.0 ? -w : w;
+  }
 
   double yield_force_n_;
   double yield_displacement_m_;

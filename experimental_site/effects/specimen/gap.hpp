@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/parameter_limits.hpp"
+#include "mechanics/gap_spring.hpp"
 
 namespace hybridtest {
 
@@ -25,9 +25,8 @@ class Gap final : public Effect {
 
   Gap(std::span<const double> values, double /*sample_period_s*/) : gap_m_{values[0]} {}
   void before(const StageSample& /*sample*/, Motion& motion) noexcept override {
-    const double inside_m = std::clamp(motion.displacement_m, -gap_m_, gap_m_);
-    if (inside_m == motion.displacement_m) motion.velocity_m_per_s = motion.acceleration_m_per_s2 = 0.0;
-    motion.displacement_m -= inside_m;
+    motion.displacement_m = beyond_gap_m(motion.displacement_m, gap_m_);
+    if (motion.displacement_m == 0.0) motion.velocity_m_per_s = motion.acceleration_m_per_s2 = 0.0;
   }
   void reset() noexcept override {}
 

@@ -33,8 +33,9 @@ TEST(FitEffects, FindsADryFrictionMadeByTheSignOfTheVelocity) {
   };
   const auto problem = problem_of(made_recording(made_motion_m, [&](double t) { return spring_n(t) + friction_n(t); }));
   const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "coulomb_friction")}, false);
-  // The pre-sliding element turns over a way instead of at once, some samples in each of 30 reversals.
-  EXPECT_NEAR(fit.effects[0].values[0], 3000.0, 0.01 * 3000.0);
+  // The pre-sliding element turns over a way instead of at once, and averaging over four samples rounds the sign:
+  // a sample or two of about sixty between reversals.
+  EXPECT_NEAR(fit.effects[0].values[0], 3000.0, 0.02 * 3000.0);
 }
 
 TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
