@@ -190,12 +190,7 @@ SimulatedSiteReading read_simulated_site(Section& section, int dofs, AbsentPart 
 }
 
 RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_noise_stream) {
-  const bool has_model = section.include("model");
-  // Of the site beside its rig, and here the scenario's own.
-  for (const char* key : {"name", "control_rate_hz", "compensator"}) {
-    if (has_model) static_cast<void>(section.has_optional(key));
-  }
-  SimulatedSiteReading site = read_simulated_site(section, dofs, has_model ? AbsentPart::ideal : AbsentPart::refused);
+  SimulatedSiteReading site = read_simulated_site(section, dofs, AbsentPart::refused);
   site.dofs.front().noise.first_stream = first_noise_stream;
   RigReading reading;
   reading.type = "simulated";

@@ -24,7 +24,7 @@ enum class AbsentPart { refused, ideal };
 
 [[nodiscard]] SimulatedSiteReading read_simulated_site(config::Section& section, int dofs, AbsentPart absent);
 
-/// The rest of a rig's section of `type: simulated`, or of the site file that its key `model` names.
+/// The rest of a rig's section of `type: simulated`.
 /// @param first_noise_stream   two for each actuator from here on.
 [[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs, std::uint64_t first_noise_stream);
 

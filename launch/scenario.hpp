@@ -46,7 +46,7 @@ struct SiteScenario {
   std::string rig_type;
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
-  bool has_model = false;            // of the site, beside its rig: what a diagnosis of the run compares with
+  bool has_model = false;               // of the site, beside its rig: what a diagnosis of the run compares with
   double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
   double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
 };

@@ -13,8 +13,8 @@ namespace hybridtest {
 
 /// A file that says what is known of a site: a scenario's `rig` section at the top level (`type` left
 /// out if one likes), the same under `rig`, or a whole scenario. Beside it, optional: `name`,
-/// `compensator`, `control_rate_hz`. Of a scenario's site, `model` goes before `rig`. What is left out: an ideal transfer system, a specimen without
-/// force, no compensator.
+/// `compensator`, `control_rate_hz`. Of a scenario's site, `model` goes before `rig`. What is left out: an ideal
+/// transfer system, a specimen without force, no compensator.
 struct SiteModelFile {
   std::filesystem::path file;
   std::string name;              // of the site; empty when the file gives none

@@ -10,9 +10,9 @@ namespace {
 
 constexpr config::Range kShare{.low = 0.0, .high = 1.0};
 constexpr config::Range kShareBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
-constexpr double kSubstepsPerLength = 16.0;
+constexpr double kSubstepsPerLength = 64.0;
 /// A step that crosses the whole loop 60 times; beyond, z has long reached its limit.
-constexpr int kMaxSubsteps = 2048;
+constexpr int kMaxSubsteps = 8192;
 
 }  // namespace
 

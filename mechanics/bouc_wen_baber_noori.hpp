@@ -11,12 +11,12 @@ namespace hybridtest {
 ///     F = alpha k x + (1 - alpha) k z,                     de = (1 - alpha) k z dx
 ///     dz = h / (1 + d_eta e) (Ao - (1 + d_nu e) (gamma + beta sign(z dx)) |z|^n) dx
 ///     h = 1 - zeta1 exp(-(z sign(dx) - q zu)^2 / zeta2^2)
-///     zeta1 = zeta_s (1 - exp(-p e)),  zeta2 = (psi + d_psi e) (lambda + zeta1),  zu^n = Ao / ((1 + d_nu e) (gamma +
-///     beta))
+///     zeta1 = zeta_s (1 - exp(-p e)),  zeta2 = (psi + d_psi e) (lambda + zeta1)
+///     zu^n = Ao / ((1 + d_nu e) (gamma + beta)),  the limit of |z|
 ///
 /// Rate-independent: between two exchanges x is taken to move one way, and the equation is integrated
-/// along that way by the classical Runge-Kutta method in substeps of at most a sixteenth of zu and of
-/// zeta2, to about 1e-4 of zu (at the kink where z changes sign).
+/// along that way by the classical Runge-Kutta method in substeps of at most a 64th of zu and of
+/// zeta2, to about 1e-5 of zu (at the kink where z changes sign).
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {

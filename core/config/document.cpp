@@ -6,7 +6,6 @@
 #include "core/config/override.hpp"
 #include "core/config/section.hpp"
 #include "core/config/section_state.hpp"
-#include "core/config/value_reader.hpp"
 #include "core/config/wording.hpp"
 #include "core/config/yaml_reader.hpp"
 
@@ -55,38 +54,7 @@ std::unique_ptr<DocumentState> read_document(std::string_view text, std::string 
   return state;
 }
 
-/// Reports what is wrong at the key that names the file or, inside it, where it is.
-/// @return null then.
-const Node* read_included(DocumentState& state, const std::filesystem::path& file, const Node& named_by) {
-  std::string text;
-  try {
-    text = read_file(file);
-  } catch (const ConfigError& error) {
-    state.report({named_by.place, error.what()});
-    return nullptr;
-  }
-  Source& source = state.sources.emplace_back();
-  source.name = file.string();
-  std::vector<Finding> findings;
-  auto root = read_yaml(text, source, "", kMaxDepth, findings);
-  const bool is_mapping = root && root->kind == Node::Kind::mapping;
-  if (root && !is_mapping)
-    findings.push_back({root->place, "expected a mapping (key: value) at the top, found " + described(*root)});
-  for (Finding& finding : findings) state.report(std::move(finding));
-  return is_mapping ? &state.included.emplace_back(std::move(*root)) : nullptr;
-}
-
 }  // namespace
-
-bool Section::include(std::string_view key) {
-  const Node* const node = state_->read(key);
-  if (node == nullptr) return false;
-  const auto file = ValueReader{*state_}.text(*node, state_->path_of(key), "the name of a file");
-  if (!file) return false;
-  const Node* const mapping = read_included(state_->document(), state_->document().directory / *file, *node);
-  if (mapping != nullptr) state_->include(*mapping);
-  return mapping != nullptr;
-}
 
 Document Document::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return Document{read_document(read_file(file), file.string(), overrides)};

@@ -93,12 +93,6 @@ class Section {
   /// Document::effective().
   [[nodiscard]] std::string effective(std::string_view key = {}) const;
 
-  /// Takes in the file that the optional key names, relative to this one: its keys are read as if they
-  /// stood here, where these have none of that name. The key itself is left out of effective(), which has what was
-  /// taken in instead.
-  /// @return false when there is no such key, or, which is an error, no such file.
-  bool include(std::string_view key);
-
   /// Reports at the key (or, with an empty or absent key, at the section itself).
   void error(std::string_view key, std::string what);
   /// Reports every key that was not read. Call once everything known has been asked for.

@@ -31,11 +31,6 @@ SectionState::SectionState(DocumentState& document, const Node* node, std::strin
   for (const Node& child : node_->children) children_.emplace(child.key, &child);
 }
 
-void SectionState::include(const Node& mapping) {
-  included_.push_back(&mapping);
-  for (const Node& child : mapping.children) children_.emplace(child.key, &child);
-}
-
 const Node* SectionState::find(std::string_view key) const {
   const auto found = children_.find(key);
   return found == children_.end() ? nullptr : found->second;
@@ -69,14 +64,10 @@ void SectionState::report_unknown_keys() {
   if (node_ == nullptr) return;
   std::vector<std::string> known;
   for (const Record& record : records_) known.push_back(record.key);
-  const auto report_unknown = [&](const Node& mapping) {
-    for (const Node& child : mapping.children) {
-      if (position_of_key_.contains(child.key) || is_full()) continue;
-      report(child.key_place, path_of(shown(child.key)), "unknown key" + name_advice(child.key, known, "known here"));
-    }
-  };
-  report_unknown(*node_);
-  for (const Node* mapping : included_) report_unknown(*mapping);
+  for (const Node& child : node_->children) {
+    if (position_of_key_.contains(child.key) || is_full()) continue;
+    report(child.key_place, path_of(shown(child.key)), "unknown key" + name_advice(child.key, known, "known here"));
+  }
 }
 
 const SectionState::Value* SectionState::recorded(std::string_view key) const {

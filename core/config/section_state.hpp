@@ -35,10 +35,6 @@ class SectionState {
   /// The same, and from now on the key is known.
   [[nodiscard]] const Node* read(std::string_view key);
 
-  /// Adds the keys of a mapping, which outlives this, to those of the section; of one name the first stands.
-  void include(const Node& mapping);
-  [[nodiscard]] DocumentState& document() noexcept { return document_; }
-
   /// @return a section of the same document.
   [[nodiscard]] std::shared_ptr<SectionState> open(const Node* node, std::string path, Place place) const;
 
@@ -84,7 +80,6 @@ class SectionState {
   std::string path_;
   Place place_;
   std::unordered_map<std::string_view, const Node*> children_;
-  std::vector<const Node*> included_;
   std::vector<Record> records_;  // in the order first read
   std::unordered_map<std::string, std::size_t> position_of_key_;
   std::vector<std::string> needed_;
@@ -105,7 +100,6 @@ struct DocumentState {
   [[nodiscard]] std::vector<ConfigIssue> config_issues() const;
 
   std::deque<Source> sources;  // stable addresses
-  std::deque<Node> included;   // likewise
   Node root;
   std::vector<Issue> issues;
   std::unordered_set<std::string> known_issues;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "launch/studies/compensator_character/character_study.hpp"
-#include "launch/studies/compensator_character/frequency_response.hpp"
 #include "diagnosis/report/plot/dot_figure.hpp"
 #include "diagnosis/report/plot/line_figure.hpp"
+#include "launch/studies/compensator_character/character_study.hpp"
+#include "launch/studies/compensator_character/frequency_response.hpp"
 
 namespace hybridtest::character {
 namespace {

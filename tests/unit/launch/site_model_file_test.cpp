@@ -110,24 +110,5 @@ TEST_F(SiteFile, AnEffectCanConcernOneDegreeOfFreedom) {
   EXPECT_EQ(force_at(site.dofs[1], {.velocity_m_per_s = 1.0, .acceleration_m_per_s2 = 1.0}), 8.0);
 }
 
-TEST(SiteFileAsRig, TakesThePlaceOfTheRigAndIsInTheEffectiveScenario) {
-  const ScenarioFile scenario;
-  const std::string parts =
-      "transfer_system: {type: delay, delay_s: 0.002}\n"
-      "specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n"
-      "effects: [{interface: specimen, effect: inertia, mass_kg: 95.0}]\n";
-  std::ofstream{scenario.directory() / "site.yaml"} << "name: storey\ncompensator: {type: none}\n" << parts;
-  const std::string rig = "substructures[storey_1].rig=";
-  const Scenario with = scenario.read(kScenarioText, {rig + "{type: simulated, model: site.yaml}"});
-  EXPECT_THAT(with.effective, testing::HasSubstr("mass_kg: 95"));
-  EXPECT_THAT(with.effective, testing::Not(testing::HasSubstr("site.yaml")));
-  EXPECT_EQ(with.digest, scenario.read(with.effective).digest);  // it can be run again without the file
-  std::ofstream{scenario.directory() / "site.yaml"} << parts << "nonsense: 1\n";
-  EXPECT_THAT(scenario.errors(kScenarioText, {rig + "{type: simulated, model: site.yaml}"}),
-              testing::ElementsAre(testing::HasSubstr("site.yaml:4:1: substructures[0].rig.nonsense: unknown key")));
-  EXPECT_THAT(scenario.errors(kScenarioText, {rig + "{type: simulated, model: no_such.yaml}"}),
-              testing::Contains(testing::HasSubstr("cannot be read")));
-}
-
 }  // namespace
 }  // namespace hybridtest
