@@ -68,7 +68,8 @@ void weaken(const PlantEffect& effect, const MotionHistory& motion, History& for
   } else if (effect.name == "pinching") {
     for (std::size_t i = 0; i < x.size(); ++i) {
       const double place = x[i] / effect.of("width_m");
-      force[i] *= 1.0 - effect.of("pinching_ratio") * std::exp(-place * place);
+      const double square = place * place;
+      force[i] *= 1.0 - effect.of("pinching_ratio") / (1.0 + square * square);
     }
   } else if (effect.name == "fracture") {
     for (std::size_t i = 0; i < x.size(); ++i) {
