@@ -35,8 +35,9 @@ std::vector<GapRegion> regions_holding(const MotionMap& map, double share) {
   for (const std::size_t i : order) {
     if (held >= share || map.cells[i].share <= 0.0) break;
     held += map.cells[i].share;
+    const std::size_t whole_rows = i / map.displacement_bins;
     const auto column = static_cast<double>(i % map.displacement_bins);
-    const auto row = static_cast<double>(i / map.displacement_bins);
+    const auto row = static_cast<double>(whole_rows);
     regions.push_back({.displacement_low_m = column * width_m,
                        .displacement_high_m = (column + 1.0) * width_m,
                        .velocity_low_m_per_s = row * width_m_per_s,

@@ -57,7 +57,8 @@ std::vector<double> cycles_completed(std::size_t samples, const std::vector<Reve
   std::size_t turns = 0;
   for (std::size_t i = 0; i < samples; ++i) {
     while (turns < reversals.size() && reversals[turns].sample <= i) ++turns;
-    cycles[i] = static_cast<double>(turns / 2);
+    const std::size_t whole_cycles = turns / 2;
+    cycles[i] = static_cast<double>(whole_cycles);
   }
   return cycles;
 }

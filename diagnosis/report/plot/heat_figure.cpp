@@ -33,8 +33,9 @@ std::string to_svg(const HeatFigure& figure) {
   SvgCanvas canvas{figure.width, figure.height};
   canvas.text({box.left, box.top - 10.0}, figure.title, Anchor::start, 13.0, true);
   for (std::size_t i = 0; i < figure.shares.size(); ++i) {
+    const std::size_t row = i / columns;
     const Box cell{box.left + static_cast<double>(i % columns) * cell_width,
-                   box.bottom() - static_cast<double>(i / columns + 1) * cell_height, cell_width, cell_height};
+                   box.bottom() - static_cast<double>(row + 1) * cell_height, cell_width, cell_height};
     const double share = figure.shares[i];
     canvas.bar(cell, share < 0.0 ? "#f3f3f3" : shade(most > 0.0 ? share / most : 0.0));
     if (share >= 0.005) {

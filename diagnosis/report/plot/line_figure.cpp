@@ -178,13 +178,15 @@ std::string to_svg(const LineFigure& figure) {
   const LegendLayout layout = layout_of(legend, width);
   SvgCanvas canvas{width, panels_height + layout.height};
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::size_t row = i / columns;
     const Box outer{static_cast<double>(i % columns) * figure.panel_width,
-                    static_cast<double>(i / columns) * figure.panel_height, figure.panel_width, figure.panel_height};
+                    static_cast<double>(row) * figure.panel_height, figure.panel_width, figure.panel_height};
     PanelPainter{canvas, figure.panels[i], outer}.paint(legend);
   }
   for (std::size_t i = 0; i < legend.size(); ++i) {
     const double x = kLeft + static_cast<double>(i % layout.per_row) * layout.entry_width;
-    const double y = panels_height + 12.0 + static_cast<double>(i / layout.per_row) * kLegendRow;
+    const std::size_t row = i / layout.per_row;
+    const double y = panels_height + 12.0 + static_cast<double>(row) * kLegendRow;
     canvas.line({x, y - 4.0}, {x + 30.0, y - 4.0}, legend[i].stroke);
     canvas.text({x + 36.0, y}, legend[i].name, Anchor::start);
   }
