@@ -21,13 +21,6 @@ namespace {
 using report::RankedCause;
 using report::Verdict;
 
-/// A model without a law or an effect at the specimen makes no statement about its force.
-bool is_modelled(const SiteModel& model, const Segment& segment) {
-  if (segment.to != Channel::measured_force || model.make_law) return true;
-  return std::ranges::any_of(
-      model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
-}
-
 /// Where the model has inertia, the force follows the acceleration, which no displacement sensor measures well: windows
 /// as wide as the displacement bears smear it, narrow ones drown it in noise. The width is then the one with which
 /// the model comes nearest to the force.

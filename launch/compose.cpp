@@ -136,12 +136,6 @@ std::vector<Maker<Law>> read_laws(Section& section, std::string_view key) {
   return makers;
 }
 
-void expect_count(Section& section, std::string_view key, std::size_t found, int expected) {
-  if (std::cmp_equal(found, expected)) return;
-  section.error(key, std::to_string(found) + " given; expected " + std::to_string(expected) +
-                         ", one for each interface degree of freedom");
-}
-
 /// A full stiffness: a number for one degree of freedom, a matrix, or a Matrix Market file.
 std::function<Eigen::MatrixXd()> read_stiffness(Section& section, int dofs, const std::filesystem::path& directory) {
   if (section.has("matrix_market")) {
@@ -183,6 +177,12 @@ Maker<SubstructureModel> read_shear_building(Section& section, int dofs) {
 }
 
 }  // namespace
+
+void expect_count(Section& section, std::string_view key, std::size_t found, int expected) {
+  if (std::cmp_equal(found, expected)) return;
+  section.error(key, std::to_string(found) + " given; expected " + std::to_string(expected) +
+                         ", one for each interface degree of freedom");
+}
 
 Maker<Law> read_law(Section section) { return read_type(section, laws()); }
 

@@ -27,6 +27,9 @@ namespace hybridtest {
 template <class Part>
 using Maker = std::function<std::unique_ptr<Part>()>;
 
+/// Reports at `key` when not one was found for each interface degree of freedom.
+void expect_count(config::Section& section, std::string_view key, std::size_t found, int expected);
+
 [[nodiscard]] Maker<Law> read_law(config::Section section);
 /// A law or `none`, which is an empty maker: a specimen without a force of its own.
 [[nodiscard]] Maker<Law> read_specimen_law(config::Section section);

@@ -107,12 +107,6 @@ TransferSystemReading read_transfer_system(Section section) {
                                                     {"servo_hydraulic", read_servo_hydraulic}});
 }
 
-void expect_count(Section& section, std::string_view key, std::size_t found, int expected) {
-  if (std::cmp_equal(found, expected)) return;
-  section.error(key, std::to_string(found) + " given; expected " + std::to_string(expected) +
-                         ", one for each interface degree of freedom");
-}
-
 void read_transfer_systems(Section& section, SimulatedSiteReading& site) {
   std::vector<TransferSystemReading> readings;
   for (const Section& entry : section.sections("transfer_system", true)) {

@@ -123,4 +123,10 @@ std::vector<Segment> segments_of(const Recording& recording, std::size_t dof_ind
   return segments;
 }
 
+bool is_modelled(const SiteModel& model, const Segment& segment) {
+  if (segment.to != Channel::measured_force || model.make_law) return true;
+  return std::ranges::any_of(
+      model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
+}
+
 }  // namespace hybridtest

@@ -43,6 +43,9 @@ struct Segment {
 /// stays as it is.
 [[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
 
+/// The model says something of `to`: of a force it does only with a law or an effect of the specimen.
+[[nodiscard]] bool is_modelled(const SiteModel& model, const Segment& segment);
+
 /// What the site predicts for `to`, in free simulation over the whole segment.
 /// @param added   effects beyond the model's own, behind them.
 /// @throws ConfigError for parameters that an effect refuses.

@@ -9,12 +9,6 @@
 namespace hybridtest {
 namespace {
 
-bool says_something_of(const SiteModel& model, const Segment& segment) {
-  if (segment.to != Channel::measured_force || model.make_law) return true;
-  return std::ranges::any_of(
-      model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
-}
-
 ReplayedChannel replayed(const SiteModel& model, const Segment& segment) {
   ReplayedChannel channel{.interface = name_of(segment.interface),
                           .from = segment.from,
@@ -75,7 +69,7 @@ std::vector<CsvColumn> columns_of(const Recording& recording,
 std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof) {
   std::vector<ReplayedChannel> channels;
   for (const Segment& segment : segments_of(recording, dof, 0)) {
-    if (says_something_of(model, segment)) channels.push_back(replayed(model, segment));
+    if (is_modelled(model, segment)) channels.push_back(replayed(model, segment));
   }
   share_out(channels);
   return channels;
