@@ -31,6 +31,9 @@ inline constexpr double kNuisanceCost = 3.0;
 inline constexpr double kSlightlyWrong = 0.25;
 /// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
 inline constexpr double kSensorPrior = 1.0;
+/// By how much an effect has to be better for each parameter that it has more than another [nats]: of two that do
+/// equally well on data not fitted, the simpler one is meant.
+inline constexpr double kParameterPrior = 2.0;
 /// An effect so far behind the best one on the coarse record is not looked at again [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are refitted together with the first.
@@ -56,6 +59,8 @@ inline constexpr double kGapOverFloor = 0.3;
 inline constexpr double kUnknownOverFloor = 2.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
+/// Beside a gap of more than this multiple of its floor smaller ones count as none.
+inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;

@@ -106,7 +106,7 @@ double noise_floor(const SiteModel& model, const Segment& segment) {
   double squares = 0.0;
   const std::vector<double> noise = predicted_noise(model, segment);
   for (const double value : noise) squares += value * value / static_cast<double>(noise.size());
-  return std::hypot(segment.measured_noise, std::sqrt(squares));
+  return std::hypot(std::max(segment.measured_noise, segment.step_noise), std::sqrt(squares));
 }
 
 }  // namespace hybridtest

@@ -7,6 +7,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/signals/local_polynomial.hpp"
+#include "diagnosis/traces/reading_steps.hpp"
 
 namespace hybridtest {
 namespace {
@@ -28,13 +29,29 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// One draw of white noise of that level, smoothed as the signal is.
-std::vector<Motion> smoothed_noise(const LocalPolynomial& polynomial, double level, std::size_t samples) {
+/// What smoothing leaves wrong in a motion: one draw of white noise of that level, smoothed as the signal is, and what
+/// smoothing has taken off the signal, which is about what smoothing once more takes off.
+std::vector<Motion> left_wrong(const LocalPolynomial& polynomial, double level, const std::vector<Motion>& smoothed) {
   Random random{kNoiseSeed};
-  std::vector<double> noise(samples);
+  std::vector<double> noise(smoothed.size());
+  std::vector<double> displacement_m(smoothed.size());
   for (double& value : noise) value = level * random.normal();
-  return polynomial.motion(noise);
+  std::ranges::transform(smoothed, displacement_m.begin(), &Motion::displacement_m);
+  std::vector<Motion> wrong = polynomial.motion(noise);
+  const std::vector<Motion> twice = polynomial.motion(displacement_m);
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    wrong[i].displacement_m += twice[i].displacement_m - smoothed[i].displacement_m;
+    wrong[i].velocity_m_per_s += twice[i].velocity_m_per_s - smoothed[i].velocity_m_per_s;
+    wrong[i].acceleration_m_per_s2 += twice[i].acceleration_m_per_s2 - smoothed[i].acceleration_m_per_s2;
+  }
+  return wrong;
 }
+
+/// Standard deviation of an even error between half a step each way.
+double step_noise(std::span<const double> values) { return steps_of_readings(values).step / std::sqrt(12.0); }
+
+/// Of a signal that is to be smoothed: what is white in it, or what a coarse converter adds, whichever is more.
+double input_noise(std::span<const double> values) { return std::max(white_noise_level(values), step_noise(values)); }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
                         Channel to) {
@@ -52,9 +69,11 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
   } else {
-    segment.noise = smoothed_noise(polynomial, white_noise_level(dof.of(from)), segment.input.size());
+    segment.input_noise = input_noise(dof.of(from));
+    segment.noise = left_wrong(polynomial, segment.input_noise, segment.input);
   }
   segment.measured_noise = white_noise_level(segment.measured);
+  if (to >= Channel::measured_displacement) segment.step_noise = step_noise(segment.measured);
   return segment;
 }
 
@@ -86,7 +105,7 @@ Segment with_half_width(const Segment& segment, const DofRecording& dof, std::si
   const LocalPolynomial polynomial{half_width, segment.period_s};
   Segment result = segment;
   result.input = polynomial.motion(displacement_m);
-  result.noise = smoothed_noise(polynomial, white_noise_level(displacement_m), displacement_m.size());
+  result.noise = left_wrong(polynomial, result.input_noise, result.input);
   return result;
 }
 

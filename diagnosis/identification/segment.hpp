@@ -23,9 +23,12 @@ struct Segment {
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded
-  std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
+  double input_noise = 0.0;      // standard deviation of what was smoothed away [m]
+  std::vector<Motion> noise;     // a draw of what smoothing leaves wrong in `input`; empty: commands are exact
   // Standard deviation of the white noise of `measured`.
   double measured_noise = 0.0;
+  // Standard deviation of what a coarse converter adds to `measured`; it need not be white. 0: none seen.
+  double step_noise = 0.0;
 
   /// An effect at that interface changes what this segment predicts.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
@@ -52,8 +55,8 @@ struct Segment {
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
 
-/// What the noise of the input makes of the prediction: another draw of it less none, sample by sample.
-/// Empty where the input has no noise.
+/// What the noise of the input, and smoothing against it, make of the prediction: another draw less none, sample by
+/// sample. Empty where the input is exact.
 [[nodiscard]] std::vector<double> predicted_noise(const SiteModel& model, const Segment& segment);
 
 /// Standard deviation of the residual that noise in both channels leaves of a right model, per sample.

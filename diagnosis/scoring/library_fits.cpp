@@ -8,8 +8,9 @@
 #include <thread>
 
 #include "core/config/error.hpp"
-#include "diagnosis/scoring/random_network.hpp"
+#include "diagnosis/identification/search_range.hpp"
 #include "diagnosis/scoring/score.hpp"
+#include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -28,32 +29,36 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
 /// the specimen turns into a specimen that yields, which is another effect.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
   const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
+  // A ratio where the model has a law, else a spring of its own.
+  const double unit = problem.model.make_law ? 1.0 : problem.scales.of(ParameterScale::stiffness_n_per_m);
   std::size_t column = 0;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     if (!fit.segments[i].touched) continue;
     for (const EffectType* type : problem.segments[i].nuisance_types) {
-      const double most = tuning::kSlightlyWrong * problem.scales.of(ParameterScale::stiffness_n_per_m);
-      if (type == stiffness && std::abs(fit.nuisance[column]) > most) return false;
+      if (type == stiffness && std::abs(fit.nuisance[column]) > tuning::kSlightlyWrong * unit) return false;
       ++column;
     }
   }
   return true;
 }
 
-/// Of two effects that a recording cannot tell apart the one that is not the sensor's comes first.
-double prior(const EffectType& effect) {
+/// Of two effects that a recording cannot tell apart the one that is not the sensor's comes first, and the simpler one.
+double prior(const IdentificationProblem& problem, const EffectType& effect) {
   const bool is_sensor =
       effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
-  return is_sensor ? -tuning::kSensorPrior : 0.0;
+  const auto free = std::ranges::count_if(
+      effect.parameters, [&](const EffectParameter& parameter) { return !is_fixed(problem, parameter); });
+  const double sensor = is_sensor ? tuning::kSensorPrior : 0.0;
+  return -sensor - tuning::kParameterPrior * static_cast<double>(std::max<std::ptrdiff_t>(0, free - 1));
 }
 
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
   Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
-  alone.score = held_out_score(problem, alone.fit) + prior(effect);
+  alone.score = held_out_score(problem, alone.fit) + prior(problem, effect);
   Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
   const double score = held_out_score(problem, beside.fit);
-  beside.score = score - tuning::kNuisanceCost + prior(effect);
+  beside.score = score - tuning::kNuisanceCost + prior(problem, effect);
   // Beside the nuisances an effect has to explain something that they do not.
   const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
   return needed && beside.score > alone.score ? beside : alone;
@@ -64,7 +69,7 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
 /// The same fit at the full rate.
 std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
   Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
-  candidate.score = held_out_score(problem, candidate.fit) + prior(*found.type) -
+  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, *found.type) -
                     (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
   return candidate;
 } catch (const ConfigError&) {
@@ -95,7 +100,7 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   for (const EffectType& effect : effect_library()) {
     const bool touches =
         std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
-    if (touches && effect.make != nullptr && !is_random(effect)) effects.push_back(&effect);
+    if (touches && effect.make != nullptr && !shows_in_digits(effect)) effects.push_back(&effect);
   }
   return effects;
 }
@@ -140,7 +145,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
     try {
       Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
-      candidate.score = held_out_score(extended, candidate.fit);
+      candidate.score = held_out_score(extended, candidate.fit) + prior(extended, *effects[i]);
       screened[i] = std::move(candidate);
     } catch (const ConfigError&) {
       screened[i].reset();
@@ -155,7 +160,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     try {
       const FitOutcome together = refit_effects(coarse, start, false);
       Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit) + prior(*candidate.type);
+      candidate.score = held_out_score(problem, candidate.fit) + prior(problem, *candidate.type);
       refitted[i] = std::move(candidate);
     } catch (const ConfigError&) {
       refitted[i].reset();

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "diagnosis/scoring/random_network.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -53,8 +52,6 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
 /// The best pair that one of the leading effects is part of.
 FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                       std::size_t threads) {
-  // A random effect is not followed by a fit, and nothing is fitted beside it.
-  if (is_random(*selection.library.front().type)) return selection.library.front().fit;
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
   FitOutcome best = first;
   double best_score = held_out_score(problem, first);
@@ -83,10 +80,6 @@ Selection select_effects(const IdentificationProblem& problem, const Identificat
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
   selection.library = fit_library(problem, coarse, threads, progress);
-  if (std::optional<Candidate> random = fit_random_network(problem, selection.baseline)) {
-    selection.library.push_back(std::move(*random));
-    std::ranges::stable_sort(selection.library, std::greater{}, &Candidate::score);
-  }
   if (selection.library.empty()) return selection;
   selection.probabilities = probabilities_of(selection.library);
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
