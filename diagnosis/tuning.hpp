@@ -46,9 +46,10 @@ inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
 /// Share of the whole gap [variance] that it has to explain unless it is but a wrong number of the model.
 inline constexpr double kAnotherEffectExplains = 0.03;
-/// Of the gap: with less left than this nobody looks for a further effect.
+/// Unless it leaves less than this share of what was left.
+inline constexpr double kSmallEffectLeaves = 0.15;
+/// Of the gap: with less left than this, or not clearly above the floor, nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
-inline constexpr double kLittleLeft = 0.02;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;

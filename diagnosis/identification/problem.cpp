@@ -90,9 +90,10 @@ FitSegment prepare(const SiteModel& model, Segment segment) {
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
   fit.sample_floor = noise_floor(model, fit.segment);
-  const std::vector<double> noise = predicted_noise(model, fit.segment);
   fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(static_cast<double>(fit.averaged)),
-                         noise.empty() ? 0.0 : root_mean_square(fit.average(noise)));
+                         input_floor(model, fit.segment, [&](std::span<const double> values) {
+                           return root_mean_square(fit.average(values));
+                         }));
   fit.floor = std::hypot(fit.floor, fit.segment.step_noise);
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());

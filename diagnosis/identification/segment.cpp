@@ -29,22 +29,12 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// What smoothing leaves wrong in a motion: one draw of white noise of that level, smoothed as the signal is, and what
-/// smoothing has taken off the signal, which is about what smoothing once more takes off.
-std::vector<Motion> left_wrong(const LocalPolynomial& polynomial, double level, const std::vector<Motion>& smoothed) {
+/// One draw of white noise of that level, smoothed as the signal is.
+std::vector<Motion> smoothed_noise(const LocalPolynomial& polynomial, double level, std::size_t samples) {
   Random random{kNoiseSeed};
-  std::vector<double> noise(smoothed.size());
-  std::vector<double> displacement_m(smoothed.size());
+  std::vector<double> noise(samples);
   for (double& value : noise) value = level * random.normal();
-  std::ranges::transform(smoothed, displacement_m.begin(), &Motion::displacement_m);
-  std::vector<Motion> wrong = polynomial.motion(noise);
-  const std::vector<Motion> twice = polynomial.motion(displacement_m);
-  for (std::size_t i = 0; i < wrong.size(); ++i) {
-    wrong[i].displacement_m += twice[i].displacement_m - smoothed[i].displacement_m;
-    wrong[i].velocity_m_per_s += twice[i].velocity_m_per_s - smoothed[i].velocity_m_per_s;
-    wrong[i].acceleration_m_per_s2 += twice[i].acceleration_m_per_s2 - smoothed[i].acceleration_m_per_s2;
-  }
-  return wrong;
+  return polynomial.motion(noise);
 }
 
 /// Standard deviation of an even error between half a step each way.
@@ -52,6 +42,19 @@ double step_noise(std::span<const double> values) { return steps_of_readings(val
 
 /// Of a signal that is to be smoothed: what is white in it, or what a coarse converter adds, whichever is more.
 double input_noise(std::span<const double> values) { return std::max(white_noise_level(values), step_noise(values)); }
+
+/// Smooths the measured displacement, and once more over half the window, which tells what the whole one takes off.
+void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
+  const LocalPolynomial polynomial{half_width, segment.period_s};
+  segment.input = polynomial.motion(displacement_m);
+  segment.noise = smoothed_noise(polynomial, segment.input_noise, displacement_m.size());
+  segment.narrow_input.clear();
+  segment.narrow_noise.clear();
+  if (half_width / 2 < LocalPolynomial::kSmallestHalfWidth) return;
+  const LocalPolynomial narrow{half_width / 2, segment.period_s};
+  segment.narrow_input = narrow.motion(displacement_m);
+  segment.narrow_noise = smoothed_noise(narrow, segment.input_noise, displacement_m.size());
+}
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
                         Channel to) {
@@ -61,16 +64,16 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
   segment.interface = interface_ending_in(to);
   segment.recording = position;
   segment.period_s = recording.sample_period_s;
-  const LocalPolynomial polynomial{widest_faithful_half_width(dof.of(from)), recording.sample_period_s};
-  segment.input = polynomial.motion(dof.of(from));
+  const std::size_t half_width = widest_faithful_half_width(dof.of(from));
   segment.measured = dof.of(to);
   if (to != Channel::measured_force) {
+    segment.input = LocalPolynomial{half_width, segment.period_s}.motion(dof.of(from));
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
   } else {
     segment.input_noise = input_noise(dof.of(from));
-    segment.noise = left_wrong(polynomial, segment.input_noise, segment.input);
+    smooth_input(segment, dof.of(from), half_width);
   }
   segment.measured_noise = white_noise_level(segment.measured);
   if (to >= Channel::measured_displacement) segment.step_noise = step_noise(segment.measured);
@@ -101,11 +104,8 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
 }
 
 Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width) {
-  const std::vector<double>& displacement_m = dof.of(Channel::measured_displacement);
-  const LocalPolynomial polynomial{half_width, segment.period_s};
   Segment result = segment;
-  result.input = polynomial.motion(displacement_m);
-  result.noise = left_wrong(polynomial, result.input_noise, result.input);
+  smooth_input(result, dof.of(Channel::measured_displacement), half_width);
   return result;
 }
 
@@ -122,6 +122,8 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.input = every(segment.input);
   result.load_n = every(segment.load_n);
   result.noise = every(segment.noise);
+  result.narrow_input = every(segment.narrow_input);
+  result.narrow_noise = every(segment.narrow_noise);
   result.measured = every(segment.measured);
   return result;
 }

@@ -29,23 +29,41 @@ bool is_nuisance(const IdentificationProblem& problem, const EffectType& type) {
   });
 }
 
-/// Another effect has to earn its place on data that was not fitted, and to matter: a wrong number
-/// for what it leaves, anything else for the whole gap as well, of which the shape of a right effect is never
-/// quite the real one.
-bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& without, const Candidate& with,
-                     double total) {
+/// Of the segments on which the effect acts.
+double touched_gap(const IdentificationProblem& problem, const FitOutcome& baseline, const EffectType& effect) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    if (fit.is_suspect && fit.segment.touched_by(effect)) sum += gap_energy(fit, baseline.segments[i]).excess();
+  }
+  return sum;
+}
+
+/// Another effect has to earn its place on data that was not fitted, and to matter: a wrong number for what it
+/// leaves, anything else for the whole gap where it acts as well, of which the shape of a right effect is never quite
+/// the real one, unless it leaves hardly anything.
+bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+                     const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
   const double before = gap_energy(problem, without).excess();
   const double left = gap_energy(problem, with.fit).excess();
-  const bool matters = is_nuisance(problem, *with.type) || before - left > tuning::kAnotherEffectExplains * total;
+  const double total = touched_gap(problem, baseline, *with.type);
+  const bool matters = is_nuisance(problem, *with.type) || before - left > tuning::kAnotherEffectExplains * total ||
+                       left < tuning::kSmallEffectLeaves * before;
   return gain > tuning::kAnotherEffectGain && left < tuning::kAnotherEffectLeaves * before && matters;
 }
 
+/// Something that a further effect could explain.
+bool is_more_left(const GapEnergy& left, double total) {
+  constexpr double kVariance = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
+  return left.excess() > tuning::kNothingLeft * total && left.total > kVariance * left.floor;
+}
+
 /// The best of `beside` that earns its place; null when there is none.
-const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& without,
-                                  const std::vector<Candidate>& beside, double total) {
+const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
+                                  const FitOutcome& without, const std::vector<Candidate>& beside) {
   const auto found = std::ranges::find_if(
-      beside, [&](const Candidate& candidate) { return earns_its_place(problem, without, candidate, total); });
+      beside, [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); });
   return found == beside.end() ? nullptr : &*found;
 }
 
@@ -56,13 +74,11 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
   FitOutcome best = first;
   double best_score = held_out_score(problem, first);
   const double total = gap_energy(problem, selection.baseline).excess();
-  // A best effect that wants a slightly wrong model beside it has a second one coming, however little is left.
-  const double enough = selection.library.front().fit.with_nuisance ? tuning::kNothingLeft : tuning::kLittleLeft;
-  if (gap_energy(problem, first).excess() < enough * total) return best;
+  if (!is_more_left(gap_energy(problem, first), total)) return best;
   const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < leaders; ++i) {
     std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
-    const Candidate* const second = first_that_earns(problem, first, beside, total);
+    const Candidate* const second = first_that_earns(problem, selection.baseline, first, beside);
     if (second != nullptr && second->score > best_score + static_cast<double>(i > 0) * tuning::kSensorPrior) {
       best = second->fit;
       best_score = second->score;
@@ -88,9 +104,9 @@ Selection select_effects(const IdentificationProblem& problem, const Identificat
   selection.chosen = best_start(problem, coarse, selection, threads);
   const double total = gap_energy(problem, selection.baseline).excess();
   while (selection.chosen.effects.size() > 1 && selection.chosen.effects.size() < tuning::kMostEffects &&
-         gap_energy(problem, selection.chosen).excess() > tuning::kNothingLeft * total) {
+         is_more_left(gap_energy(problem, selection.chosen), total)) {
     const std::vector<Candidate> beside = fit_beside(problem, coarse, selection.chosen.effects, threads);
-    const Candidate* const next = first_that_earns(problem, selection.chosen, beside, total);
+    const Candidate* const next = first_that_earns(problem, selection.baseline, selection.chosen, beside);
     if (next == nullptr) break;
     selection.chosen = next->fit;
   }
