@@ -29,31 +29,30 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// One draw of white noise of that level, smoothed as the signal is.
-std::vector<Motion> smoothed_noise(const LocalPolynomial& polynomial, double level, std::size_t samples) {
+/// One draw of what is wrong in readings: white noise of that level or, with a coarse converter, its error along a
+/// motion half a step beside the one that was read.
+std::vector<double> drawn_error(std::span<const Motion> motion, double level, double step) {
   Random random{kNoiseSeed};
-  std::vector<double> noise(samples);
-  for (double& value : noise) value = level * random.normal();
-  return polynomial.motion(noise);
+  std::vector<double> error(motion.size());
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    const double place = motion[i].displacement_m + 0.5 * step;
+    error[i] = step > 0.0 ? step * std::round(place / step) - place : level * random.normal();
+  }
+  return error;
 }
-
-/// Standard deviation of an even error between half a step each way.
-double step_noise(std::span<const double> values) { return steps_of_readings(values).step / std::sqrt(12.0); }
-
-/// Of a signal that is to be smoothed: what is white in it, or what a coarse converter adds, whichever is more.
-double input_noise(std::span<const double> values) { return std::max(white_noise_level(values), step_noise(values)); }
 
 /// Smooths the measured displacement, and once more over half the window, which tells what the whole one takes off.
 void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
   const LocalPolynomial polynomial{half_width, segment.period_s};
   segment.input = polynomial.motion(displacement_m);
-  segment.noise = smoothed_noise(polynomial, segment.input_noise, displacement_m.size());
+  const std::vector<double> error = drawn_error(segment.input, segment.input_noise, segment.input_step);
+  segment.noise = polynomial.motion(error);
   segment.narrow_input.clear();
   segment.narrow_noise.clear();
   if (half_width / 2 < LocalPolynomial::kSmallestHalfWidth) return;
   const LocalPolynomial narrow{half_width / 2, segment.period_s};
   segment.narrow_input = narrow.motion(displacement_m);
-  segment.narrow_noise = smoothed_noise(narrow, segment.input_noise, displacement_m.size());
+  segment.narrow_noise = narrow.motion(error);
 }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
@@ -72,11 +71,15 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
   } else {
-    segment.input_noise = input_noise(dof.of(from));
+    segment.input_noise = white_noise_level(dof.of(from));
+    segment.input_step = steps_of_readings(dof.of(from)).step;
     smooth_input(segment, dof.of(from), half_width);
   }
   segment.measured_noise = white_noise_level(segment.measured);
-  if (to >= Channel::measured_displacement) segment.step_noise = step_noise(segment.measured);
+  if (to >= Channel::measured_displacement) {
+    // Of an even error between half a step each way.
+    segment.step_noise = steps_of_readings(segment.measured).step / std::sqrt(12.0);
+  }
   return segment;
 }
 

@@ -24,7 +24,8 @@ struct Segment {
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded
-  double input_noise = 0.0;      // standard deviation of what was smoothed away [m]
+  double input_noise = 0.0;      // white noise that was smoothed [m]
+  double input_step = 0.0;       // of the converter that it came through [m]; 0: none seen
   std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
