@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -47,6 +48,11 @@ double prior(const EffectType& effect) {
   return is_sensor ? -tuning::kSensorPrior : 0.0;
 }
 
+double prior(const std::vector<EffectSetting>& effects) {
+  return std::accumulate(effects.begin(), effects.end(), 0.0,
+                         [](double sum, const EffectSetting& effect) { return sum + prior(*effect.type); });
+}
+
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
   Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
@@ -66,6 +72,16 @@ std::optional<Candidate> refine(const IdentificationProblem& problem, const Cand
   Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
   candidate.score = held_out_score(problem, candidate.fit) + prior(*found.type) -
                     (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  return candidate;
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// Effects fitted together, the one in question told by its type.
+std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
+                                      const std::vector<EffectSetting>& start, decltype(refit_effects)& fit) try {
+  Candidate candidate{.type = type, .fit = fit(problem, start, false)};
+  candidate.score = held_out_score(problem, candidate.fit) + prior(candidate.fit.effects);
   return candidate;
 } catch (const ConfigError&) {
   return {};
@@ -147,19 +163,24 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     }
   });
   std::vector<Candidate> promising = best_first(std::move(screened));
-  if (promising.size() > tuning::kRefittedPairs) promising.resize(tuning::kRefittedPairs);
-  std::vector<std::optional<Candidate>> refitted(promising.size());
+  std::size_t position = 0;
+  std::erase_if(promising, [&](const Candidate& candidate) {
+    return position++ >= tuning::kRefittedPairs && !is_model_number(problem, *candidate.type);
+  });
+  std::vector<std::optional<Candidate>> together(promising.size());
   for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
     std::vector<EffectSetting> start = base;
     start.push_back(promising[i].fit.effects.front());
-    try {
-      const FitOutcome together = refit_effects(coarse, start, false);
-      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit) + prior(*candidate.type);
-      refitted[i] = std::move(candidate);
-    } catch (const ConfigError&) {
-      refitted[i].reset();
-    }
+    together[i] = fit_together(coarse, promising[i].type, start, search_effects);
+  });
+  // What is far behind on the coarse record is not looked at again.
+  promising = best_first(std::move(together));
+  std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
+    return candidate.score < best - tuning::kFarBehind;
+  });
+  std::vector<std::optional<Candidate>> refitted(promising.size());
+  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
+    refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
   });
   return best_first(std::move(refitted));
 }
