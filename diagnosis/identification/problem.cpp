@@ -128,6 +128,12 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   return problem;
 }
 
+bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
+  return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+    return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
+  });
+}
+
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                         std::span<const EffectSetting> added) {
   const bool touched =

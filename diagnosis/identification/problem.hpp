@@ -41,6 +41,9 @@ struct IdentificationProblem {
 /// @param segments   of recordings of the role fit.
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
 
+/// A number of the user's model that is a little off, as every model's are.
+[[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;
+
 /// Averaged prediction with effects added; the baseline where none touches the segment.
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                                       std::span<const EffectSetting> added);

@@ -42,23 +42,32 @@ bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& f
   return true;
 }
 
-/// Of two effects that a recording cannot tell apart the one that is not the sensor's comes first, and the simpler one.
-double prior(const IdentificationProblem& problem, const EffectType& effect) {
-  const bool is_sensor =
-      effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
-  const auto free = std::ranges::count_if(
-      effect.parameters, [&](const EffectParameter& parameter) { return !is_fixed(problem, parameter); });
-  const double sensor = is_sensor ? tuning::kSensorPrior : 0.0;
-  return -sensor - tuning::kParameterPrior * static_cast<double>(std::max<std::ptrdiff_t>(0, free - 1));
+bool is_of_sensor(const EffectType& effect) {
+  return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
+}
+
+/// Of two fits that a recording cannot tell apart the one without an effect of a sensor comes first, and the one of
+/// fewer parameters: at the end of its range one does not count, as the fit is then one of an effect without it.
+double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    const EffectType& effect = *fit.effects[i].type;
+    double free = 0.0;
+    for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+      if (!is_fixed(problem, effect.parameters[j]) && !fit.parameters[i][j].at_bound) free += 1.0;
+    }
+    sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
+  }
+  return sum;
 }
 
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
   Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
-  alone.score = held_out_score(problem, alone.fit) + prior(problem, effect);
+  alone.score = held_out_score(problem, alone.fit) + prior(problem, alone.fit);
   Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
   const double score = held_out_score(problem, beside.fit);
-  beside.score = score - tuning::kNuisanceCost + prior(problem, effect);
+  beside.score = score - tuning::kNuisanceCost + prior(problem, beside.fit);
   // Beside the nuisances an effect has to explain something that they do not.
   const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
   return needed && beside.score > alone.score ? beside : alone;
@@ -69,8 +78,18 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
 /// The same fit at the full rate.
 std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
   Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
-  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, *found.type) -
+  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit) -
                     (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  return candidate;
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// Effects fitted together, the one in question told by its type.
+std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
+                                      const std::vector<EffectSetting>& start, decltype(refit_effects)& fit) try {
+  Candidate candidate{.type = type, .fit = fit(problem, start, false)};
+  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit);
   return candidate;
 } catch (const ConfigError&) {
   return {};
@@ -145,26 +164,31 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
     try {
       Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
-      candidate.score = held_out_score(extended, candidate.fit) + prior(extended, *effects[i]);
+      candidate.score = held_out_score(extended, candidate.fit) + prior(extended, candidate.fit);
       screened[i] = std::move(candidate);
     } catch (const ConfigError&) {
       screened[i].reset();
     }
   });
   std::vector<Candidate> promising = best_first(std::move(screened));
-  if (promising.size() > tuning::kRefittedPairs) promising.resize(tuning::kRefittedPairs);
-  std::vector<std::optional<Candidate>> refitted(promising.size());
+  std::size_t position = 0;
+  std::erase_if(promising, [&](const Candidate& candidate) {
+    return position++ >= tuning::kRefittedPairs && !is_model_number(problem, *candidate.type);
+  });
+  std::vector<std::optional<Candidate>> together(promising.size());
   for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
     std::vector<EffectSetting> start = base;
     start.push_back(promising[i].fit.effects.front());
-    try {
-      const FitOutcome together = refit_effects(coarse, start, false);
-      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit) + prior(problem, *candidate.type);
-      refitted[i] = std::move(candidate);
-    } catch (const ConfigError&) {
-      refitted[i].reset();
-    }
+    together[i] = fit_together(coarse, promising[i].type, start, search_effects);
+  });
+  // What is far behind on the coarse record is not looked at again.
+  promising = best_first(std::move(together));
+  std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
+    return candidate.score < best - tuning::kFarBehind;
+  });
+  std::vector<std::optional<Candidate>> refitted(promising.size());
+  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
+    refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
   });
   return best_first(std::move(refitted));
 }

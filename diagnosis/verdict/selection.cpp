@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <optional>
 
 #include "diagnosis/scoring/score.hpp"
@@ -22,21 +24,51 @@ std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
   return probabilities;
 }
 
-/// A number of the user's model that is a little off, as every model's are.
-bool is_nuisance(const IdentificationProblem& problem, const EffectType& type) {
-  return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
-    return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
-  });
+/// The middle one, or the mean of the two in the middle; of none the fallback.
+double median(std::vector<double> values, double fallback) {
+  if (values.empty()) return fallback;
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-/// Of the segments on which the effect acts.
-double touched_gap(const IdentificationProblem& problem, const FitOutcome& baseline, const EffectType& effect) {
-  double sum = 0.0;
+/// Excess energy of each recording, all its suspect segments together, or those that one effect acts on.
+std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
+                                                   const EffectType* effect = nullptr) {
+  std::map<std::size_t, GapEnergy> sums;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
-    if (fit.is_suspect && fit.segment.touched_by(effect)) sum += gap_energy(fit, baseline.segments[i]).excess();
+    if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
+    const GapEnergy one = gap_energy(fit, outcome.segments[i]);
+    GapEnergy& sum = sums[problem.segments[i].segment.recording];
+    sum.total += one.total;
+    sum.floor += one.floor;
   }
-  return sum;
+  std::map<std::size_t, double> excess;
+  for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
+  return excess;
+}
+
+/// What a further effect does to a typical recording: a single odd one, of which no effect explains much, does
+/// not decide.
+struct Typical {
+  double leaves = 1.0;    // of what was left
+  double explains = 0.0;  // of the whole gap where it acts
+};
+
+Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+                const Candidate& further) {
+  const FitOutcome& with = further.fit;
+  const std::map<std::size_t, double> total = excess_of_recordings(problem, baseline, further.type);
+  const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
+  const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
+  std::vector<double> leaves;
+  std::vector<double> explains;
+  for (const auto& [recording, energy] : total) {
+    if (before.at(recording) > 0.0) leaves.push_back(left.at(recording) / before.at(recording));
+    if (energy > 0.0) explains.push_back((before.at(recording) - left.at(recording)) / energy);
+  }
+  return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
 }
 
 /// Another effect has to earn its place on data that was not fitted, and to matter: a wrong number for what it
@@ -45,12 +77,10 @@ double touched_gap(const IdentificationProblem& problem, const FitOutcome& basel
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
-  const double before = gap_energy(problem, without).excess();
-  const double left = gap_energy(problem, with.fit).excess();
-  const double total = touched_gap(problem, baseline, *with.type);
-  const bool matters = is_nuisance(problem, *with.type) || before - left > tuning::kAnotherEffectExplains * total ||
-                       left < tuning::kSmallEffectLeaves * before;
-  return gain > tuning::kAnotherEffectGain && left < tuning::kAnotherEffectLeaves * before && matters;
+  const Typical change = typical(problem, baseline, without, with);
+  const bool matters = is_model_number(problem, *with.type) || change.explains > tuning::kAnotherEffectExplains ||
+                       change.leaves < tuning::kSmallEffectLeaves;
+  return gain > tuning::kAnotherEffectGain && change.leaves < tuning::kAnotherEffectLeaves && matters;
 }
 
 /// Something that a further effect could explain.
@@ -60,11 +90,19 @@ bool is_more_left(const GapEnergy& left, double total) {
 }
 
 /// The best of `beside` that earns its place; null when there is none.
+/// A wrong number of the model that explains nearly as much goes first, so that it is not called a missing effect.
 const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
                                   const FitOutcome& without, const std::vector<Candidate>& beside) {
-  const auto found = std::ranges::find_if(
-      beside, [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); });
-  return found == beside.end() ? nullptr : &*found;
+  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); };
+  const auto best = std::ranges::find_if(beside, earns);
+  if (best == beside.end()) return nullptr;
+  const double before = gap_energy(problem, without).excess();
+  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
+  const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
+    return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
+           earns(candidate);
+  });
+  return number == beside.end() ? &*best : &*number;
 }
 
 /// The best pair that one of the leading effects is part of.
@@ -72,14 +110,15 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
                       std::size_t threads) {
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
   FitOutcome best = first;
-  double best_score = held_out_score(problem, first);
+  double best_score = -std::numeric_limits<double>::infinity();
   const double total = gap_energy(problem, selection.baseline).excess();
   if (!is_more_left(gap_energy(problem, first), total)) return best;
   const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < leaders; ++i) {
+    if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
     std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
     const Candidate* const second = first_that_earns(problem, selection.baseline, first, beside);
-    if (second != nullptr && second->score > best_score + static_cast<double>(i > 0) * tuning::kSensorPrior) {
+    if (second != nullptr && second->score > best_score) {
       best = second->fit;
       best_score = second->score;
     }
