@@ -259,7 +259,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   worst_first(report.series);
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
-  report.why_no_response = "Recordings of a site alone do not say of what structure it was a part.";
+  report.why_no_response = "recordings of a site alone do not say of what structure it was a part";
   add_notes(diagnosis, segments);
   return diagnosis;
 }

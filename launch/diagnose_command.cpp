@@ -1,12 +1,15 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnose_site.hpp"
+#include "launch/diagnosis_progress.hpp"
 #include "launch/read_recording.hpp"
+#include "launch/rerun_test.hpp"
 
 namespace hybridtest {
 namespace {
@@ -21,10 +24,13 @@ struct DiagnoseOptions {
   std::size_t threads = 0;
 };
 
-/// A line that is rewritten, on a terminal only.
-void show_progress(std::size_t done, std::size_t all) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{} of {} effects fitted{}", done, all, done == all ? "\n" : "");
+/// The first run directory, of those held out if there is one: it knows of what test the site was a part.
+std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& options) {
+  for (const auto* files : {&options.held_out, &options.recordings}) {
+    const auto run = std::ranges::find_if(*files, [](const auto& file) { return std::filesystem::is_directory(file); });
+    if (run != files->end()) return *run;
+  }
+  return {};
 }
 
 int run_diagnosis(const DiagnoseOptions& options) {
@@ -39,8 +45,11 @@ int run_diagnosis(const DiagnoseOptions& options) {
   DiagnoseSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  settings.progress = show_progress;
-  const SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  settings.progress = show_fits;
+  SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  if (const auto run = run_to_repeat(options)) {
+    add_response(diagnosis, model, *run, options.site, show_rerun);
+  }
   write_diagnosis(diagnosis, model, options.out);
   fmt::print("{}\n  written to {}\n", summary_of(diagnosis), options.out.string());
   return diagnosis.diagnosis.report.verdict == report::Verdict::not_excited ? kExitDataInvalid : kExitCompleted;

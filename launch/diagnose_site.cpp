@@ -50,7 +50,28 @@ std::string parameters_in_words(const report::RankedCause& cause) {
   return text;
 }
 
+std::string response_in_words(const report::ResponseShrink& response) {
+  std::string text = fmt::format("\n  response of the whole test against {}\n", response.recording);
+  const auto add = [&](std::string_view what, double before, double after) {
+    text += fmt::format("    {:<22} {:.4f} before, {:.4f} after\n", what, before, after);
+  };
+  add("displacement, NRMSE", response.nrmse_before, response.nrmse_after);
+  add("peak error", response.peak_error_before, response.peak_error_after);
+  if (response.energy_error_before && response.energy_error_after) {
+    add("energy error", *response.energy_error_before, *response.energy_error_after);
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& model) const {
+  std::vector<ListedEffect> listed;
+  for (const EffectSetting& cause : diagnosis.causes) {
+    listed.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(dof)} : std::nullopt});
+  }
+  return listed;
+}
 
 SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                             DiagnoseSettings settings) {
@@ -75,11 +96,7 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
   if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
   write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
   write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
-  std::vector<ListedEffect> causes;
-  for (const EffectSetting& cause : diagnosis.diagnosis.causes) {
-    causes.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(diagnosis.dof)} : std::nullopt});
-  }
-  write_file(directory / "augmented_model.yaml", model.with_effects(causes));
+  write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)));
 }
 
 std::string summary_of(const SiteDiagnosis& site) {
@@ -109,6 +126,11 @@ std::string summary_of(const SiteDiagnosis& site) {
     text += fmt::format("  variance removed         {:.2f} %", 100.0 * shrink.variance_removed);
     if (shrink.ci95) text += fmt::format(" [{:.2f}, {:.2f}]", 100.0 * shrink.ci95->low, 100.0 * shrink.ci95->high);
     text += '\n';
+  }
+  if (report.response_shrink) {
+    text += response_in_words(*report.response_shrink);
+  } else if (!report.why_no_response.empty()) {
+    text += "\n  response of the whole test: not known, " + report.why_no_response + "\n";
   }
   if (!report.next_experiment.empty()) text += "\n  next: " + report.next_experiment + "\n";
   for (const std::string& note : report.notes) text += "  note: " + note + "\n";

@@ -15,6 +15,9 @@ namespace hybridtest {
 struct SiteDiagnosis {
   Diagnosis diagnosis;
   std::size_t dof = 0;  // 0-based
+
+  /// The causes as the model's file lists them.
+  [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
 };
 
 /// Diagnoses every degree of freedom that model and recordings share; the answer is that of the largest gap.

@@ -62,7 +62,8 @@ Json shrink_entry(const report::Shrink& shrink) {
 }
 
 Json response_entry(const report::ResponseShrink& shrink) {
-  Json entry{{"nrmse_before", shrink.nrmse_before},
+  Json entry{{"recording", shrink.recording},
+             {"nrmse_before", shrink.nrmse_before},
              {"nrmse_after", shrink.nrmse_after},
              {"peak_error_before", shrink.peak_error_before},
              {"peak_error_after", shrink.peak_error_after}};

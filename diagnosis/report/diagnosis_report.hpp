@@ -75,11 +75,12 @@ struct Shrink {
 
 /// The same in the response of a whole hybrid test.
 struct ResponseShrink {
+  std::string recording{};  // the run directory whose test was run again
   double nrmse_before = 0.0;
   double nrmse_after = 0.0;
   double peak_error_before = 0.0;  // relative to the peak
   double peak_error_after = 0.0;
-  std::optional<double> energy_error_before{};  // relative to the energy put in
+  std::optional<double> energy_error_before{};  // of what the substructures took, over what the ground put in
   std::optional<double> energy_error_after{};
 };
 
