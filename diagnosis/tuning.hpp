@@ -59,6 +59,9 @@ inline constexpr double kFaultOverFloor = 1.15;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;
+/// Likewise where everything is computed and nothing measured: wrong ratios come within a hundredth, right ones
+/// within rounding.
+inline constexpr double kComputedLeaves = 1e-6;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
 

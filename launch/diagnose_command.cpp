@@ -4,6 +4,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/config/error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnose_site.hpp"
@@ -19,6 +20,7 @@ struct DiagnoseOptions {
   std::string site;
   std::vector<std::filesystem::path> recordings;
   std::vector<std::filesystem::path> held_out;
+  std::filesystem::path scenario;
   std::filesystem::path out;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
@@ -34,6 +36,10 @@ std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& option
 }
 
 int run_diagnosis(const DiagnoseOptions& options) {
+  const std::optional<std::filesystem::path> run = run_to_repeat(options);
+  if (!run && !options.scenario.empty()) {
+    throw ConfigError{"--scenario: a CSV does not hold what the structure received; give a run directory"};
+  }
   const SiteModelFile model = read_site_model(options.model, options.site);
   std::vector<Recording> recordings;
   for (const std::filesystem::path& file : options.recordings) {
@@ -47,8 +53,10 @@ int run_diagnosis(const DiagnoseOptions& options) {
   settings.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   settings.progress = show_fits;
   SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
-  if (const auto run = run_to_repeat(options)) {
-    add_response(diagnosis, model, *run, options.site, show_rerun);
+  if (run) {
+    const std::filesystem::path scenario = options.scenario.empty() ? *run / "scenario.yaml" : options.scenario;
+    diagnose_structure_of(diagnosis, *run, scenario);
+    add_response(diagnosis, model, *run, options.site, scenario, show_rerun);
   }
   write_diagnosis(diagnosis, model, options.out);
   fmt::print("{}\n  written to {}\n", summary_of(diagnosis), options.out.string());
@@ -68,6 +76,8 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
   command->add_option("--recording", options->recordings, "CSV or run directory to find the cause in; repeatable")
       ->required();
   command->add_option("--held-out", options->held_out, "CSV or run directory to measure the shrinking on; repeatable");
+  command->add_option("--scenario", options->scenario,
+                      "Scenario with the structure as you take it to be; without one, that of the run directory");
   command->add_option("--out", options->out, "Directory for diagnosis.json and augmented_model.yaml")->required();
   command->add_option("--seed", options->seed, "Of the resampling behind intervals")->capture_default_str();
   command->add_option("--threads", options->threads, "Threads to fit on; 0: one per core")->capture_default_str();

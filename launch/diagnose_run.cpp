@@ -35,7 +35,8 @@ void diagnose_one(const std::string& id, const std::filesystem::path& run, const
   settings.threads = std::max(1U, std::thread::hardware_concurrency());
   settings.progress = show_fits;
   SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
-  add_response(diagnosis, model, run, id, show_rerun);
+  diagnose_structure_of(diagnosis, run, run / "scenario.yaml");
+  add_response(diagnosis, model, run, id, run / "scenario.yaml", show_rerun);
   write_diagnosis(diagnosis, model, directory);
   out << "\ndiagnosis of " << id << ": " << summary_of(diagnosis) << "  written to " << directory.string() << "\n";
 }

@@ -7,8 +7,12 @@
 #include <utility>
 
 #include "core/config/error.hpp"
+#include "core/config/scalar.hpp"
 #include "diagnosis/report/diagnosis_json.hpp"
 #include "diagnosis/report/diagnosis_page.hpp"
+#include "diagnosis/structure/structure_diagnosis.hpp"
+#include "launch/structure_record.hpp"
+#include "recording/error.hpp"
 
 namespace hybridtest {
 namespace {
@@ -50,6 +54,17 @@ std::string parameters_in_words(const report::RankedCause& cause) {
   return text;
 }
 
+/// As a scenario's list, or for --set.
+std::string written_in_one_line(std::span<const EffectSetting> effects) {
+  std::string list;
+  for (const EffectSetting& effect : effects) {
+    list += fmt::format("{}{{interface: {}, effect: {}, {}: {}}}", list.empty() ? "" : ", ",
+                        name_of(effect.type->interface), effect.type->name, effect.type->parameters.front().name,
+                        config::written_number(effect.values.front()));
+  }
+  return "effects=[" + list + "]";
+}
+
 std::string response_in_words(const report::ResponseShrink& response) {
   std::string text = fmt::format("\n  response of the whole test against {}\n", response.recording);
   const auto add = [&](std::string_view what, double before, double after) {
@@ -84,9 +99,27 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
     settings.dof = dof;
     Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
     if (dofs > 1) diagnosis.report.notes.push_back(fmt::format("Speaks of degree of freedom {} of {}.", dof + 1, dofs));
-    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof};
+    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
   }
   return worst;
+}
+
+void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
+                           const std::filesystem::path& scenario) {
+  report::DiagnosisReport& report = diagnosis.diagnosis.report;
+  try {
+    const StructureRecord record = structure_record(run, read_scenario(scenario, {}));
+    const StructureDiagnosis structure = diagnose_structure(record.model, record.recording);
+    add_structure(structure, diagnosis.diagnosis);
+    diagnosis.structure_causes = causes_of(structure);
+    report.notes.insert(report.notes.end(), record.notes.begin(), record.notes.end());
+  } catch (const RecordingError& error) {
+    report.notes.push_back(fmt::format("The numerical substructure is not judged: {}.", error.what()));
+  }
+  if (!diagnosis.structure_causes.empty()) {
+    report.notes.push_back("Effects of the numerical substructure belong into the scenario, not into the model: " +
+                           written_in_one_line(diagnosis.structure_causes));
+  }
 }
 
 void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/config/error.hpp"
+#include "core/config/section.hpp"
 #include "diagnosis/response/test_response.hpp"
 #include "launch/coordinator_record.hpp"
 #include "launch/participant.hpp"
@@ -63,10 +64,24 @@ SimulatedTest simulated_test(const Scenario& scenario, const std::function<void(
           result.coordinator.reason};
 }
 
-/// The run's scenario with `rig` in place of the site's, and models in place of other sites that are elsewhere.
-Scenario scenario_with(const std::filesystem::path& run, const std::string& site, const std::string& rig) {
-  const std::filesystem::path file = run / "scenario.yaml";
+/// The scenario's own list `effects`, made longer.
+std::string longer_effects(const std::filesystem::path& file, std::span<const EffectSetting> causes) {
+  config::Document document = config::Document::load(file);
+  config::Section root = document.root();
+  std::string list;
+  for (const ListedEffect& own : read_effects(root, {EffectInterface::numerical_substructure}, 0)) {
+    list += written_effect(own);
+  }
+  for (const EffectSetting& cause : causes) list += written_effect({cause, {}});
+  return list;
+}
+
+/// The scenario with `rig` in place of the site's, effects of its structure added, and models in place of other
+/// sites that are elsewhere.
+Scenario scenario_with(const std::filesystem::path& file, const std::string& site, const std::string& rig,
+                       std::span<const EffectSetting> structure_causes) {
   std::vector<std::string> overrides{"substructures[" + site + "].rig=" + rig};
+  if (!structure_causes.empty()) overrides.push_back("effects=\n" + longer_effects(file, structure_causes));
   for (const SubstructureScenario& other : read_scenario(file, {}).substructures) {
     if (other.id == site || !other.site.rig_is_elsewhere) continue;
     if (!other.site.has_model) {
@@ -104,17 +119,17 @@ report::ResponseShrink shrink_of(const TestResponse& recorded, const TestRespons
 }  // namespace
 
 void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& run,
-                  std::string_view site, const RerunProgress& progress) {
+                  std::string_view site, const std::filesystem::path& scenario, const RerunProgress& progress) {
   report::DiagnosisReport& report = diagnosis.diagnosis.report;
   const std::vector<ListedEffect> causes = diagnosis.listed_causes(model);
-  if (causes.empty()) {
+  if (causes.empty() && diagnosis.structure_causes.empty()) {
     report.why_no_response = "nothing was added to the model";
     return;
   }
   try {
     const std::string id = site_of_run(run, site);
-    const Scenario before = scenario_with(run, id, model.rig);
-    const Scenario after = scenario_with(run, id, model.rig_with_effects(causes));
+    const Scenario before = scenario_with(scenario, id, model.rig, {});
+    const Scenario after = scenario_with(scenario, id, model.rig_with_effects(causes), diagnosis.structure_causes);
     const TestResponse recorded = recorded_response(run, before);
     const SimulatedTest as_given = simulated_test(before, [&](double done) { progress(0.5 * done); });
     const SimulatedTest augmented = simulated_test(after, [&](double done) { progress(0.5 + 0.5 * done); });

@@ -21,7 +21,8 @@ using RerunProgress = std::function<void(double done)>;
 /// Where there is no cause, or the test cannot be simulated, the report says why instead.
 /// @param run    recorded by `hybridtest run` or `simulate`.
 /// @param site   id of the substructure; empty where the run has one site.
+/// @param scenario   the run's own, or one with other numbers; causes at the numerical substructure are added to it.
 void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& run,
-                  std::string_view site, const RerunProgress& progress);
+                  std::string_view site, const std::filesystem::path& scenario, const RerunProgress& progress);
 
 }  // namespace hybridtest
