@@ -9,6 +9,7 @@
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
+#include "diagnosis/verdict/excitation.hpp"
 #include "diagnosis/verdict/judgement.hpp"
 #include "diagnosis/verdict/next_experiment.hpp"
 #include "diagnosis/verdict/selection.hpp"
@@ -245,6 +246,13 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   if (has_causes) diagnosis.causes = selection.chosen.effects;
   report.where = locate(problem, selection.baseline, has_causes ? selection.chosen : selection.baseline, settings.seed);
   report.next_experiment = next_experiment(selection, judgement, report.where);
+  const std::vector<Excitation> excitations = excitations_of(problem);
+  leave_out_unexcited(excitations, report.where);
+  if (report.verdict == Verdict::none && cannot_tell(excitations)) {
+    report.verdict = Verdict::not_excited;
+    report.next_experiment = experiment_that_excites(excitations);
+    report.ranking.clear();
+  }
 
   std::vector<Segment> judged = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
   if (judged.empty()) {

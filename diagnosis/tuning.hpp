@@ -54,6 +54,10 @@ inline constexpr std::size_t kMostEffects = 4;
 inline constexpr double kGapOverFloor = 0.3;
 /// A gap above this multiple of its floor that nothing reduces is unknown.
 inline constexpr double kUnknownOverFloor = 2.0;
+/// A signal within this multiple of its noise [standard deviations] shows nothing, and that no gap is seen in it means
+/// nothing; at the larger one an effect of a tenth of the signal stands out as far.
+inline constexpr double kExcitedOverNoise = 3.0;
+inline constexpr double kWellExcitedOverNoise = 30.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.

@@ -137,6 +137,10 @@ std::string summary_of(const SiteDiagnosis& site) {
   std::string text = fmt::format("{}: {}\n", report::name_of(report.verdict), in_words(report.verdict));
   if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
   for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.is_judged) {
+      text += fmt::format("    {:<22} not judged: {}\n", gap.interface, gap.why_not);
+      continue;
+    }
     text +=
         fmt::format("    {:<22} {:>5.1f} % [{:>5.1f}, {:>5.1f}] {:>9.4f} {:>10.4f}\n", gap.interface, 100.0 * gap.share,
                     100.0 * gap.share_ci95.low, 100.0 * gap.share_ci95.high, gap.nrmse, gap.floor_nrmse);

@@ -83,7 +83,9 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                                   {"role", recording.role == RecordingRole::fit ? "fit" : "held_out"}});
   }
   json["where"] = Json::array();
-  for (const report::InterfaceGap& gap : report.where) json["where"].push_back(where_entry(gap, diagnosis));
+  for (const report::InterfaceGap& gap : report.where) {
+    if (gap.is_judged) json["where"].push_back(where_entry(gap, diagnosis));
+  }
   json["verdict"] = report::name_of(report.verdict);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
