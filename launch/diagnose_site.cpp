@@ -8,6 +8,7 @@
 
 #include "core/config/error.hpp"
 #include "core/config/scalar.hpp"
+#include "diagnosis/intake/units_against_model.hpp"
 #include "diagnosis/report/diagnosis_json.hpp"
 #include "diagnosis/report/diagnosis_page.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
@@ -88,12 +89,25 @@ std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& mode
   return listed;
 }
 
+void require_units(const SiteModelFile& model, std::span<const Recording> recordings) {
+  std::vector<ConfigIssue> issues;
+  for (const Recording& recording : recordings) {
+    for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+      for (const IntakeFinding& finding : check_units_against(model.dofs[dof], recording, dof)) {
+        issues.push_back({.file = {}, .what = finding.text(recording.file)});
+      }
+    }
+  }
+  if (!issues.empty()) throw ConfigError{std::move(issues)};
+}
+
 SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                             DiagnoseSettings settings) {
   settings.site = model.name;
   settings.model_file = model.file.string();
   std::size_t dofs = model.dofs.size();
   for (const Recording& recording : recordings) dofs = std::min(dofs, recording.dofs.size());
+  require_units(model, recordings);
   SiteDiagnosis worst;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;

@@ -21,8 +21,12 @@ struct SiteDiagnosis {
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
 };
 
+/// @throws ConfigError with every column that is in another unit by what the model predicts of it.
+void require_units(const SiteModelFile& model, std::span<const Recording> recordings);
+
 /// Diagnoses every degree of freedom that model and recordings share; the answer is that of the largest gap.
 /// @param settings   its `dof`, `site` and `model_file` are filled in here.
+/// @throws ConfigError as require_units().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                                           DiagnoseSettings settings);
 
