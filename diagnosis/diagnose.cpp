@@ -12,8 +12,11 @@
 #include "diagnosis/verdict/excitation.hpp"
 #include "diagnosis/verdict/judgement.hpp"
 #include "diagnosis/verdict/next_experiment.hpp"
+#include "diagnosis/verdict/repeatability.hpp"
 #include "diagnosis/verdict/selection.hpp"
+#include "diagnosis/verdict/sensor_facts.hpp"
 #include "diagnosis/verdict/shrink.hpp"
+#include "diagnosis/verdict/unjudged.hpp"
 #include "diagnosis/verdict/where.hpp"
 
 namespace hybridtest {
@@ -226,8 +229,12 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
                                  recording.sample_period_s * static_cast<double>(recording.samples),
                                  recording.sample_period_s});
   }
+  for (const Recording& recording : recordings) {
+    if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
+  }
   const std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
   if (segments.empty()) {
+    add_unjudged(model, recordings, settings.dof, report.where);
     report.verdict = Verdict::not_excited;
     report.next_experiment =
         "Record command and measured displacement, or measured displacement and measured force, of one test.";
@@ -248,6 +255,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   report.next_experiment = next_experiment(selection, judgement, report.where);
   const std::vector<Excitation> excitations = excitations_of(problem);
   leave_out_unexcited(excitations, report.where);
+  add_repeatability(model, segments, report.where);
+  add_unjudged(model, recordings, settings.dof, report.where);
   if (report.verdict == Verdict::none && cannot_tell(excitations)) {
     report.verdict = Verdict::not_excited;
     report.next_experiment = experiment_that_excites(excitations);

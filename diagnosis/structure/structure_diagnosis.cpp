@@ -78,6 +78,10 @@ double excess(double nrmse, double floor) { return std::max(0.0, nrmse * nrmse -
 
 /// Its share of the whole gap; those of the others become less by it.
 double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& report) {
+  // In place of what says that it is not judged.
+  std::erase_if(report.where, [](const report::InterfaceGap& other) {
+    return other.interface == name_of(EffectInterface::numerical_substructure);
+  });
   double others = 0.0;
   for (const report::InterfaceGap& gap : report.where) others += excess(gap.nrmse, gap.floor_nrmse);
   report::InterfaceGap gap;
@@ -96,7 +100,9 @@ double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& r
   }
   const double share = gap.share;
   report.where.push_back(std::move(gap));
-  std::ranges::stable_sort(report.where, std::greater{}, &report::InterfaceGap::share);
+  std::ranges::stable_sort(report.where, [](const report::InterfaceGap& a, const report::InterfaceGap& b) {
+    return a.is_judged && (!b.is_judged || a.share > b.share);
+  });
   return share;
 }
 
