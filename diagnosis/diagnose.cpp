@@ -10,10 +10,14 @@
 #include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
+#include "diagnosis/verdict/excitation.hpp"
 #include "diagnosis/verdict/judgement.hpp"
 #include "diagnosis/verdict/next_experiment.hpp"
+#include "diagnosis/verdict/repeatability.hpp"
 #include "diagnosis/verdict/selection.hpp"
+#include "diagnosis/verdict/sensor_facts.hpp"
 #include "diagnosis/verdict/shrink.hpp"
+#include "diagnosis/verdict/unjudged.hpp"
 #include "diagnosis/verdict/where.hpp"
 #include "diagnosis/verdict/with_traces.hpp"
 
@@ -233,11 +237,15 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
                                  recording.sample_period_s * static_cast<double>(recording.samples),
                                  recording.sample_period_s});
   }
+  for (const Recording& recording : recordings) {
+    if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
+  }
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
   std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
   // What arrived at random is told by its trace alone.
   std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
   if (segments.empty() && traces.empty()) {
+    add_unjudged(model, recordings, settings.dof, report.where);
     report.verdict = Verdict::not_excited;
     report.next_experiment =
         "Record command and measured displacement, or measured displacement and measured force, of one test.";
@@ -261,6 +269,15 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   add_traces(traces, parts, report.ranking);
   add_traces(traces, parts, report.where);
   report.next_experiment = next_experiment(selection, judgement, report.where);
+  const std::vector<Excitation> excitations = excitations_of(problem);
+  leave_out_unexcited(excitations, report.where);
+  add_repeatability(model, segments, report.where);
+  add_unjudged(model, recordings, settings.dof, report.where);
+  if (report.verdict == Verdict::none && cannot_tell(excitations)) {
+    report.verdict = Verdict::not_excited;
+    report.next_experiment = experiment_that_excites(excitations);
+    report.ranking.clear();
+  }
 
   std::vector<Segment> judged = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
   if (judged.empty()) {
@@ -275,7 +292,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   worst_first(report.series);
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
-  report.why_no_response = "Recordings of a site alone do not say of what structure it was a part.";
+  report.why_no_response = "recordings of a site alone do not say of what structure it was a part";
   add_notes(diagnosis, segments);
   return diagnosis;
 }

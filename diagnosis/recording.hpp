@@ -42,6 +42,7 @@ struct Recording {
   RecordingRole role = RecordingRole::fit;
   double sample_period_s = 0.0;
   std::size_t samples = 0;
+  std::size_t first_row = 1;  // how the first sample is counted in findings: the line of a CSV
   std::vector<DofRecording> dofs;
 };
 

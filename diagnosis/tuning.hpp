@@ -61,6 +61,10 @@ inline constexpr std::size_t kMostEffects = 4;
 inline constexpr double kGapOverFloor = 0.3;
 /// A gap above this multiple of its floor that nothing reduces is unknown.
 inline constexpr double kUnknownOverFloor = 2.0;
+/// A signal within this multiple of its noise [standard deviations] shows nothing, and that no gap is seen in it means
+/// nothing; at the larger one an effect of a tenth of the signal stands out as far.
+inline constexpr double kExcitedOverNoise = 3.0;
+inline constexpr double kWellExcitedOverNoise = 30.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
 /// Beside a gap of more than this multiple of its floor smaller ones count as none.
@@ -68,6 +72,9 @@ inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;
+/// Likewise where everything is computed and nothing measured: wrong ratios come within a hundredth, right ones
+/// within rounding.
+inline constexpr double kComputedLeaves = 1e-6;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
 

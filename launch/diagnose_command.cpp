@@ -1,12 +1,16 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <algorithm>
+#include <optional>
 #include <thread>
 
+#include "core/config/error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnose_site.hpp"
+#include "launch/diagnosis_progress.hpp"
 #include "launch/read_recording.hpp"
+#include "launch/rerun_test.hpp"
 
 namespace hybridtest {
 namespace {
@@ -16,18 +20,26 @@ struct DiagnoseOptions {
   std::string site;
   std::vector<std::filesystem::path> recordings;
   std::vector<std::filesystem::path> held_out;
+  std::filesystem::path scenario;
   std::filesystem::path out;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
 };
 
-/// A line that is rewritten, on a terminal only.
-void show_progress(std::size_t done, std::size_t all) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{} of {} effects fitted{}", done, all, done == all ? "\n" : "");
+/// The first run directory, of those held out if there is one: it knows of what test the site was a part.
+std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& options) {
+  for (const auto* files : {&options.held_out, &options.recordings}) {
+    const auto run = std::ranges::find_if(*files, [](const auto& file) { return std::filesystem::is_directory(file); });
+    if (run != files->end()) return *run;
+  }
+  return {};
 }
 
 int run_diagnosis(const DiagnoseOptions& options) {
+  const std::optional<std::filesystem::path> run = run_to_repeat(options);
+  if (!run && !options.scenario.empty()) {
+    throw ConfigError{"--scenario: a CSV does not hold what the structure received; give a run directory"};
+  }
   const SiteModelFile model = read_site_model(options.model, options.site);
   std::vector<Recording> recordings;
   for (const std::filesystem::path& file : options.recordings) {
@@ -39,8 +51,13 @@ int run_diagnosis(const DiagnoseOptions& options) {
   DiagnoseSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  settings.progress = show_progress;
-  const SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  settings.progress = show_fits;
+  SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  if (run) {
+    const std::filesystem::path scenario = options.scenario.empty() ? *run / "scenario.yaml" : options.scenario;
+    diagnose_structure_of(diagnosis, *run, scenario);
+    add_response(diagnosis, model, *run, options.site, scenario, show_rerun);
+  }
   write_diagnosis(diagnosis, model, options.out);
   fmt::print("{}\n  written to {}\n", summary_of(diagnosis), options.out.string());
   return diagnosis.diagnosis.report.verdict == report::Verdict::not_excited ? kExitDataInvalid : kExitCompleted;
@@ -59,6 +76,8 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
   command->add_option("--recording", options->recordings, "CSV or run directory to find the cause in; repeatable")
       ->required();
   command->add_option("--held-out", options->held_out, "CSV or run directory to measure the shrinking on; repeatable");
+  command->add_option("--scenario", options->scenario,
+                      "Scenario with the structure as you take it to be; without one, that of the run directory");
   command->add_option("--out", options->out, "Directory for diagnosis.json and augmented_model.yaml")->required();
   command->add_option("--seed", options->seed, "Of the resampling behind intervals")->capture_default_str();
   command->add_option("--threads", options->threads, "Threads to fit on; 0: one per core")->capture_default_str();

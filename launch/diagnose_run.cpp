@@ -9,7 +9,9 @@
 #include "core/config/error.hpp"
 #include "core/config/wording.hpp"
 #include "launch/diagnose_site.hpp"
+#include "launch/diagnosis_progress.hpp"
 #include "launch/read_recording.hpp"
+#include "launch/rerun_test.hpp"
 #include "launch/run_directory.hpp"
 #include "launch/site_model_file.hpp"
 
@@ -31,7 +33,10 @@ void diagnose_one(const std::string& id, const std::filesystem::path& run, const
   const std::vector<Recording> recordings{read_recording(run, RecordingRole::fit, id)};
   DiagnoseSettings settings;
   settings.threads = std::max(1U, std::thread::hardware_concurrency());
-  const SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  settings.progress = show_fits;
+  SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
+  diagnose_structure_of(diagnosis, run, run / "scenario.yaml");
+  add_response(diagnosis, model, run, id, run / "scenario.yaml", show_rerun);
   write_diagnosis(diagnosis, model, directory);
   out << "\ndiagnosis of " << id << ": " << summary_of(diagnosis) << "  written to " << directory.string() << "\n";
 }

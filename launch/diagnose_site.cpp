@@ -7,8 +7,13 @@
 #include <utility>
 
 #include "core/config/error.hpp"
+#include "core/config/scalar.hpp"
+#include "diagnosis/intake/units_against_model.hpp"
 #include "diagnosis/report/diagnosis_json.hpp"
 #include "diagnosis/report/diagnosis_page.hpp"
+#include "diagnosis/structure/structure_diagnosis.hpp"
+#include "launch/structure_record.hpp"
+#include "recording/error.hpp"
 
 namespace hybridtest {
 namespace {
@@ -50,7 +55,51 @@ std::string parameters_in_words(const report::RankedCause& cause) {
   return text;
 }
 
+/// As a scenario's list, or for --set.
+std::string written_in_one_line(std::span<const EffectSetting> effects) {
+  std::string list;
+  for (const EffectSetting& effect : effects) {
+    list += fmt::format("{}{{interface: {}, effect: {}, {}: {}}}", list.empty() ? "" : ", ",
+                        name_of(effect.type->interface), effect.type->name, effect.type->parameters.front().name,
+                        config::written_number(effect.values.front()));
+  }
+  return "effects=[" + list + "]";
+}
+
+std::string response_in_words(const report::ResponseShrink& response) {
+  std::string text = fmt::format("\n  response of the whole test against {}\n", response.recording);
+  const auto add = [&](std::string_view what, double before, double after) {
+    text += fmt::format("    {:<22} {:.4f} before, {:.4f} after\n", what, before, after);
+  };
+  add("displacement, NRMSE", response.nrmse_before, response.nrmse_after);
+  add("peak error", response.peak_error_before, response.peak_error_after);
+  if (response.energy_error_before && response.energy_error_after) {
+    add("energy error", *response.energy_error_before, *response.energy_error_after);
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& model) const {
+  std::vector<ListedEffect> listed;
+  for (const EffectSetting& cause : diagnosis.causes) {
+    listed.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(dof)} : std::nullopt});
+  }
+  return listed;
+}
+
+void require_units(const SiteModelFile& model, std::span<const Recording> recordings) {
+  std::vector<ConfigIssue> issues;
+  for (const Recording& recording : recordings) {
+    for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+      for (const IntakeFinding& finding : check_units_against(model.dofs[dof], recording, dof)) {
+        issues.push_back({.file = {}, .what = finding.text(recording.file)});
+      }
+    }
+  }
+  if (!issues.empty()) throw ConfigError{std::move(issues)};
+}
 
 SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                             DiagnoseSettings settings) {
@@ -58,14 +107,33 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
   settings.model_file = model.file.string();
   std::size_t dofs = model.dofs.size();
   for (const Recording& recording : recordings) dofs = std::min(dofs, recording.dofs.size());
+  require_units(model, recordings);
   SiteDiagnosis worst;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;
     Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
     if (dofs > 1) diagnosis.report.notes.push_back(fmt::format("Speaks of degree of freedom {} of {}.", dof + 1, dofs));
-    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof};
+    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
   }
   return worst;
+}
+
+void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
+                           const std::filesystem::path& scenario) {
+  report::DiagnosisReport& report = diagnosis.diagnosis.report;
+  try {
+    const StructureRecord record = structure_record(run, read_scenario(scenario, {}));
+    const StructureDiagnosis structure = diagnose_structure(record.model, record.recording);
+    add_structure(structure, diagnosis.diagnosis);
+    diagnosis.structure_causes = causes_of(structure);
+    report.notes.insert(report.notes.end(), record.notes.begin(), record.notes.end());
+  } catch (const RecordingError& error) {
+    report.notes.push_back(fmt::format("The numerical substructure is not judged: {}.", error.what()));
+  }
+  if (!diagnosis.structure_causes.empty()) {
+    report.notes.push_back("Effects of the numerical substructure belong into the scenario, not into the model: " +
+                           written_in_one_line(diagnosis.structure_causes));
+  }
 }
 
 void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
@@ -75,11 +143,7 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
   if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
   write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
   write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
-  std::vector<ListedEffect> causes;
-  for (const EffectSetting& cause : diagnosis.diagnosis.causes) {
-    causes.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(diagnosis.dof)} : std::nullopt});
-  }
-  write_file(directory / "augmented_model.yaml", model.with_effects(causes));
+  write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)));
 }
 
 std::string summary_of(const SiteDiagnosis& site) {
@@ -87,6 +151,10 @@ std::string summary_of(const SiteDiagnosis& site) {
   std::string text = fmt::format("{}: {}\n", report::name_of(report.verdict), in_words(report.verdict));
   if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
   for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.is_judged) {
+      text += fmt::format("    {:<22} not judged: {}\n", gap.interface, gap.why_not);
+      continue;
+    }
     text +=
         fmt::format("    {:<22} {:>5.1f} % [{:>5.1f}, {:>5.1f}] {:>9.4f} {:>10.4f}\n", gap.interface, 100.0 * gap.share,
                     100.0 * gap.share_ci95.low, 100.0 * gap.share_ci95.high, gap.nrmse, gap.floor_nrmse);
@@ -109,6 +177,11 @@ std::string summary_of(const SiteDiagnosis& site) {
     text += fmt::format("  variance removed         {:.2f} %", 100.0 * shrink.variance_removed);
     if (shrink.ci95) text += fmt::format(" [{:.2f}, {:.2f}]", 100.0 * shrink.ci95->low, 100.0 * shrink.ci95->high);
     text += '\n';
+  }
+  if (report.response_shrink) {
+    text += response_in_words(*report.response_shrink);
+  } else if (!report.why_no_response.empty()) {
+    text += "\n  response of the whole test: not known, " + report.why_no_response + "\n";
   }
   if (!report.next_experiment.empty()) text += "\n  next: " + report.next_experiment + "\n";
   for (const std::string& note : report.notes) text += "  note: " + note + "\n";

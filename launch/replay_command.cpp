@@ -7,6 +7,7 @@
 #include "core/exit_code.hpp"
 #include "diagnosis/replay/replay.hpp"
 #include "launch/commands.hpp"
+#include "launch/diagnose_site.hpp"
 #include "launch/read_recording.hpp"
 #include "launch/site_model_file.hpp"
 
@@ -34,6 +35,7 @@ void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
 int replay_recording(const ReplayOptions& options) {
   const SiteModelFile model = read_site_model(options.model, options.site);
   const Recording recording = read_recording(options.recording, RecordingRole::held_out, options.site);
+  require_units(model, {&recording, 1});
   std::vector<std::vector<ReplayedChannel>> replays;
   std::size_t channels = 0;
   for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {

@@ -128,9 +128,13 @@ void cut_return(RawRecording& raw, const RunFileReader& site) {
 
 }  // namespace
 
-std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
+std::string site_of_run(const std::filesystem::path& run, std::string_view site) {
   const Scenario scenario = scenario_of(run);
-  return run_file(run, site_of(scenario, run, site).id);
+  return site_of(scenario, run, site).id;
+}
+
+std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
+  return run_file(run, site_of_run(run, site));
 }
 
 RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_view site) try {

@@ -385,10 +385,11 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     apply(errors, scenario);
   });
   document.throw_if_errors();
-  const double integrator_step_s = scenario.time.step_s * errors.step;
-  report_at(root.section("time"), [&] { require_stable_step(vibration_modes(scenario.structure), integrator_step_s); });
+  scenario.integrator_step_s = scenario.time.step_s * errors.step;
+  report_at(root.section("time"),
+            [&] { require_stable_step(vibration_modes(scenario.structure), scenario.integrator_step_s); });
   scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
-                              step_s = integrator_step_s] { return make_integrator(type, structure, step_s); };
+                              step_s = scenario.integrator_step_s] { return make_integrator(type, structure, step_s); };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();

@@ -78,6 +78,7 @@ struct Scenario {
   std::string ground_motion_text;                    // as written in the scenario
   std::vector<double> ground_acceleration_m_per_s2;  // at each step
   std::string integrator_type;
+  double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
   std::function<std::unique_ptr<Integrator>()> make_integrator;
   std::vector<SubstructureScenario> substructures;
   std::string effective;  // with defaults filled in

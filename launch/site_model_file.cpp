@@ -95,15 +95,23 @@ std::string whole_rig(const Section& rig) {
   return text;
 }
 
+/// The list under `effects`, which is the text's last key if it is there, made longer.
+std::string longer_by(std::span<const ListedEffect> effects, std::string text, bool has_effects) {
+  if (!has_effects && !effects.empty()) text += "effects:\n";
+  for (const ListedEffect& effect : effects) text += written_effect(effect);
+  return text;
+}
+
 constexpr double kUsualControlRate_hz = 1024.0;
 
 }  // namespace
 
 std::string SiteModelFile::with_effects(std::span<const ListedEffect> effects) const {
-  std::string longer = text;
-  if (!has_effects && !effects.empty()) longer += "effects:\n";
-  for (const ListedEffect& effect : effects) longer += written_effect(effect);
-  return longer;
+  return longer_by(effects, text, has_effects);
+}
+
+std::string SiteModelFile::rig_with_effects(std::span<const ListedEffect> effects) const {
+  return longer_by(effects, rig, has_effects);
 }
 
 SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure) {

@@ -25,8 +25,10 @@ struct SiteModelFile {
 
   /// `text` with effects added behind those it has.
   [[nodiscard]] std::string with_effects(std::span<const ListedEffect> effects) const;
+  /// Likewise `rig`.
+  [[nodiscard]] std::string rig_with_effects(std::span<const ListedEffect> effects) const;
 
-  bool has_effects = false;  // in `text`, as its last key
+  bool has_effects = false;  // in `text` and `rig`, as their last key
 };
 
 /// @param substructure   of a whole scenario: the id; empty where it has one site only.

@@ -41,6 +41,7 @@ Recording taken(RawRecording raw, double period_s) {
   recording.file = raw.file;
   recording.sample_period_s = period_s;
   recording.samples = raw.time_s.size();
+  recording.first_row = raw.first_row;
   recording.dofs.resize(dof_count(raw));
   for (RawColumn& column : raw.columns) recording.dofs[column.dof].of(column.channel) = std::move(column.values);
   return recording;

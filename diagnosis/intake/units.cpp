@@ -8,6 +8,9 @@
 #include <numeric>
 #include <string_view>
 
+#include "diagnosis/intake/column_header.hpp"
+#include "diagnosis/signals/local_polynomial.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -86,10 +89,63 @@ bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, Fin
   return false;
 }
 
+/// What the ratio of a measured acceleration to the displacement's second derivative says of a column.
+struct AccelerationRatio {
+  double ratio;
+  std::string_view what;
+  bool is_of_time;  // and not of the acceleration
+};
+constexpr std::array<AccelerationRatio, 5> kAccelerationRatios{{{1.0 / 9.80665, "seems to be in g", false},
+                                                                {1000.0, "seems to be in mm/s2", false},
+                                                                {100.0, "seems to be in cm/s2", false},
+                                                                {1e6, "seems to be in milliseconds", true},
+                                                                {1e12, "seems to be in microseconds", true}}};
+/// Of an acceleration with the one that the displacement went through. Noise of the latter takes from both by as much
+/// as the tolerance of the ratio.
+constexpr double kSameAcceleration = 0.8;
+
+/// Second derivative of the displacement, as quiet as the motion allows.
+std::vector<double> acceleration_of(const std::vector<double>& displacement_m, double period_s) {
+  const LocalPolynomial polynomial{widest_faithful_half_width(displacement_m), period_s};
+  std::vector<double> acceleration(displacement_m.size());
+  std::ranges::transform(polynomial.motion(displacement_m), acceleration.begin(), &Motion::acceleration_m_per_s2);
+  return acceleration;
+}
+
+double deviation(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / n);
+}
+
+/// Against the measured displacement of the same degree of freedom.
+void check_acceleration(const RawRecording& raw, const RawColumn& column, double period_s, FindingList& findings) {
+  const auto displacement = std::ranges::find_if(raw.columns, [&](const RawColumn& other) {
+    return other.channel == Channel::measured_displacement && other.dof == column.dof;
+  });
+  if (displacement == raw.columns.end()) return;
+  const std::vector<double> expected = acceleration_of(displacement->values, period_s);
+  if (!(correlation(column.values, expected) >= kSameAcceleration)) return;
+  const double ratio = deviation(column.values) / deviation(expected);
+  for (const AccelerationRatio& known : kAccelerationRatios) {
+    if (!(std::abs(ratio / known.ratio - 1.0) <= kRatioTolerance)) continue;
+    const std::size_t sample = known.is_of_time ? 1 : span_of(column.values).farthest;
+    const double value = known.is_of_time ? raw.time_s[sample] : column.values[sample];
+    findings.add(raw.first_row + sample, known.is_of_time ? std::string{kTimeColumn} : column.name,
+                 fmt::format("{}", value),
+                 fmt::format("{}: '{}' is {:.4g} times the second derivative of '{}'; {} expected", known.what,
+                             column.name, ratio, displacement->name, known.is_of_time ? "seconds were" : "m/s2 were"));
+    return;
+  }
+}
+
 }  // namespace
 
 void check_units(const RawRecording& raw, double period_s, FindingList& findings) {
   for (const RawColumn& column : raw.columns) {
+    if (column.channel == Channel::measured_acceleration) check_acceleration(raw, column, period_s, findings);
     if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
     const double speed = fastest(column.values, period_s);

@@ -15,6 +15,9 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
              {"ci95", interval(gap.share_ci95)}, {"nrmse", gap.nrmse},
              {"floor_nrmse", gap.floor_nrmse},   {"time_windows", Json::array()},
              {"bands_hz", Json::array()},        {"regions", Json::array()}};
+  if (gap.repeatability) {
+    entry["repeatability"] = {{"nrmse", gap.repeatability->nrmse}, {"source", gap.repeatability->source}};
+  }
   const auto place = std::ranges::find(diagnosis.places, gap.interface, &GapPlace::interface);
   if (place == diagnosis.places.end()) return entry;
   for (const TimeWindow& window : place->time_windows) {
@@ -61,8 +64,25 @@ Json shrink_entry(const report::Shrink& shrink) {
   return entry;
 }
 
+Json sensor_entry(const report::SensorFacts& facts) {
+  Json entry{{"recording", facts.recording},
+             {"column", facts.column},
+             {"quantum", facts.quantum},
+             {"repeated_share", facts.repeated_share},
+             {"clipped_share", facts.clipped_share}};
+  if (facts.at_rest) {
+    entry["at_rest"] = {{"first", facts.at_rest->first},
+                        {"last", facts.at_rest->last},
+                        {"drift_per_s", facts.at_rest->drift_per_s},
+                        {"rms", facts.at_rest->rms}};
+  }
+  if (facts.lag_s) entry["lag_s"] = *facts.lag_s;
+  return entry;
+}
+
 Json response_entry(const report::ResponseShrink& shrink) {
-  Json entry{{"nrmse_before", shrink.nrmse_before},
+  Json entry{{"recording", shrink.recording},
+             {"nrmse_before", shrink.nrmse_before},
              {"nrmse_after", shrink.nrmse_after},
              {"peak_error_before", shrink.peak_error_before},
              {"peak_error_after", shrink.peak_error_after}};
@@ -82,7 +102,15 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                                   {"role", recording.role == RecordingRole::fit ? "fit" : "held_out"}});
   }
   json["where"] = Json::array();
-  for (const report::InterfaceGap& gap : report.where) json["where"].push_back(where_entry(gap, diagnosis));
+  for (const report::InterfaceGap& gap : report.where) {
+    if (gap.is_judged) json["where"].push_back(where_entry(gap, diagnosis));
+  }
+  json["not_judged"] = Json::object();
+  for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.is_judged) json["not_judged"][gap.interface] = gap.why_not;
+  }
+  json["sensors"] = Json::array();
+  for (const report::SensorFacts& facts : report.sensors) json["sensors"].push_back(sensor_entry(facts));
   json["verdict"] = report::name_of(report.verdict);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();

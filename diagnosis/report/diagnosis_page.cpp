@@ -31,7 +31,7 @@ small, .fine { color: var(--soft); font-size: 13px; }
 .chain li { flex: 1 1 118px; max-width: 210px; position: relative; border: 1.5px solid var(--line); border-radius: 6px;
   padding: 8px 9px; display: flex; flex-direction: column; background: var(--panel); }
 .chain li + li::before { content: "→"; position: absolute; left: -18px; top: 38%; color: var(--soft); }
-.chain b { font-size: 13.5px; } .chain small { font-size: 12px; line-height: 1.3; }
+.chain b { font-size: 13.5px; } .chain small { font-size: 12px; line-height: 1.3; overflow-wrap: anywhere; }
 .chain strong { font-size: 22px; } .chain em { font-style: normal; font-size: 13px; font-weight: bold; color: var(--soft); }
 .chain .fault { border-color: var(--bad); } .chain .fault em { color: var(--bad); }
 .chain .main { background: var(--badsoft); border-width: 3px; padding: 6.5px 7.5px; }
@@ -73,7 +73,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
          fmt::format("<h1>Where model and test of {} disagree, and why</h1>\n<p class=\"verdict {}\">{}</p>\n",
                      plot::escaped(report.site), name_of(report.verdict), plot::escaped(verdict_sentence(report))) +
          chain_part(report) + shrink_part(report) + causes_part(report) + curves_part(report) + location_part(report) +
-         facts_part(report) + "</body>\n</html>\n";
+         sensors_part(report) + facts_part(report) + "</body>\n</html>\n";
 }
 
 }  // namespace hybridtest::report

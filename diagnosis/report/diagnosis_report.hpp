@@ -30,6 +30,12 @@ struct ReportedRecording {
   double sample_period_s = 0.0;
 };
 
+/// How closely a residual comes back when the input does.
+struct Repeatability {
+  double nrmse = 0.0;
+  std::string source;  // `repeated cycles`, `repeated recordings`
+};
+
 /// One interface of the chain. Root mean squares are relative to that of the measured output.
 struct InterfaceGap {
   std::string interface;  // `transfer_system`
@@ -39,7 +45,28 @@ struct InterfaceGap {
   double share = 0.0;        // of the whole gap, 0 to 1
   Interval share_ci95{};
   double nrmse = 0.0;
-  double floor_nrmse = 0.0;
+  double floor_nrmse = 0.0;                      // of noise
+  std::optional<Repeatability> repeatability{};  // where the test repeats itself
+};
+
+/// What a channel reads while the motion rests, in its unit.
+struct RestFacts {
+  double first = 0.0;
+  double last = 0.0;
+  double drift_per_s = 0.0;
+  double rms = 0.0;  // of the noise
+};
+
+/// What a measured channel tells of its sensor.
+struct SensorFacts {
+  std::string recording;
+  std::string column;  // `measured_force_n`
+  std::string unit;
+  double quantum = 0.0;         // smallest step between neighbours; 0 for a channel that never changes
+  double repeated_share = 0.0;  // of samples that equal the one before
+  double clipped_share = 0.0;   // of samples that sit at the very extremes
+  std::optional<RestFacts> at_rest{};
+  std::optional<double> lag_s{};  // of a force behind the displacement
 };
 
 struct ReportedParameter {
@@ -75,11 +102,12 @@ struct Shrink {
 
 /// The same in the response of a whole hybrid test.
 struct ResponseShrink {
+  std::string recording{};  // the run directory whose test was run again
   double nrmse_before = 0.0;
   double nrmse_after = 0.0;
   double peak_error_before = 0.0;  // relative to the peak
   double peak_error_after = 0.0;
-  std::optional<double> energy_error_before{};  // relative to the energy put in
+  std::optional<double> energy_error_before{};  // of what the substructures took, over what the ground put in
   std::optional<double> energy_error_after{};
 };
 
@@ -105,6 +133,7 @@ struct DiagnosisReport {
   Verdict verdict = Verdict::not_excited;
   std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share
   std::vector<RankedCause> ranking;
+  std::vector<SensorFacts> sensors{};
   std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause
   std::optional<ResponseShrink> response_shrink;
   std::string why_no_response;          // where there is none

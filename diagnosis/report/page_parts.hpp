@@ -17,6 +17,8 @@ namespace hybridtest::report {
 [[nodiscard]] std::string curves_part(const DiagnosisReport& report);
 /// Where inside the interface: time, frequency, motion, distance since reversal, drifting parameters.
 [[nodiscard]] std::string location_part(const DiagnosisReport& report);
+/// Steps, clipping, rest readings and lag of the measured channels.
+[[nodiscard]] std::string sensors_part(const DiagnosisReport& report);
 /// Recordings with hashes, every interface in figures, notes.
 [[nodiscard]] std::string facts_part(const DiagnosisReport& report);
 

@@ -59,6 +59,15 @@ DiagnosisReport example() {
   report.ranking = {friction, stribeck};
   report.interface_shrink =
       Shrink{.nrmse_before = 0.21, .nrmse_after = 0.02, .floor_nrmse = 0.01, .variance_removed = 0.99};
+  report.where.front().repeatability = Repeatability{0.034, "repeated cycles"};
+  report.sensors = {{.recording = "fit.csv",
+                     .column = "measured_force_n",
+                     .unit = "N",
+                     .quantum = 3.56,
+                     .repeated_share = 0.25,
+                     .clipped_share = 0.04,
+                     .at_rest = RestFacts{-185.0, -170.0, 0.5, 4.4},
+                     .lag_s = 0.0021}};
   report.why_no_response = "the recording is a CSV";
   report.series = {series};
   return report;
@@ -106,6 +115,20 @@ TEST(DiagnosisPage, SaysWhereWhichAndHowFar) {
   EXPECT_THAT(page, HasSubstr(std::string(64, 'b')));
   EXPECT_THAT(page, HasSubstr("force over displacement, after"));
   EXPECT_THAT(page, HasSubstr("the recording is a CSV"));
+}
+
+TEST(DiagnosisPage, ShowsWhatSensorsTellAndWhatDiffersBetweenRepetitions) {
+  DiagnosisReport report = example();
+  const std::string page = diagnosis_page(report);
+  EXPECT_THAT(page, HasSubstr("(repeated cycles)"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"warn\">4.0")) << "a twenty-fifth at the end of its range is marked";
+  EXPECT_THAT(page, HasSubstr("-185\u00a0N first, -170\u00a0N last; noise 4.40\u00a0N"));
+  EXPECT_THAT(page, HasSubstr("2.10\u00a0ms"));
+  EXPECT_THAT(page, HasSubstr("command_displacement_m was not recorded"));
+  report.sensors.front().clipped_share = 0.0;
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("<td class=\"warn\">")));
+  report.sensors.clear();
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("What the sensors tell")));
 }
 
 TEST(DiagnosisPage, EscapesWhatTheUserNamed) {

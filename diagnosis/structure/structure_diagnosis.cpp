@@ -1,0 +1,218 @@
+#include "diagnosis/structure/structure_diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+
+double rounding_floor(Eigen::Index steps) {
+  return 0.5 * std::numeric_limits<double>::epsilon() * std::pow(static_cast<double>(steps), 1.5);
+}
+
+/// Those that change what is computed: a stiffness without recorded forces of the numerical substructures does
+/// not, nor a damping where there is none.
+std::vector<const StructureEffect*> effects_that_matter(const ComputedStructure& model,
+                                                        const StructureRecording& recording) {
+  std::vector<const StructureEffect*> effects;
+  for (const StructureEffect& effect : kStructureEffects) {
+    const bool is_stiffness = effect.ratio == &StructureErrors::stiffness;
+    const bool is_damping = effect.ratio == &StructureErrors::damping;
+    if (is_stiffness &&
+        (!recording.has_numerical_forces() || recording.modelled_numerical_force_n.squaredNorm() == 0.0)) {
+      continue;
+    }
+    if (is_damping && model.structure.damping_n_s_per_m.squaredNorm() == 0.0) continue;
+    effects.push_back(&effect);
+  }
+  return effects;
+}
+
+/// The best fit with one more effect.
+StructureFit with_another(const ComputedStructure& model, const StructureRecording& recording, const StructureFit& fit,
+                          const std::vector<const StructureEffect*>& effects) {
+  StructureFit best = fit;
+  for (const StructureEffect* effect : effects) {
+    if (std::ranges::find(fit.ratios, effect, &FittedRatio::effect) != fit.ratios.end()) continue;
+    std::vector<FittedRatio> start = fit.ratios;
+    start.push_back({.effect = effect});
+    StructureFit longer = fit_structure(model, recording, std::move(start));
+    if (longer.nrmse < best.nrmse) best = std::move(longer);
+  }
+  return best;
+}
+
+/// By how much each cause alone is missed.
+std::vector<double> shares_of(const ComputedStructure& model, const StructureRecording& recording,
+                              const StructureFit& fit) {
+  std::vector<double> shares;
+  double sum = 0.0;
+  for (const FittedRatio& ratio : fit.ratios) {
+    StructureErrors without = fit.errors();
+    without.*(ratio.effect->ratio) = 0.0;
+    const Eigen::MatrixXd left_m = recomputed_displacement_m(model, recording, without) - recording.displacement_m;
+    shares.push_back(left_m.squaredNorm());
+    sum += shares.back();
+  }
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+Verdict together(Verdict site, Verdict structure) {
+  if (structure == Verdict::none) return site;
+  if (site == Verdict::none || site == Verdict::not_excited) return structure;
+  if (site == Verdict::unknown && structure == Verdict::unknown) return Verdict::unknown;
+  if (site == Verdict::set && structure == Verdict::named) return Verdict::set;
+  return site == Verdict::named && structure == Verdict::named ? Verdict::named : Verdict::partial;
+}
+
+double excess(double nrmse, double floor) { return std::max(0.0, nrmse * nrmse - floor * floor); }
+
+/// Its share of the whole gap; those of the others become less by it.
+double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& report) {
+  // In place of what says that it is not judged.
+  std::erase_if(report.where, [](const report::InterfaceGap& other) {
+    return other.interface == name_of(EffectInterface::numerical_substructure);
+  });
+  double others = 0.0;
+  for (const report::InterfaceGap& gap : report.where) others += excess(gap.nrmse, gap.floor_nrmse);
+  report::InterfaceGap gap;
+  gap.interface = name_of(EffectInterface::numerical_substructure);
+  gap.is_judged = true;
+  gap.nrmse = structure.nrmse;
+  gap.floor_nrmse = structure.floor_nrmse;
+  gap.is_at_fault = structure.verdict != Verdict::none;
+  const double own = gap.is_at_fault ? excess(gap.nrmse, gap.floor_nrmse) : 0.0;
+  gap.share = own > 0.0 ? own / (own + others) : 0.0;
+  gap.share_ci95 = {gap.share, gap.share};
+  for (report::InterfaceGap& other : report.where) {
+    other.share *= 1.0 - gap.share;
+    other.share_ci95.low *= 1.0 - gap.share;
+    other.share_ci95.high *= 1.0 - gap.share;
+  }
+  const double share = gap.share;
+  report.where.push_back(std::move(gap));
+  std::ranges::stable_sort(report.where, [](const report::InterfaceGap& a, const report::InterfaceGap& b) {
+    return a.is_judged && (!b.is_judged || a.share > b.share);
+  });
+  return share;
+}
+
+std::vector<report::RankedCause> ranked(const StructureDiagnosis& structure, double share_of_gap) {
+  constexpr double kTwoSided95 = 1.96;
+  std::vector<report::RankedCause> causes;
+  for (std::size_t i = 0; i < structure.fit.ratios.size(); ++i) {
+    const FittedRatio& ratio = structure.fit.ratios[i];
+    const EffectType& type = *find_effect(EffectInterface::numerical_substructure, ratio.effect->name);
+    report::RankedCause cause;
+    cause.interface = name_of(type.interface);
+    cause.effect = type.name;
+    cause.equation = type.equation;
+    cause.probability = 1.0 - structure.gap_left;
+    cause.share = share_of_gap * structure.shares[i];
+    cause.is_cause = true;
+    report::ReportedParameter parameter;
+    parameter.name = type.parameters.front().name;
+    parameter.value = ratio.value;
+    parameter.is_at_bound = ratio.at_bound;
+    const double half = kTwoSided95 * ratio.standard_error;
+    if (half > 0.0) parameter.ci95 = report::Interval{ratio.value - half, ratio.value + half};
+    cause.parameters.push_back(std::move(parameter));
+    causes.push_back(std::move(cause));
+  }
+  return causes;
+}
+
+report::Shrink shrink_of(const StructureDiagnosis& structure) {
+  const double before = structure.nrmse * structure.nrmse;
+  const double after = structure.fit.nrmse * structure.fit.nrmse;
+  report::Shrink shrink{.nrmse_before = structure.nrmse,
+                        .nrmse_after = structure.fit.nrmse,
+                        .floor_nrmse = structure.floor_nrmse,
+                        .variance_removed = 1.0 - after / before};
+  shrink.explainable_fraction = 1.0 - structure.gap_left;
+  shrink.unknown_share = excess(structure.fit.nrmse, structure.floor_nrmse) / before;
+  return shrink;
+}
+
+}  // namespace
+
+StructureDiagnosis diagnose_structure(const ComputedStructure& model, const StructureRecording& recording) {
+  StructureDiagnosis structure;
+  const StructureFit as_given = fit_structure(model, recording, {});
+  structure.nrmse = as_given.nrmse;
+  structure.floor_nrmse = rounding_floor(recording.steps());
+  if (structure.nrmse <= tuning::kFaultOverFloor * structure.floor_nrmse + tuning::kModelAllowance) return structure;
+
+  const std::vector<const StructureEffect*> effects = effects_that_matter(model, recording);
+  StructureFit fit = as_given;
+  while (fit.ratios.size() < effects.size() && fit.nrmse > tuning::kFaultOverFloor * structure.floor_nrmse) {
+    StructureFit longer = with_another(model, recording, fit, effects);
+    const double left = longer.nrmse * longer.nrmse;
+    if (left > tuning::kAnotherEffectLeaves * fit.nrmse * fit.nrmse) break;
+    fit = std::move(longer);
+  }
+  structure.gap_left = excess(fit.nrmse, structure.floor_nrmse) / excess(structure.nrmse, structure.floor_nrmse);
+  if (structure.gap_left > tuning::kComputedLeaves) {
+    structure.verdict = Verdict::unknown;
+    return structure;
+  }
+  structure.verdict = Verdict::named;
+  structure.shares = shares_of(model, recording, fit);
+  structure.fit = std::move(fit);
+  return structure;
+}
+
+void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis) {
+  report::DiagnosisReport& report = diagnosis.report;
+  const double share = add_where(structure, report);
+  const bool agrees = structure.verdict == Verdict::none;
+  report.notes.push_back(
+      structure.nrmse == 0.0
+          ? "The coordinator's displacements, recomputed with the scenario from the forces it received, agree bit for "
+            "bit."
+          : fmt::format("The coordinator's displacements, recomputed with the scenario from the forces it received, "
+                        "agree to within {:.2g} of their root mean square{}.",
+                        structure.nrmse, agrees ? "" : "; driven by recorded forces, an error grows with time"));
+  if (agrees) return;
+  const Verdict site = report.verdict;
+  report.verdict = together(site, structure.verdict);
+  if (site == Verdict::none || site == Verdict::not_excited) {
+    report.next_experiment.clear();
+    report.ranking.clear();  // what was considered there competes with nothing here
+  }
+  if (structure.verdict == Verdict::unknown) {
+    report.notes.emplace_back(
+        "No one ratio on mass, damping, numerical stiffness or step makes the scenario's structure command what was "
+        "recorded: compare it with the one that ran, degree of freedom by degree of freedom.");
+    return;
+  }
+  if (report.verdict == Verdict::partial && site == Verdict::unknown) {
+    report.notes.emplace_back("The causes are of the numerical substructure; the gap at the site stays unexplained.");
+  }
+  for (report::RankedCause& cause : report.ranking) cause.share *= 1.0 - share;
+  std::vector<report::RankedCause> causes = ranked(structure, share);
+  report.ranking.insert(report.ranking.begin(), causes.begin(), causes.end());
+  std::ranges::stable_sort(report.ranking, [](const report::RankedCause& a, const report::RankedCause& b) {
+    return a.is_cause && (!b.is_cause || a.share > b.share);
+  });
+  if (!report.interface_shrink) report.interface_shrink = shrink_of(structure);
+}
+
+std::vector<EffectSetting> causes_of(const StructureDiagnosis& structure) {
+  std::vector<EffectSetting> causes;
+  for (const FittedRatio& ratio : structure.fit.ratios) {
+    causes.push_back({find_effect(EffectInterface::numerical_substructure, ratio.effect->name), {ratio.value}});
+  }
+  return causes;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,105 @@
+#include "diagnosis/verdict/excitation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/report/diagnosis_json.hpp"
+#include "made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+using testing::HasSubstr;
+
+struct Noise {
+  double displacement_m = 1e-6;
+  double force_n = 20.0;
+};
+
+/// The motion of made_motion_m(), `scale` times, against a spring `stiffness` times the model's.
+Recording scaled_recording(double scale, double stiffness, const Noise& noise) {
+  Recording recording;
+  recording.file = "scaled.csv";
+  recording.sample_period_s = kSitePeriod_s;
+  recording.samples = 6000;
+  recording.dofs.resize(1);
+  Random random{5};
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    const double motion_m = scale * made_motion_m(kSitePeriod_s * static_cast<double>(i));
+    recording.dofs[0].of(Channel::target_displacement).push_back(motion_m);
+    recording.dofs[0].of(Channel::command_displacement).push_back(motion_m);
+    recording.dofs[0].of(Channel::measured_displacement).push_back(motion_m + noise.displacement_m * random.normal());
+    recording.dofs[0]
+        .of(Channel::measured_force)
+        .push_back(stiffness * kMadeStiffness_n_per_m * motion_m + noise.force_n * random.normal());
+  }
+  return recording;
+}
+
+Diagnosis diagnosis_of(const Recording& recording, const SiteModel& model = made_model()) {
+  return diagnose(model, {&recording, 1}, {});
+}
+
+const report::InterfaceGap& gap_at(const Diagnosis& diagnosis, std::string_view interface) {
+  return *std::ranges::find(diagnosis.report.where, interface, &report::InterfaceGap::interface);
+}
+
+// Motion of 0.015 m rms; 1e-5 of it is a seventh of the displacement sensor's noise.
+constexpr double kBelowNoise = 1e-5;
+
+TEST(NotExcited, WhereNothingMoved) {
+  const Diagnosis diagnosis = diagnosis_of(scaled_recording(0.0, 1.0, {}));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited);
+  EXPECT_TRUE(diagnosis.causes.empty());
+  EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("Record a test that moves"));
+}
+
+TEST(NotExcited, WhereAWrongSpringCouldNotHaveBeenSeen) {
+  const Diagnosis diagnosis = diagnosis_of(scaled_recording(kBelowNoise, 1.5, {}));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited);
+  EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("times the motion"));
+  EXPECT_FALSE(gap_at(diagnosis, "specimen").is_judged);
+  EXPECT_FALSE(gap_at(diagnosis, "transfer_system").is_judged);
+  EXPECT_THAT(gap_at(diagnosis, "specimen").why_not, HasSubstr("measured_displacement_m moves by"));
+  // The controller's own law has no noise, however small its signals are.
+  EXPECT_TRUE(gap_at(diagnosis, "compensator").is_judged);
+  EXPECT_THAT(diagnosis_json(diagnosis), testing::Not(HasSubstr("specimen\""))) << "the list holds what is judged";
+}
+
+TEST(NotExcited, IsAMatterOfNoiseAndNotOfSize) {
+  // The same motion before sensors that are 10 000 times quieter.
+  const Noise quiet{.displacement_m = 1e-10, .force_n = 0.002};
+  EXPECT_NE(diagnosis_of(scaled_recording(kBelowNoise, 1.5, quiet)).causes.size(), 0U);
+  const Diagnosis agrees = diagnosis_of(scaled_recording(kBelowNoise, 1.0, quiet));
+  EXPECT_EQ(agrees.report.verdict, Verdict::none);
+  EXPECT_TRUE(gap_at(agrees, "specimen").is_judged);
+}
+
+TEST(NotExcited, IsNotSaidOfAnOrdinaryTestWithoutAGap) {
+  // A hundredth of the motion and noise: signals of 40 dB, as noisy as tests get.
+  for (const double noise : {1.0, 100.0}) {
+    const Diagnosis diagnosis =
+        diagnosis_of(scaled_recording(1.0, 1.0, {.displacement_m = 1e-6 * noise, .force_n = 2.0 * noise}));
+    EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
+    EXPECT_TRUE(diagnosis.report.next_experiment.empty());
+    EXPECT_TRUE(gap_at(diagnosis, "specimen").is_judged);
+    EXPECT_TRUE(gap_at(diagnosis, "transfer_system").is_judged);
+  }
+}
+
+TEST(NotExcited, AForceWithinItsNoiseLeavesTheSpecimenOutAndTheActuatorIn) {
+  SiteModel model = made_model();
+  model.make_law = [] { return std::make_unique<Elastic>(100.0); };  // 1.5 N rms against 20 N
+  const Diagnosis diagnosis = diagnosis_of(scaled_recording(1.0, 150.0 / kMadeStiffness_n_per_m, {}), model);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
+  EXPECT_TRUE(gap_at(diagnosis, "transfer_system").is_judged);
+  EXPECT_FALSE(gap_at(diagnosis, "specimen").is_judged);
+  EXPECT_THAT(gap_at(diagnosis, "specimen").why_not, HasSubstr("measured_force_n changes by"));
+}
+
+}  // namespace
+}  // namespace hybridtest
