@@ -7,6 +7,7 @@
 
 #include "diagnosis/localisation/gap_signals.hpp"
 #include "diagnosis/scoring/score.hpp"
+#include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
 #include "diagnosis/verdict/excitation.hpp"
@@ -18,6 +19,7 @@
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/unjudged.hpp"
 #include "diagnosis/verdict/where.hpp"
+#include "diagnosis/verdict/with_traces.hpp"
 
 namespace hybridtest {
 namespace {
@@ -60,6 +62,12 @@ std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Re
     }
   }
   return segments;
+}
+
+bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
+  return segment.from == Channel::sent_displacement && std::ranges::any_of(traces, [&](const Trace& trace) {
+           return trace.in == Channel::target_displacement && segment.to == trace.in;
+         });
 }
 
 RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates) {
@@ -232,8 +240,11 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   for (const Recording& recording : recordings) {
     if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
   }
-  const std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
-  if (segments.empty()) {
+  const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
+  std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
+  // What arrived at random is told by its trace alone.
+  std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
+  if (segments.empty() && traces.empty()) {
     add_unjudged(model, recordings, settings.dof, report.where);
     report.verdict = Verdict::not_excited;
     report.next_experiment =
@@ -247,11 +258,16 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   const IdentificationProblem coarse = make_problem(model, std::move(thin));
   const Selection selection = select_effects(problem, coarse, settings.threads, settings.progress);
   const Judgement judgement = judge(problem, selection);
-  report.verdict = judgement.verdict;
+  const GapParts parts = gap_parts(problem, selection, judgement, traces);
+  report.verdict = verdict_with(traces, judgement, parts);
   report.ranking = rank(problem, selection, judgement);
-  const bool has_causes = std::ranges::any_of(report.ranking, &RankedCause::is_cause);
-  if (has_causes) diagnosis.causes = selection.chosen.effects;
-  report.where = locate(problem, selection.baseline, has_causes ? selection.chosen : selection.baseline, settings.seed);
+  const bool has_chosen = std::ranges::any_of(report.ranking, &RankedCause::is_cause);
+  if (has_chosen) diagnosis.causes = selection.chosen.effects;
+  for (const Trace& trace : traces) diagnosis.causes.push_back(trace.effect);
+  const bool has_causes = !diagnosis.causes.empty();
+  report.where = locate(problem, selection.baseline, has_chosen ? selection.chosen : selection.baseline, settings.seed);
+  add_traces(traces, parts, report.ranking);
+  add_traces(traces, parts, report.where);
   report.next_experiment = next_experiment(selection, judgement, report.where);
   const std::vector<Excitation> excitations = excitations_of(problem);
   leave_out_unexcited(excitations, report.where);

@@ -31,21 +31,28 @@ inline constexpr double kNuisanceCost = 3.0;
 inline constexpr double kSlightlyWrong = 0.25;
 /// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
 inline constexpr double kSensorPrior = 1.0;
-/// An effect so far behind the best one on the coarse record is not looked at again [nats].
+/// By how much an effect has to be better for each parameter that it has more than another [nats]: of two that do
+/// equally well on data not fitted, the simpler one is meant.
+inline constexpr double kParameterPrior = 2.0;
+/// An effect so far behind the best one on the coarse record is not looked at again, nor paired [nats].
 inline constexpr double kFarBehind = 25.0;
-/// How many of the screened second effects are refitted together with the first.
-inline constexpr std::size_t kRefittedPairs = 4;
+/// How many of the screened second effects are searched together with the first.
+inline constexpr std::size_t kRefittedPairs = 5;
 
 /// Gain over the model as it is above which there is something to explain [nats].
 inline constexpr double kDetectionGain = 5.0;
-/// A further effect is taken when it gains so much [nats] and leaves less than this share of what was left.
+/// A further effect is taken when it gains so much [nats] and leaves less than this share of what was left
+/// in the median recording.
 inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
-/// Share of the whole gap [variance] that it has to explain unless it is but a wrong number of the model.
+/// Share of that recording's whole gap [variance] that it has to explain unless it is but a wrong number of the model.
 inline constexpr double kAnotherEffectExplains = 0.03;
-/// Of the gap: with less left than this nobody looks for a further effect.
+/// Unless it leaves less than this share of what was left.
+inline constexpr double kSmallEffectLeaves = 0.15;
+/// Of what the best further effect explains: a wrong number of the model that explains so much is taken in its place.
+inline constexpr double kNumberInstead = 0.95;
+/// Of the gap: with less left than this, or not clearly above the floor, nobody looks for a further effect.
 inline constexpr double kNothingLeft = 0.002;
-inline constexpr double kLittleLeft = 0.02;
 /// How many of the best single effects a second one is looked for beside, and the most effects together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kMostEffects = 4;
@@ -60,6 +67,8 @@ inline constexpr double kExcitedOverNoise = 3.0;
 inline constexpr double kWellExcitedOverNoise = 30.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
+/// Beside a gap of more than this multiple of its floor smaller ones count as none.
+inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;

@@ -14,9 +14,10 @@ class PreslidingElement {
   explicit PreslidingElement(double presliding_displacement_m)
       : presliding_displacement_m_{presliding_displacement_m} {}
 
-  /// -1 to 1. Called once per sample.
-  [[nodiscard]] double share(double displacement_m) noexcept {
-    share_ = std::clamp(share_ + (displacement_m - displacement_m_) / presliding_displacement_m_, -1.0, 1.0);
+  /// -limit to limit. Called once per sample.
+  /// @param limit   at which it slides now, over that of which the pre-sliding displacement was given.
+  [[nodiscard]] double share(double displacement_m, double limit = 1.0) noexcept {
+    share_ = std::clamp(share_ + (displacement_m - displacement_m_) / presliding_displacement_m_, -limit, limit);
     displacement_m_ = displacement_m;
     return share_;
   }

@@ -194,6 +194,14 @@ FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector
   return fit_from(problem, effects, start, 0, with_nuisance);
 }
 
+FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
+                          bool with_nuisance) {
+  std::vector<const EffectType*> effects;
+  std::ranges::transform(start, std::back_inserter(effects), &EffectSetting::type);
+  const auto searched = static_cast<Eigen::Index>(plan_search(problem, effects).searched.size());
+  return fit_from(problem, effects, start, starts_for(searched), with_nuisance);
+}
+
 FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance) {
   return fit_from(problem, {}, {}, 0, with_nuisance);
 }

@@ -47,6 +47,11 @@ struct FitOutcome {
 [[nodiscard]] FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                                        bool with_nuisance);
 
+/// The same from known values and from several starts, as where a second effect may move a first one far.
+/// @param start   one setting per effect.
+[[nodiscard]] FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
+                                        bool with_nuisance);
+
 /// No effect at all.
 [[nodiscard]] FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance);
 

@@ -77,6 +77,15 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   return predicted;
 }
 
+std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& others) {
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    motions[i].displacement_m += others[i].displacement_m;
+    motions[i].velocity_m_per_s += others[i].velocity_m_per_s;
+    motions[i].acceleration_m_per_s2 += others[i].acceleration_m_per_s2;
+  }
+  return motions;
+}
+
 }  // namespace
 
 std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
@@ -88,25 +97,34 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
                                                : predict_displacement(extended, segment);
 }
 
-std::vector<double> predicted_noise(const SiteModel& model, const Segment& segment) {
-  if (segment.noise.empty()) return {};
-  Segment noisy = segment;
-  for (std::size_t i = 0; i < noisy.input.size(); ++i) {
-    noisy.input[i].displacement_m += segment.noise[i].displacement_m;
-    noisy.input[i].velocity_m_per_s += segment.noise[i].velocity_m_per_s;
-    noisy.input[i].acceleration_m_per_s2 += segment.noise[i].acceleration_m_per_s2;
-  }
-  std::vector<double> difference = predict(model, noisy);
-  const std::vector<double> quiet = predict(model, segment);
-  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= quiet[i];
-  return difference;
+double input_floor(const SiteModel& model, const Segment& segment,
+                   const std::function<double(std::span<const double>)>& root_mean_square) {
+  if (segment.noise.empty()) return 0.0;
+  const auto predicted = [&](const std::vector<Motion>& input) {
+    Segment other = segment;
+    other.input = input;
+    return predict(model, other);
+  };
+  const auto change = [&](std::vector<double> values, const std::vector<double>& from) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= from[i];
+    return root_mean_square(values);
+  };
+  const std::vector<double> wide = predict(model, segment);
+  const double noise = change(predicted(sum(segment.input, segment.noise)), wide);
+  if (segment.narrow_input.empty()) return noise;
+  const std::vector<double> narrow = predicted(segment.narrow_input);
+  const double narrow_noise = change(predicted(sum(segment.narrow_input, segment.narrow_noise)), narrow);
+  const double taken_off = std::pow(change(narrow, wide), 2) - std::pow(narrow_noise, 2);
+  return std::sqrt(noise * noise + std::max(0.0, taken_off));
 }
 
 double noise_floor(const SiteModel& model, const Segment& segment) {
-  double squares = 0.0;
-  const std::vector<double> noise = predicted_noise(model, segment);
-  for (const double value : noise) squares += value * value / static_cast<double>(noise.size());
-  return std::hypot(segment.measured_noise, std::sqrt(squares));
+  const double of_input = input_floor(model, segment, [](std::span<const double> values) {
+    double squares = 0.0;
+    for (const double value : values) squares += value * value;
+    return std::sqrt(squares / static_cast<double>(values.size()));
+  });
+  return std::hypot(std::max(segment.measured_noise, segment.step_noise), of_input);
 }
 
 }  // namespace hybridtest

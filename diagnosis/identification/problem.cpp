@@ -45,13 +45,20 @@ void add_nuisance(FitSegment& fit, EffectInterface interface, std::string_view e
   fit.nuisance_types.push_back(type);
 }
 
-void add_nuisances(FitSegment& fit) {
+/// Change of the prediction per unit of a wrong stiffness: of the ratio by which the law's is off, or of the
+/// spring that the model does not have.
+Eigen::VectorXd stiffness_slope(const SiteModel& model, const FitSegment& fit, const EffectType& stiffness) {
+  const double step = model.make_law ? 1e-3 : 1.0;  // the latter's change is proportional to it
+  const EffectSetting setting{.type = &stiffness, .values = {model.make_law ? step : 0.0, model.make_law ? 0.0 : step}};
+  return (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
+}
+
+void add_nuisances(const SiteModel& model, FitSegment& fit) {
   fit.nuisance.resize(fit.measured.size(), 0);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fit.measured.size());
   if (fit.segment.to == Channel::measured_force) {
-    std::vector<double> displacement_m(fit.segment.input.size());
-    std::ranges::transform(fit.segment.input, displacement_m.begin(), &Motion::displacement_m);
-    add_nuisance(fit, specimen, "stiffness_error", fit.average(displacement_m));
+    add_nuisance(fit, specimen, "stiffness_error",
+                 stiffness_slope(model, fit, *find_effect(specimen, "stiffness_error")));
     add_nuisance(fit, force_sensor, "bias", ones);
     return;
   }
@@ -83,14 +90,25 @@ FitSegment prepare(const SiteModel& model, Segment segment) {
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
   fit.sample_floor = noise_floor(model, fit.segment);
-  const std::vector<double> noise = predicted_noise(model, fit.segment);
   fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(static_cast<double>(fit.averaged)),
-                         noise.empty() ? 0.0 : root_mean_square(fit.average(noise)));
+                         input_floor(model, fit.segment, [&](std::span<const double> values) {
+                           return root_mean_square(fit.average(values));
+                         }));
+  fit.floor = std::hypot(fit.floor, fit.segment.step_noise);
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.block_begins = blocks_of(fit);
-  add_nuisances(fit);
+  add_nuisances(model, fit);
   return fit;
+}
+
+/// A floor is an estimate: what exceeds it a little beside a clear gap elsewhere is no gap.
+void mark_suspects(std::vector<FitSegment>& segments) {
+  const auto is_clear = [](const FitSegment& fit) {
+    return root_mean_square(fit.measured - fit.baseline) > tuning::kSuspectOverFloor / fit.weight;
+  };
+  if (std::ranges::none_of(segments, is_clear)) return;
+  for (FitSegment& fit : segments) fit.is_suspect = is_clear(fit);
 }
 
 }  // namespace
@@ -106,7 +124,14 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   problem.model = model;
   problem.scales = scales_of(segments);
   for (Segment& segment : segments) problem.segments.push_back(prepare(model, std::move(segment)));
+  mark_suspects(problem.segments);
   return problem;
+}
+
+bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
+  return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+    return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
+  });
 }
 
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,

@@ -21,8 +21,10 @@ struct FitSegment {
   Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
   std::vector<const EffectType*> nuisance_types;  // one per column
   double weight = 1.0;                            // one over what counts as a standard deviation here
-  double floor = 0.0;                      // what noise leaves of a right model [standard deviation], after averaging
-  double sample_floor = 0.0;               // the same per sample
+  double floor = 0.0;         // what noise leaves of a right model [standard deviation], after averaging
+  double sample_floor = 0.0;  // the same per sample
+  // What it leaves unexplained counts as part of the gap: a residual well above the floor, or all where none is.
+  bool is_suspect = true;
   std::shared_ptr<const LawMemory> law;    // of the specimen, along the recorded motion; null where there is none
   std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
 
@@ -38,6 +40,9 @@ struct IdentificationProblem {
 
 /// @param segments   of recordings of the role fit.
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
+
+/// A number of the user's model that is a little off, as every model's are.
+[[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;
 
 /// Averaged prediction with effects added; the baseline where none touches the segment.
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,

@@ -34,6 +34,11 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 
 }  // namespace
 
+bool is_fixed(const IdentificationProblem& problem, const EffectParameter& parameter) {
+  const LawUse other = problem.model.make_law ? LawUse::without_law : LawUse::with_law;
+  return parameter.search_low == parameter.search_high || parameter.needs == other;
+}
+
 double SearchedParameter::at(double place) const noexcept {
   return logarithmic ? low * std::pow(high / low, place) : low + (high - low) * place;
 }
@@ -54,7 +59,7 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
       const double unit = 0.5 * parameter.search_high * problem.scales.of(parameter.scale);
-      if (parameter.search_low == parameter.search_high) {
+      if (is_fixed(problem, parameter)) {
         neutral.values.push_back(parameter.fallback);
       } else if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);

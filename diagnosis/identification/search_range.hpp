@@ -39,4 +39,7 @@ struct SearchPlan {
 [[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects);
 
+/// Nothing to search for in a parameter: its fallback is used.
+[[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectParameter& parameter);
+
 }  // namespace hybridtest

@@ -7,6 +7,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/signals/local_polynomial.hpp"
+#include "diagnosis/traces/reading_steps.hpp"
 
 namespace hybridtest {
 namespace {
@@ -28,12 +29,30 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// One draw of white noise of that level, smoothed as the signal is.
-std::vector<Motion> smoothed_noise(const LocalPolynomial& polynomial, double level, std::size_t samples) {
+/// One draw of what is wrong in readings: white noise of that level or, with a coarse converter, its error along a
+/// motion half a step beside the one that was read.
+std::vector<double> drawn_error(std::span<const Motion> motion, double level, double step) {
   Random random{kNoiseSeed};
-  std::vector<double> noise(samples);
-  for (double& value : noise) value = level * random.normal();
-  return polynomial.motion(noise);
+  std::vector<double> error(motion.size());
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    const double place = motion[i].displacement_m + 0.5 * step;
+    error[i] = step > 0.0 ? step * std::round(place / step) - place : level * random.normal();
+  }
+  return error;
+}
+
+/// Smooths the measured displacement, and once more over half the window, which tells what the whole one takes off.
+void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
+  const LocalPolynomial polynomial{half_width, segment.period_s};
+  segment.input = polynomial.motion(displacement_m);
+  const std::vector<double> error = drawn_error(segment.input, segment.input_noise, segment.input_step);
+  segment.noise = polynomial.motion(error);
+  segment.narrow_input.clear();
+  segment.narrow_noise.clear();
+  if (half_width / 2 < LocalPolynomial::kSmallestHalfWidth) return;
+  const LocalPolynomial narrow{half_width / 2, segment.period_s};
+  segment.narrow_input = narrow.motion(displacement_m);
+  segment.narrow_noise = narrow.motion(error);
 }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
@@ -44,17 +63,23 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
   segment.interface = interface_ending_in(to);
   segment.recording = position;
   segment.period_s = recording.sample_period_s;
-  const LocalPolynomial polynomial{widest_faithful_half_width(dof.of(from)), recording.sample_period_s};
-  segment.input = polynomial.motion(dof.of(from));
+  const std::size_t half_width = widest_faithful_half_width(dof.of(from));
   segment.measured = dof.of(to);
   if (to != Channel::measured_force) {
+    segment.input = LocalPolynomial{half_width, segment.period_s}.motion(dof.of(from));
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
   } else {
-    segment.noise = smoothed_noise(polynomial, white_noise_level(dof.of(from)), segment.input.size());
+    segment.input_noise = white_noise_level(dof.of(from));
+    segment.input_step = steps_of_readings(dof.of(from)).step;
+    smooth_input(segment, dof.of(from), half_width);
   }
   segment.measured_noise = white_noise_level(segment.measured);
+  if (to >= Channel::measured_displacement) {
+    // Of an even error between half a step each way.
+    segment.step_noise = steps_of_readings(segment.measured).step / std::sqrt(12.0);
+  }
   return segment;
 }
 
@@ -82,11 +107,8 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
 }
 
 Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width) {
-  const std::vector<double>& displacement_m = dof.of(Channel::measured_displacement);
-  const LocalPolynomial polynomial{half_width, segment.period_s};
   Segment result = segment;
-  result.input = polynomial.motion(displacement_m);
-  result.noise = smoothed_noise(polynomial, white_noise_level(displacement_m), displacement_m.size());
+  smooth_input(result, dof.of(Channel::measured_displacement), half_width);
   return result;
 }
 
@@ -103,6 +125,8 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.input = every(segment.input);
   result.load_n = every(segment.load_n);
   result.noise = every(segment.noise);
+  result.narrow_input = every(segment.narrow_input);
+  result.narrow_noise = every(segment.narrow_noise);
   result.measured = every(segment.measured);
   return result;
 }

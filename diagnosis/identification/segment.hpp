@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -23,9 +24,16 @@ struct Segment {
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded
+  double input_noise = 0.0;      // white noise that was smoothed [m]
+  double input_step = 0.0;       // of the converter that it came through [m]; 0: none seen
   std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
+  // The same smoothed over half the window; empty where there is no narrower one.
+  std::vector<Motion> narrow_input;
+  std::vector<Motion> narrow_noise;
   // Standard deviation of the white noise of `measured`.
   double measured_noise = 0.0;
+  // Standard deviation of what a coarse converter adds to `measured`; it need not be white. 0: none seen.
+  double step_noise = 0.0;
 
   /// An effect at that interface changes what this segment predicts.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
@@ -52,9 +60,12 @@ struct Segment {
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
 
-/// What the noise of the input makes of the prediction: another draw of it less none, sample by sample.
-/// Empty where the input has no noise.
-[[nodiscard]] std::vector<double> predicted_noise(const SiteModel& model, const Segment& segment);
+/// Standard deviation of what noise of the input, and smoothing against it, make of the prediction; 0 where the input
+/// is exact. What smoothing takes off the motion shows in the change that half the window makes, beyond that window's
+/// own noise.
+/// @param root_mean_square   of a prediction: per sample, or after averaging.
+[[nodiscard]] double input_floor(const SiteModel& model, const Segment& segment,
+                                 const std::function<double(std::span<const double>)>& root_mean_square);
 
 /// Standard deviation of the residual that noise in both channels leaves of a right model, per sample.
 [[nodiscard]] double noise_floor(const SiteModel& model, const Segment& segment);

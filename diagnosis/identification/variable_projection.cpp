@@ -11,10 +11,13 @@ namespace {
 /// Keeps columns that are almost multiples of each other from cancelling in huge numbers.
 constexpr double kRidge = 1e-10;
 
-struct Bounds {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-};
+/// Several effects are linear together when their prediction is what their columns say, to this share of the
+/// residual; else they are linearised again where they are, so many times and by that step (in units of the parameter).
+constexpr double kAsGoodAsLinear = 1e-3;
+constexpr int kRelinearisations = 3;
+constexpr double kDifferenceStep = 1e-2;
+
+using Bounds = VariableProjection::Bounds;
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
                               const std::vector<bool>& held, const Eigen::VectorXd& fixed) {
@@ -126,7 +129,35 @@ Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
   const Eigen::VectorXd right = measured_ - base;
   result.coefficients = bounded_least_squares(result.columns, right, bounds, result.held);
   result.residual = right - result.columns * result.coefficients;
-  return result;
+  // An effect by itself is linear in what it says it is; several may not be together.
+  return linear > 0 && plan_.neutral.size() > 1 ? relinearised(places, std::move(result), bounds) : result;
+}
+
+Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projected solution,
+                                           const std::vector<Bounds>& bounds) const {
+  const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
+  Eigen::VectorXd here = predicted(places, solution);
+  const Eigen::VectorXd off = measured_ - here - solution.residual;
+  if (off.norm() <= kAsGoodAsLinear * solution.residual.norm()) return solution;
+  solution.residual = measured_ - here;
+  Projected best = solution;
+  for (int pass = 0; pass < kRelinearisations; ++pass) {
+    for (Eigen::Index i = 0; i < linear; ++i) {
+      Projected moved = solution;
+      const double step = moved.coefficients[i] > 0.0 ? -kDifferenceStep : kDifferenceStep;
+      moved.coefficients[i] += step;
+      solution.columns.col(i) = (predicted(places, moved) - here) / step;
+    }
+    solution.coefficients = bounded_least_squares(
+        solution.columns, solution.residual + solution.columns * solution.coefficients, bounds, solution.held);
+    here = predicted(places, solution);
+    solution.residual = measured_ - here;
+    const double before = best.residual.squaredNorm();
+    const double after = solution.residual.squaredNorm();
+    if (after < before) best = solution;
+    if (after > (1.0 - kAsGoodAsLinear) * before) break;
+  }
+  return best;
 }
 
 Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places, const Projected& solution) const {

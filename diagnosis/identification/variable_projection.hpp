@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "diagnosis/identification/problem.hpp"
@@ -19,6 +20,12 @@ struct Projected {
 
 class VariableProjection {
  public:
+  /// Of a coefficient.
+  struct Bounds {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+  };
+
   VariableProjection(const IdentificationProblem& problem, SearchPlan plan, bool with_nuisance);
 
   /// @param places   of the searched parameters, 0 to 1.
@@ -36,6 +43,10 @@ class VariableProjection {
   [[nodiscard]] Eigen::Index rows() const noexcept { return first_rows_.back(); }
 
  private:
+  /// For effects that are not linear together, as a force gain behind a friction or a play that the force opens:
+  /// Gauss-Newton steps from a solution that took them to be, the residual that of their prediction.
+  [[nodiscard]] Projected relinearised(const Eigen::VectorXd& places, Projected solution,
+                                       const std::vector<Bounds>& bounds) const;
   [[nodiscard]] std::vector<EffectSetting> searched_at(const Eigen::VectorXd& places) const;
   [[nodiscard]] Eigen::VectorXd stacked(const std::vector<EffectSetting>& effects) const;
 

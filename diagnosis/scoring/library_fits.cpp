@@ -8,8 +8,9 @@
 #include <thread>
 
 #include "core/config/error.hpp"
-#include "diagnosis/scoring/random_network.hpp"
+#include "diagnosis/identification/search_range.hpp"
 #include "diagnosis/scoring/score.hpp"
+#include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -28,32 +29,45 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
 /// the specimen turns into a specimen that yields, which is another effect.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
   const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
+  // A ratio where the model has a law, else a spring of its own.
+  const double unit = problem.model.make_law ? 1.0 : problem.scales.of(ParameterScale::stiffness_n_per_m);
   std::size_t column = 0;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     if (!fit.segments[i].touched) continue;
     for (const EffectType* type : problem.segments[i].nuisance_types) {
-      const double most = tuning::kSlightlyWrong * problem.scales.of(ParameterScale::stiffness_n_per_m);
-      if (type == stiffness && std::abs(fit.nuisance[column]) > most) return false;
+      if (type == stiffness && std::abs(fit.nuisance[column]) > tuning::kSlightlyWrong * unit) return false;
       ++column;
     }
   }
   return true;
 }
 
-/// Of two effects that a recording cannot tell apart the one that is not the sensor's comes first.
-double prior(const EffectType& effect) {
-  const bool is_sensor =
-      effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
-  return is_sensor ? -tuning::kSensorPrior : 0.0;
+bool is_of_sensor(const EffectType& effect) {
+  return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
+}
+
+/// Of two fits that a recording cannot tell apart the one without an effect of a sensor comes first, and the one of
+/// fewer parameters: at the end of its range one does not count, as the fit is then one of an effect without it.
+double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    const EffectType& effect = *fit.effects[i].type;
+    double free = 0.0;
+    for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+      if (!is_fixed(problem, effect.parameters[j]) && !fit.parameters[i][j].at_bound) free += 1.0;
+    }
+    sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
+  }
+  return sum;
 }
 
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
   Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
-  alone.score = held_out_score(problem, alone.fit) + prior(effect);
+  alone.score = held_out_score(problem, alone.fit) + prior(problem, alone.fit);
   Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
   const double score = held_out_score(problem, beside.fit);
-  beside.score = score - tuning::kNuisanceCost + prior(effect);
+  beside.score = score - tuning::kNuisanceCost + prior(problem, beside.fit);
   // Beside the nuisances an effect has to explain something that they do not.
   const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
   return needed && beside.score > alone.score ? beside : alone;
@@ -64,8 +78,18 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
 /// The same fit at the full rate.
 std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
   Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
-  candidate.score = held_out_score(problem, candidate.fit) + prior(*found.type) -
+  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit) -
                     (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
+  return candidate;
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// Effects fitted together, the one in question told by its type.
+std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
+                                      const std::vector<EffectSetting>& start, decltype(refit_effects)& fit) try {
+  Candidate candidate{.type = type, .fit = fit(problem, start, false)};
+  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit);
   return candidate;
 } catch (const ConfigError&) {
   return {};
@@ -95,7 +119,7 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   for (const EffectType& effect : effect_library()) {
     const bool touches =
         std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
-    if (touches && effect.make != nullptr && !is_random(effect)) effects.push_back(&effect);
+    if (touches && effect.make != nullptr && !shows_in_digits(effect)) effects.push_back(&effect);
   }
   return effects;
 }
@@ -140,26 +164,31 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
     try {
       Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
-      candidate.score = held_out_score(extended, candidate.fit);
+      candidate.score = held_out_score(extended, candidate.fit) + prior(extended, candidate.fit);
       screened[i] = std::move(candidate);
     } catch (const ConfigError&) {
       screened[i].reset();
     }
   });
   std::vector<Candidate> promising = best_first(std::move(screened));
-  if (promising.size() > tuning::kRefittedPairs) promising.resize(tuning::kRefittedPairs);
-  std::vector<std::optional<Candidate>> refitted(promising.size());
+  std::size_t position = 0;
+  std::erase_if(promising, [&](const Candidate& candidate) {
+    return position++ >= tuning::kRefittedPairs && !is_model_number(problem, *candidate.type);
+  });
+  std::vector<std::optional<Candidate>> together(promising.size());
   for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
     std::vector<EffectSetting> start = base;
     start.push_back(promising[i].fit.effects.front());
-    try {
-      const FitOutcome together = refit_effects(coarse, start, false);
-      Candidate candidate{.type = promising[i].type, .fit = refit_effects(problem, together.effects, false)};
-      candidate.score = held_out_score(problem, candidate.fit) + prior(*candidate.type);
-      refitted[i] = std::move(candidate);
-    } catch (const ConfigError&) {
-      refitted[i].reset();
-    }
+    together[i] = fit_together(coarse, promising[i].type, start, search_effects);
+  });
+  // What is far behind on the coarse record is not looked at again.
+  promising = best_first(std::move(together));
+  std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
+    return candidate.score < best - tuning::kFarBehind;
+  });
+  std::vector<std::optional<Candidate>> refitted(promising.size());
+  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
+    refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
   });
   return best_first(std::move(refitted));
 }

@@ -33,7 +33,9 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
                                                  const FitProgress& progress);
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
-/// on `coarse` with `base` as it is, the most promising ones fitted to `problem` with everything free.
+/// on `coarse` with `base` as it is; the most promising ones, and the numbers of the model that may be wrong, are
+/// searched there with everything free, as a second effect may move the first one far; those that come near the best
+/// are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
                                                 const std::vector<EffectSetting>& base, std::size_t threads);

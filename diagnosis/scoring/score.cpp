@@ -27,6 +27,7 @@ GapEnergy gap_energy(const FitSegment& segment, const SegmentResult& result) {
 GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& outcome) {
   GapEnergy sum;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    if (!problem.segments[i].is_suspect) continue;
     const GapEnergy one = gap_energy(problem.segments[i], outcome.segments[i]);
     sum.total += one.total;
     sum.floor += one.floor;

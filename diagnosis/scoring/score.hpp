@@ -11,7 +11,7 @@ namespace hybridtest {
 /// residual say the same thing.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
-/// Energy of the residual over all segments, each relative to the variance of its output, held out.
+/// Energy of the residual over all suspect segments, each relative to the variance of its output, held out.
 struct GapEnergy {
   double total = 0.0;
   double floor = 0.0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "diagnosis/traces/network_lags.hpp"
 
 namespace hybridtest {
 namespace {
@@ -28,10 +29,29 @@ struct BlockEnergy {
   }
 };
 
+/// The prediction with the causes. What arrives at random no seed repeats: there the lags found say what of it they
+/// explain, sample by sample.
+std::vector<double> predicted_with(const SiteModel& model, std::span<const EffectSetting> causes,
+                                   const Segment& segment) {
+  std::vector<double> predicted = predict(model, segment, causes);
+  const bool is_random =
+      segment.to == Channel::target_displacement && std::ranges::any_of(causes, [&](const EffectSetting& cause) {
+        return segment.touched_by(*cause.type) && shows_in_digits(*cause.type);
+      });
+  if (!is_random) return predicted;
+  std::vector<double> sent_m(segment.input.size());
+  std::ranges::transform(segment.input, sent_m.begin(), &Motion::displacement_m);
+  const NetworkLags lags = lags_between(sent_m, segment.measured, segment.period_s);
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    if (lags.lag[i] >= 0) predicted[i] = segment.measured[i];
+  }
+  return predicted;
+}
+
 void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,
                 std::vector<BlockEnergy>& blocks) {
   const std::vector<double> before = predict(model, segment);
-  const std::vector<double> after = predict(model, segment, causes);
+  const std::vector<double> after = predicted_with(model, causes, segment);
   const std::size_t n = segment.measured.size();
   const double floor = noise_floor(model, segment);
   double output = 0.0;

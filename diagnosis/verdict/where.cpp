@@ -23,7 +23,7 @@ EffectInterface blamed(const Segment& segment, const FitOutcome& chosen) {
   return segment.interface;
 }
 
-/// Energy above the floor of the blocks that `pick` draws, relative to the output's.
+/// Energy above the floor of the blocks that `pick` draws, relative to the output's; suspect segments alone.
 template <class Pick>
 Shares shares_of(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& chosen,
                  Pick&& pick) {
@@ -32,7 +32,7 @@ Shares shares_of(const IdentificationProblem& problem, const FitOutcome& baselin
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double output = fit.measured.squaredNorm() / static_cast<double>(fit.measured.size());
-    if (output <= 0.0) continue;
+    if (output <= 0.0 || !fit.is_suspect) continue;
     const std::vector<double>& squares = baseline.segments[i].held_out_squares;
     double energy = 0.0;
     double samples = 0.0;

@@ -42,6 +42,9 @@ enum class ParameterScale : std::uint8_t {
   compliance_m_per_n,   // peak displacement over peak force
 };
 
+/// With which models of a specimen a search looks for a parameter; with others it has its fallback.
+enum class LawUse : std::uint8_t { any, with_law, without_law };
+
 struct EffectParameter {
   std::string_view name;  // its unit last: `friction_force_n`
   std::string_view unit;  // "N"; "" for a ratio
@@ -60,6 +63,7 @@ struct EffectParameter {
   bool is_linear = false;
   // What a scenario that leaves it out gets; NaN when it has to be given.
   double fallback = std::numeric_limits<double>::quiet_NaN();
+  LawUse needs = LawUse::any;
 };
 
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an

@@ -30,7 +30,8 @@ class BoucWenHysteresis final : public Effect {
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.005,
+                                                          // What yields before, slides: dry friction.
+                                                          .search_low = 0.03,
                                                           .search_high = 1.0,
                                                           .neutral = kNoNeutral},
                                           EffectParameter{.name = "exponent",

@@ -7,29 +7,43 @@
 
 namespace hybridtest {
 
-/// The specimen is stiffer than its model by dk, or softer where that is negative: a spring beside
-/// the model's law.
+/// The specimen is stiffer than its model says, or softer. Where the model has a law, its elastic stiffness is off by
+/// the ratio e and its strength is not; where it has none, a spring dk stands beside what it has.
 class StiffnessError final : public Effect {
  public:
-  static constexpr std::string_view kEquation = "F = F0 + dk x";
+  static constexpr std::string_view kEquation = "F = F0((1 + e) x) + dk x";
   static constexpr std::string_view kSource = "Hooke's law; a wrong number of the user's model";
-  static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m",
+  static constexpr std::array kParameters{EffectParameter{.name = "stiffness_error_ratio",
+                                                          .unit = "",
+                                                          .what = "e, real over the law's stiffness less 1",
+                                                          .low = -1.0,
+                                                          .high = kUnbounded,
+                                                          .search_low = -0.9,
+                                                          .search_high = 2.0,
+                                                          .fallback = 0.0,
+                                                          .needs = LawUse::with_law},
+                                          EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
-                                                          .what = "dk, real less model stiffness",
+                                                          .what = "dk, of a spring that the model does not have",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::stiffness_n_per_m,
                                                           .search_low = -2.0,
                                                           .search_high = 2.0,
-                                                          .is_linear = true}};
+                                                          .is_linear = true,
+                                                          .fallback = 0.0,
+                                                          .needs = LawUse::without_law}};
 
-  StiffnessError(std::span<const double> values, double /*sample_period_s*/) : stiffness_n_per_m_{values[0]} {}
-  void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
-    force_n += stiffness_n_per_m_ * motion.displacement_m;
+  StiffnessError(std::span<const double> values, double /*sample_period_s*/)
+      : ratio_{1.0 + values[0]}, stiffness_n_per_m_{values[1]} {}
+  void before(const StageSample& /*sample*/, Motion& motion) noexcept override { motion.displacement_m *= ratio_; }
+  void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {
+    force_n += stiffness_n_per_m_ * sample.motion.displacement_m;
   }
   void reset() noexcept override {}
 
  private:
+  double ratio_;
   double stiffness_n_per_m_;
 };
 

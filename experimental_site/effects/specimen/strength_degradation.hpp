@@ -8,15 +8,16 @@
 
 namespace hybridtest {
 
-/// The specimen's law loses force the further it has travelled (Baber and Wen, J. Eng. Mech. Div. ASCE
-/// 107, 1981, whose nu grows with the dissipated energy).
+/// The specimen's law loses strength the further it has travelled (Baber and Wen, J. Eng. Mech. Div. ASCE
+/// 107, 1981, whose nu grows with the dissipated energy), and keeps its elastic stiffness: a law that does not
+/// yield has no strength to lose.
 class StrengthDegradation final : public Effect {
  public:
-  static constexpr std::string_view kEquation = "F = F0 exp(-S / L), S = travelled path";
+  static constexpr std::string_view kEquation = "F = s F0(x / s), s = exp(-S / L), S = travelled path";
   static constexpr std::string_view kSource = "after Baber and Wen (1981)";
   static constexpr std::array kParameters{EffectParameter{.name = "path_m",
                                                           .unit = "m",
-                                                          .what = "L, path after which 37 % are left",
+                                                          .what = "L, path after which 37 % of the strength are left",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::displacement_m,
@@ -25,16 +26,25 @@ class StrengthDegradation final : public Effect {
                                                           .neutral = kUnbounded}};
 
   StrengthDegradation(std::span<const double> values, double /*sample_period_s*/) : decay_path_m_{values[0]} {}
-  void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {
+  void before(const StageSample& sample, Motion& motion) noexcept override {
     path_m_ += std::abs(sample.motion.displacement_m - displacement_m_);
     displacement_m_ = sample.motion.displacement_m;
-    force_n *= std::exp(-path_m_ / decay_path_m_);
+    left_ = std::exp(-path_m_ / decay_path_m_);
+    motion.displacement_m /= left_;
+    motion.velocity_m_per_s /= left_;
   }
-  void reset() noexcept override { path_m_ = displacement_m_ = 0.0; }
+  void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& force_n) noexcept override {
+    force_n *= left_;
+  }
+  void reset() noexcept override {
+    path_m_ = displacement_m_ = 0.0;
+    left_ = 1.0;
+  }
 
  private:
   double decay_path_m_;
   double path_m_ = 0.0;
+  double left_ = 1.0;
   double displacement_m_ = 0.0;
 };
 

@@ -14,7 +14,7 @@ namespace hybridtest {
 /// coulomb_friction.
 class StribeckFriction final : public Effect {
  public:
-  static constexpr std::string_view kEquation = "F = F0 + Fc (1 + r exp(-(v / vs)^2)) z, dz = dx / d, |z| <= 1";
+  static constexpr std::string_view kEquation = "F = F0 + Fc z, dz = dx / d, |z| <= 1 + r exp(-(v / vs)^2)";
   static constexpr std::string_view kSource = "Armstrong-Helouvry et al. (1994)";
   static constexpr std::array kParameters{EffectParameter{.name = "friction_force_n",
                                                           .unit = "N",
@@ -44,7 +44,7 @@ class StribeckFriction final : public Effect {
                                                           .neutral = kNoNeutral},
                                           EffectParameter{.name = "presliding_displacement_m",
                                                           .unit = "m",
-                                                          .what = "d, until it slides",
+                                                          .what = "d, until it slides with Fc",
                                                           .low = 1e-12,
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::displacement_m,
@@ -60,8 +60,8 @@ class StribeckFriction final : public Effect {
         element_{values[3]} {}
   void after(const StageSample& sample, const Motion& motion, double& force_n) noexcept override {
     const double speed = sample.motion.velocity_m_per_s / velocity_m_per_s_;
-    const double friction_n = friction_force_n_ * (1.0 + static_excess_ratio_ * std::exp(-speed * speed));
-    force_n += friction_n * element_.share(motion.displacement_m);
+    const double limit = 1.0 + static_excess_ratio_ * std::exp(-speed * speed);
+    force_n += friction_force_n_ * element_.share(motion.displacement_m, limit);
   }
   void reset() noexcept override { element_.reset(); }
 

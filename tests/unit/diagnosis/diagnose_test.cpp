@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "diagnosis/report/diagnosis_json.hpp"
 #include "made_recording.hpp"
@@ -41,6 +42,25 @@ TEST(Diagnose, NamesAViscousForceAndPutsItAtTheSpecimen) {
   EXPECT_GT(diagnosis.report.where.front().share, 0.95);
   EXPECT_TRUE(has_cause(diagnosis, "specimen", "viscous_damping"));
   EXPECT_GT(diagnosis.report.interface_shrink->explainable_fraction.value(), 0.99);
+}
+
+TEST(Diagnose, NamesACoarseConverterBesideABias) {
+  Recording recording = made_recording(made_motion_m, [](double t) { return spring_n(t) + 900.0; });
+  double largest = 0.0;
+  for (const double force_n : recording.dofs[0].of(Channel::measured_force)) {
+    largest = std::max(largest, std::abs(force_n));
+  }
+  const double step_n = 0.05 * largest;
+  for (double& force_n : recording.dofs[0].of(Channel::measured_force)) {
+    force_n = step_n * std::round(force_n / step_n);
+  }
+  const Diagnosis diagnosis = diagnosis_of(recording);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  EXPECT_TRUE(has_cause(diagnosis, "force_sensor", "quantization"));
+  EXPECT_TRUE(has_cause(diagnosis, "force_sensor", "bias"));
+  EXPECT_EQ(diagnosis.report.where.front().interface, "force_sensor");
+  ASSERT_EQ(diagnosis.causes.size(), 2U);
+  EXPECT_NEAR(diagnosis.causes.back().values[0], step_n, 1e-3 * step_n) << "coarsened last";
 }
 
 TEST(Diagnose, AnswersWithTheSetWhereASpringCannotTell) {

@@ -51,16 +51,18 @@ TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
 TEST(FitEffects, HeldOutBlocksAreThoseOfAFitWithoutThem) {
   const auto problem = problem_of(made_recording(
       made_motion_m, [](double t) { return spring_n(t) + 500.0 * std::sin(3.0 * t); }, 200.0));
-  const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "stiffness_error")}, false);
+  const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "cubic_stiffness")}, false);
   const FitSegment& segment = problem.segments.back();
   const Eigen::VectorXd residual = segment.measured - segment.baseline;
-  const Eigen::VectorXd displacement = segment.nuisance.col(0);
+  std::vector<double> cubes;
+  for (const Motion& motion : segment.segment.input) cubes.push_back(std::pow(motion.displacement_m, 3));
+  const Eigen::VectorXd cubed = segment.average(cubes);
   for (std::size_t b = 0; b + 1 < segment.block_begins.size(); ++b) {
     const Eigen::Index first = segment.block_begins[b];
     const Eigen::Index size = segment.block_begins[b + 1] - first;
-    const auto x = displacement.segment(first, size);
+    const auto x = cubed.segment(first, size);
     const auto r = residual.segment(first, size);
-    const double stiffness = (displacement.dot(residual) - x.dot(r)) / (displacement.squaredNorm() - x.squaredNorm());
+    const double stiffness = (cubed.dot(residual) - x.dot(r)) / (cubed.squaredNorm() - x.squaredNorm());
     const double squares = (r - stiffness * x).squaredNorm();
     // The ridges of 1e-9 that keep singular fits finite.
     EXPECT_NEAR(fit.segments.back().held_out_squares[b], squares, 1e-6 * squares) << b;

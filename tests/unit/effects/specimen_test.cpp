@@ -40,26 +40,26 @@ TEST_P(AFormulaOfTheMotion, IsAddedToTheBase) {
 }
 
 std::vector<Formula> formulas() {
-  return {Formula{"stiffness_error", {-3.0e5}, [](const Driver& d, double t) { return -3.0e5 * d.displacement_m(t); }},
-          Formula{"viscous_damping", {2.0e4}, [](const Driver& d, double t) { return 2.0e4 * d.velocity_m_per_s(t); }},
-          Formula{"inertia", {95.0}, [](const Driver& d, double t) { return 95.0 * d.acceleration_m_per_s2(t); }},
-          Formula{"quadratic_damping",
-                  {3.0e5},
-                  [](const Driver& d, double t) {
-                    return 3.0e5 * d.velocity_m_per_s(t) * std::abs(d.velocity_m_per_s(t));
-                  }},
-          Formula{"cubic_stiffness",
-                  {2.0e9},
-                  [](const Driver& d, double t) { return 2.0e9 * std::pow(d.displacement_m(t), 3); }},
-          Formula{"contact",
-                  {4.0e5, 0.004},
-                  [](const Driver& d, double t) { return 4.0e5 * std::max(0.0, d.displacement_m(t) - 0.004); }},
-          Formula{"contact",
-                  {4.0e5, -0.004},
-                  [](const Driver& d, double t) { return 4.0e5 * std::min(0.0, d.displacement_m(t) + 0.004); }},
-          Formula{"geometric_stiffness", {5.0e4, 0.05}, [](const Driver& d, double t) {
-                    return -5.0e4 * std::tan(std::asin(d.displacement_m(t) / 0.05));
-                  }}};
+  return {
+      Formula{"stiffness_error", {0.0, -3.0e5}, [](const Driver& d, double t) { return -3.0e5 * d.displacement_m(t); }},
+      Formula{"viscous_damping", {2.0e4}, [](const Driver& d, double t) { return 2.0e4 * d.velocity_m_per_s(t); }},
+      Formula{"inertia", {95.0}, [](const Driver& d, double t) { return 95.0 * d.acceleration_m_per_s2(t); }},
+      Formula{
+          "quadratic_damping",
+          {3.0e5},
+          [](const Driver& d, double t) { return 3.0e5 * d.velocity_m_per_s(t) * std::abs(d.velocity_m_per_s(t)); }},
+      Formula{"cubic_stiffness",
+              {2.0e9},
+              [](const Driver& d, double t) { return 2.0e9 * std::pow(d.displacement_m(t), 3); }},
+      Formula{"contact",
+              {4.0e5, 0.004},
+              [](const Driver& d, double t) { return 4.0e5 * std::max(0.0, d.displacement_m(t) - 0.004); }},
+      Formula{"contact",
+              {4.0e5, -0.004},
+              [](const Driver& d, double t) { return 4.0e5 * std::min(0.0, d.displacement_m(t) + 0.004); }},
+      Formula{"geometric_stiffness", {5.0e4, 0.05}, [](const Driver& d, double t) {
+                return -5.0e4 * std::tan(std::asin(d.displacement_m(t) / 0.05));
+              }}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Specimen, AFormulaOfTheMotion, testing::ValuesIn(formulas()), [](const auto& instance) {
@@ -132,10 +132,22 @@ TEST(StiffnessDegradation, IsHalfAsStiffAfterItsHalfLife) {
   EXPECT_NEAR(forces[4], 10.0 / 2.25, 1e-12);  // 5 m travelled
 }
 
-TEST(StrengthDegradation, DecaysWithThePath) {
-  const auto effect = made(kSpecimen, "strength_degradation", {4.0});
-  const auto forces = along(*effect, {0.0, 1.0, -1.0, 0.0, 1.0}, [](const Motion&) { return 10.0; });
-  EXPECT_NEAR(forces[4], 10.0 * std::exp(-5.0 / 4.0), 1e-12);
+TEST(StiffnessError, OfALawChangesItsStiffnessAndNotItsStrength) {
+  const auto effect = made(kSpecimen, "stiffness_error", {0.25, 0.0});
+  const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
+  const auto forces = along(*effect, {0.0, 0.1, 0.5, 1.0, -2.0}, plastic);
+  const std::vector<double> expected{0.0, 1.25, 6.25, 8.0, -8.0};
+  for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
+}
+
+TEST(StrengthDegradation, TakesStrengthWithThePathAndLeavesTheStiffness) {
+  const double left = std::exp(-5.0 / 4.0);
+  const auto of_strength = made(kSpecimen, "strength_degradation", {4.0});
+  const auto plastic = [](const Motion& m) { return std::clamp(100.0 * m.displacement_m, -10.0, 10.0); };
+  EXPECT_NEAR(along(*of_strength, {0.0, 1.0, -1.0, 0.0, 1.0}, plastic)[4], 10.0 * left, 1e-12);
+  const auto of_stiffness = made(kSpecimen, "strength_degradation", {4.0});
+  const auto elastic = [](const Motion& m) { return 100.0 * m.displacement_m; };
+  EXPECT_NEAR(along(*of_stiffness, {0.0, 1.0, -1.0, 0.0, 1.0}, elastic)[4], 100.0, 1e-12);
 }
 
 TEST(SpecimenBacklash, HeldByFrictionIsThePlayOperator) {

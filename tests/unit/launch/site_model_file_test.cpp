@@ -73,7 +73,7 @@ TEST_F(SiteFile, EffectsAreAddedBehindThoseItHas) {
         std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"
                     "effects:\n  - {interface: force_sensor, effect: bias, bias_n: 1.0}\n"}}) {
     const SiteModelFile site = read(text);
-    const std::vector<ListedEffect> more{{{find_effect(EffectInterface::specimen, "stiffness_error"), {-4.0}}, 0},
+    const std::vector<ListedEffect> more{{{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, -4.0}}, 0},
                                          {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, std::nullopt}};
     const SiteModelFile longer = read(site.with_effects(more));
     ASSERT_EQ(longer.dofs[0].effects.size(), site.dofs[0].effects.size() + 2);

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/random.hpp"
+#include "diagnosis/traces/network_lags.hpp"
+#include "diagnosis/traces/reading_steps.hpp"
+#include "made_recording.hpp"
+
+/// Effects that show in the digits of a recording.
+namespace hybridtest {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+constexpr std::size_t kSamples = 12000;
+
+std::vector<double> motion_m() {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < kSamples; ++i) values.push_back(made_motion_m(kPeriod_s * static_cast<double>(i)));
+  return values;
+}
+
+std::vector<double> with_noise(std::vector<double> values, double deviation, std::uint64_t seed = 7) {
+  Random random{seed};
+  for (double& value : values) value += deviation * random.normal();
+  return values;
+}
+
+std::vector<double> in_steps(std::vector<double> values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+  return values;
+}
+
+double span_of(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax_element(values);
+  return *high - *low;
+}
+
+TEST(ReadingSteps, AreFoundBehindNoiseAndInFrontOfIt) {
+  const double step = span_of(motion_m()) / 73.4;
+  for (const double noise : {0.0, 0.02, 0.1}) {
+    const ReadingSteps behind = steps_of_readings(with_noise(in_steps(motion_m(), step), noise * step));
+    // A hundredth of a step over the whole span.
+    EXPECT_NEAR(behind.step, step, 0.01 * step / 73.4) << noise;
+    // The characteristic function of the noise at 1 / q; 5 standard deviations of a mean over the samples.
+    EXPECT_NEAR(behind.coherence, std::exp(-2.0 * std::pow(std::numbers::pi * noise, 2)), 5.0 / std::sqrt(kSamples))
+        << noise;
+  }
+  EXPECT_NEAR(steps_of_readings(in_steps(with_noise(motion_m(), 0.3 * step), step)).step, step, 0.01 * step / 73.4);
+}
+
+TEST(ReadingSteps, OfAnOffsetConverterAreTheSame) {
+  const double step = span_of(motion_m()) / 40.0;
+  std::vector<double> values = in_steps(motion_m(), step);
+  for (double& value : values) value += 0.37 * step;
+  EXPECT_NEAR(steps_of_readings(values).step, step, 0.01 * step / 40.0);
+}
+
+TEST(ReadingSteps, AreNotSeenWhereThereAreNone) {
+  const double span = span_of(motion_m());
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_EQ(steps_of_readings(with_noise(motion_m(), 1e-4 * span, seed)).step, 0.0) << seed;
+  }
+  EXPECT_EQ(steps_of_readings(motion_m()).step, 0.0);
+  // Half of it at rest, where every value is the same; and cycles that turn at the same place.
+  std::vector<double> resting = motion_m();
+  for (std::size_t i = kSamples / 2; i < kSamples; ++i) resting[i] = resting[kSamples / 2];
+  EXPECT_EQ(steps_of_readings(with_noise(resting, 1e-4 * span)).step, 0.0);
+  std::vector<double> cycles;
+  for (std::size_t i = 0; i < kSamples; ++i) cycles.push_back(std::sin(0.0063 * static_cast<double>(i)));
+  EXPECT_EQ(steps_of_readings(with_noise(cycles, 1e-4)).step, 0.0);
+  EXPECT_EQ(steps_of_readings(std::vector<double>(kSamples, 0.25)).step, 0.0);
+}
+
+TEST(ReadingSteps, ThatNoiseHidesAreLeftAlone) {
+  const double step = span_of(motion_m()) / 50.0;
+  EXPECT_EQ(steps_of_readings(with_noise(in_steps(motion_m(), step), 0.3 * step)).step, 0.0);
+}
+
+std::vector<double> received(std::span<const int> lags) {
+  const std::vector<double> sent = motion_m();
+  std::vector<double> values(sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const auto lag = std::min(i, static_cast<std::size_t>(lags[i]));
+    values[i] = sent[i - lag];
+  }
+  return values;
+}
+
+TEST(NetworkTrace, TellsLossFromJitterAndBothFromADelay) {
+  Random random{3};
+  std::vector<int> lost(kSamples, 4);
+  std::size_t held = 0;
+  for (std::size_t i = 1; i < kSamples; ++i) {
+    const bool is_lost = random.uniform() < 0.05;
+    lost[i] = is_lost ? lost[i - 1] + 1 : 4;
+    held += is_lost ? 1U : 0U;
+  }
+  const auto loss = trace_of_network(motion_m(), received(lost), kPeriod_s);
+  ASSERT_TRUE(loss);
+  EXPECT_EQ(loss->effect.type->name, "loss");
+  // Those that repeat the one before, and the first four, before anything has arrived.
+  EXPECT_NEAR(loss->effect.values[0], static_cast<double>(held + 4) / kSamples, 1.0 / kSamples);
+
+  std::vector<int> jitters(kSamples);
+  for (int& lag : jitters) lag = static_cast<int>(random.below(7));
+  const auto jitter = trace_of_network(motion_m(), received(jitters), kPeriod_s);
+  ASSERT_TRUE(jitter);
+  EXPECT_EQ(jitter->effect.type->name, "jitter");
+  // Twice the mean lateness of 3 samples, whose own mean has a standard error of 2 / sqrt(12000).
+  EXPECT_NEAR(jitter->effect.values[0], 0.006, 2.0 * 3.0 * kPeriod_s * 2.0 / std::sqrt(kSamples));
+
+  const std::vector<int> late(kSamples, 5);
+  EXPECT_FALSE(trace_of_network(motion_m(), received(late), kPeriod_s));
+  std::vector<int> drifting(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) drifting[i] = static_cast<int>(i / 1000);
+  EXPECT_FALSE(trace_of_network(motion_m(), received(drifting), kPeriod_s));
+  EXPECT_FALSE(trace_of_network(motion_m(), with_noise(motion_m(), 1e-6), kPeriod_s)) << "not what was sent";
+}
+
+TEST(FindTraces, AddsUpRecordingsAndLeavesWhatTheModelHas) {
+  const double step = span_of(motion_m()) / 60.0;
+  Recording recording =
+      made_recording(made_motion_m, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  std::vector<double>& measured = recording.dofs[0].of(Channel::measured_displacement);
+  measured = in_steps(measured, step);
+  SiteModel model = made_model();
+  const std::vector<Trace> traces = find_traces(model, {&recording, 1}, 0);
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces[0].effect.type, find_effect(EffectInterface::displacement_sensor, "quantization"));
+  const std::vector<Trace> of_two = find_traces(model, std::vector<Recording>{recording, recording}, 0);
+  ASSERT_EQ(of_two.size(), 1U);
+  EXPECT_DOUBLE_EQ(of_two[0].gap_share, 2.0 * traces[0].gap_share);
+  model.effects.push_back(traces[0].effect);
+  EXPECT_TRUE(find_traces(model, {&recording, 1}, 0).empty());
+}
+
+}  // namespace
+}  // namespace hybridtest
