@@ -67,7 +67,9 @@ TEST(NotExcited, WhereAWrongSpringCouldNotHaveBeenSeen) {
   EXPECT_THAT(gap_at(diagnosis, "specimen").why_not, HasSubstr("measured_displacement_m moves by"));
   // The controller's own law has no noise, however small its signals are.
   EXPECT_TRUE(gap_at(diagnosis, "compensator").is_judged);
-  EXPECT_THAT(diagnosis_json(diagnosis), testing::Not(HasSubstr("specimen\""))) << "the list holds what is judged";
+  const std::string json = diagnosis_json(diagnosis);
+  EXPECT_THAT(json, testing::Not(HasSubstr("\"interface\": \"specimen\""))) << "`where` holds what is judged";
+  EXPECT_THAT(json, HasSubstr("\"specimen\": \"measured_displacement_m moves by"));
 }
 
 TEST(NotExcited, IsAMatterOfNoiseAndNotOfSize) {

@@ -113,6 +113,22 @@ TEST(ForceUnits, KilonewtonsShowBesideAWrongStiffness) {
   EXPECT_THAT(complaints_of(made_model(), with_force_unit(1e3, 0.5)), ElementsAre(HasSubstr("in kilonewtons")));
 }
 
+TEST(ForceUnits, KilonewtonsShowBesideAFrictionThatTheModelLacks) {
+  // Most of what this specimen does: its force goes with the model's at a correlation of about a half.
+  Recording recording = made_recording(made_motion_m, [](double time_s) {
+    const double forward = made_motion_m(time_s + 1e-3) > made_motion_m(time_s - 1e-3) ? 1.0 : -1.0;
+    return 0.3 * spring_n(time_s) + 1.5e4 * forward;
+  });
+  EXPECT_THAT(complaints_of(made_model(), recording), IsEmpty());
+  for (double& force : recording.dofs[0].of(Channel::measured_force)) force /= 1e3;
+  EXPECT_THAT(complaints_of(made_model(), recording), ElementsAre(HasSubstr("in kilonewtons")));
+}
+
+TEST(ForceUnits, ALoadCellThatIsNotConnectedIsNoUnit) {
+  // Noise alone, a thousandth of what the model predicts.
+  EXPECT_THAT(complaints_of(made_model(), made_recording(made_motion_m, [](double) { return 0.0; })), IsEmpty());
+}
+
 TEST(ForceUnits, AWrongStiffnessIsNoUnit) {
   for (const double softer : {0.1, 0.5, 2.0, 5.0, 9.0, 50.0, 200.0}) {
     EXPECT_THAT(complaints_of(made_model(), with_force_unit(1.0, softer)), IsEmpty()) << softer;
