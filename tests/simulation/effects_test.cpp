@@ -51,8 +51,11 @@ double scale_of(const EffectParameter& parameter) {
 
 std::string written(const EffectType& type) {
   std::string text = "[{interface: " + std::string{name_of(type.interface)} + ", effect: " + std::string{type.name};
+  // What has a fallback is left to it, unless that switches the effect off.
+  const bool has_to_be_given =
+      std::ranges::any_of(type.parameters, [](const EffectParameter& p) { return std::isnan(p.fallback); });
   for (const EffectParameter& parameter : type.parameters) {
-    if (!std::isnan(parameter.fallback)) continue;
+    if (has_to_be_given && !std::isnan(parameter.fallback)) continue;
     const double share = parameter.search_low + 0.55 * (parameter.search_high - parameter.search_low);
     const double value = std::clamp(scale_of(parameter) * share, parameter.low, parameter.high);
     text += ", " + std::string{parameter.name} + ": " + config::written_number(value);

@@ -31,15 +31,16 @@ History travel_samples(const Site& site, const PlantEffects& effects, std::size_
 }
 
 /// Polynomial through order + 1 past targets, evaluated `delay` ahead of the newest.
-double extrapolated(const History& target, std::size_t now, int order, double spacing_samples) {
-  const auto available = static_cast<int>(static_cast<double>(now) / spacing_samples + 1e-9);
-  const int degree = std::min(order, available);
+double extrapolated(const History& target, std::size_t now, int order, double ahead_samples) {
+  const auto spacing = static_cast<std::size_t>(std::max(1.0, std::round(ahead_samples)));
+  const double ahead = ahead_samples / static_cast<double>(spacing);
+  const int degree = std::min(order, static_cast<int>(now / spacing));
   double p[5] = {};
-  for (int j = 0; j <= degree; ++j) p[j] = value_at(target, static_cast<double>(now) - j * spacing_samples);
-  // Points at 0, -1, -2 …, evaluated at +1.
+  for (int j = 0; j <= degree; ++j) p[j] = target[now - static_cast<std::size_t>(j) * spacing];
+  // Points at 0, -1, -2 …, evaluated ahead of them (Neville).
   for (int level = 1; level <= degree; ++level) {
     for (int j = 0; j + level <= degree; ++j) {
-      p[j] = ((1.0 + j + level) * p[j] - (1.0 + j) * p[j + 1]) / level;
+      p[j] = ((ahead + j + level) * p[j] - (ahead + j) * p[j + 1]) / level;
     }
   }
   return p[0];
