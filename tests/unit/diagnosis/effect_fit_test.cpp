@@ -48,6 +48,21 @@ TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
   EXPECT_TRUE(fit.parameters[0][0].at_bound);
 }
 
+TEST(FitEffects, SolvesForEffectsThatAreNotLinearTogether) {
+  const double gain = 0.2;
+  const double damping_n_s_per_m = 4.0e4;
+  const auto problem = problem_of(made_recording(made_motion_m, [&](double t) {
+    const double velocity_m_per_s = (made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4)) / 2e-4;
+    return (1.0 + gain) * (spring_n(t) + damping_n_s_per_m * velocity_m_per_s);
+  }));
+  const FitOutcome fit =
+      fit_effects(problem, {find_effect(specimen, "viscous_damping"), find_effect(force_sensor, "gain")}, false);
+  // Each alone is linear; taken to be so together they give a damping that has the gain in it twice, 20 % too much.
+  // What is left is the smoothing of a velocity of 2.3 Hz over neighbouring samples, and 20 N of noise on 10 kN.
+  EXPECT_NEAR(fit.effects[0].values[0], damping_n_s_per_m, 2e-3 * damping_n_s_per_m);
+  EXPECT_NEAR(fit.effects[1].values[0], gain, 1e-3);
+}
+
 TEST(FitEffects, HeldOutBlocksAreThoseOfAFitWithoutThem) {
   const auto problem = problem_of(made_recording(
       made_motion_m, [](double t) { return spring_n(t) + 500.0 * std::sin(3.0 * t); }, 200.0));
