@@ -46,15 +46,28 @@ bool is_of_sensor(const EffectType& effect) {
   return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
 }
 
+/// Share of a range below which a search that stops at its end tells nothing.
+constexpr double kUnresolved = 1e-3;
+
+/// A scenario may leave it out, and this fit may as well.
+bool is_dispensable(const EffectParameter& parameter, const ParameterEstimate& estimate) {
+  constexpr double kTwoSided95 = 1.96;
+  const double off = std::abs(estimate.value - parameter.fallback);  // NaN where it has to be given
+  const double resolved = (parameter.search_high - parameter.search_low) * kUnresolved;
+  return off <=
+         std::max(kTwoSided95 * estimate.standard_error, parameter.scale == ParameterScale::one ? resolved : 0.0);
+}
+
 /// Of two fits that a recording cannot tell apart the one without an effect of a sensor comes first, and the one of
-/// fewer parameters: at the end of its range one does not count, as the fit is then one of an effect without it.
+/// fewer parameters.
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
   double sum = 0.0;
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const EffectType& effect = *fit.effects[i].type;
     double free = 0.0;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
-      if (!is_fixed(problem, effect.parameters[j]) && !fit.parameters[i][j].at_bound) free += 1.0;
+      const EffectParameter& parameter = effect.parameters[j];
+      if (!is_fixed(problem, parameter) && !is_dispensable(parameter, fit.parameters[i][j])) free += 1.0;
     }
     sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
   }
