@@ -32,8 +32,8 @@ inline constexpr double kSlightlyWrong = 0.25;
 /// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
 inline constexpr double kSensorPrior = 1.0;
 /// By how much an effect has to be better for each parameter that it has more than another [nats]: of two that do
-/// equally well on data not fitted, the simpler one is meant.
-inline constexpr double kParameterPrior = 2.0;
+/// equally well on data not fitted, the simpler one is meant. Half the logarithm of the independent samples of 30 s.
+inline constexpr double kParameterPrior = 2.5;
 /// An effect so far behind the best one on the coarse record is not looked at again, nor paired [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are searched together with the first.
