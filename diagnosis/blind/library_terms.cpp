@@ -89,7 +89,11 @@ Parameters in_library_terms(const Site& site, const PlantEffect& effect) {
   if (name == "yielding") return of_yielding(site, effect);
   if (name == "setting_mismatch") return {{"delay_error_s", effect.of("delay_s") - site.compensator.delay_s}};
   if (name == "compliance") return {{"compliance_m_per_n", 1.0 / effect.of("stiffness_n_per_m")}};
-  if (name == "stiffness_error") return {{"stiffness_error_ratio", effect.of("stiffness_ratio") - 1.0}};
+  if (name == "stiffness_error") {
+    const double ratio = effect.of("stiffness_ratio") - 1.0;
+    if (site.specimen.kind != LawKind::elastic) return {{"stiffness_error_ratio", ratio}};
+    return {{"stiffness_n_per_m", ratio * site.specimen.stiffness_n_per_m}};
+  }
   if (name == "stiffness_degradation") return {{"half_life_m", std::numbers::ln2 / effect.of("degradation_per_m")}};
   if (name == "strength_degradation") return {{"path_m", 1.0 / effect.of("degradation_per_m")}};
   Parameters terms;

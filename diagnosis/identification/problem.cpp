@@ -1,6 +1,7 @@
 #include "diagnosis/identification/problem.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "diagnosis/tuning.hpp"
@@ -45,20 +46,20 @@ void add_nuisance(FitSegment& fit, EffectInterface interface, std::string_view e
   fit.nuisance_types.push_back(type);
 }
 
-/// Change of the prediction per unit of a wrong stiffness: of the ratio by which the law's is off, or of the
-/// spring that the model does not have.
-Eigen::VectorXd stiffness_slope(const SiteModel& model, const FitSegment& fit, const EffectType& stiffness) {
-  const double step = model.make_law ? 1e-3 : 1.0;  // the latter's change is proportional to it
-  const EffectSetting setting{.type = &stiffness, .values = {model.make_law ? step : 0.0, model.make_law ? 0.0 : step}};
+/// Change of the prediction per unit of a wrong stiffness: of a spring beside another, or of the ratio of a law's.
+Eigen::VectorXd stiffness_slope(const SiteModel& model, bool law_is_spring, const FitSegment& fit,
+                                const EffectType& stiffness) {
+  const double step = law_is_spring ? 1.0 : 1e-3;  // the former's change is proportional to it
+  const EffectSetting setting{.type = &stiffness, .values = {law_is_spring ? 0.0 : step, law_is_spring ? step : 0.0}};
   return (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
 }
 
-void add_nuisances(const SiteModel& model, FitSegment& fit) {
+void add_nuisances(const SiteModel& model, bool law_is_spring, FitSegment& fit) {
   fit.nuisance.resize(fit.measured.size(), 0);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fit.measured.size());
   if (fit.segment.to == Channel::measured_force) {
     add_nuisance(fit, specimen, "stiffness_error",
-                 stiffness_slope(model, fit, *find_effect(specimen, "stiffness_error")));
+                 stiffness_slope(model, law_is_spring, fit, *find_effect(specimen, "stiffness_error")));
     add_nuisance(fit, force_sensor, "bias", ones);
     return;
   }
@@ -82,7 +83,7 @@ std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit)
   return predicted;
 }
 
-FitSegment prepare(const SiteModel& model, Segment segment) {
+FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) {
   FitSegment fit;
   fit.segment = std::move(segment);
   fit.averaged = std::max<std::size_t>(
@@ -98,8 +99,19 @@ FitSegment prepare(const SiteModel& model, Segment segment) {
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.block_begins = blocks_of(fit);
-  add_nuisances(model, fit);
+  add_nuisances(model, law_is_spring, fit);
   return fit;
+}
+
+/// No force, or one proportional to the displacement, within rounding, up to the largest one either way.
+bool is_spring(const SiteModel& model, double largest_m) {
+  if (!model.make_law) return true;
+  const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
+  const double whole_n = force_n(largest_m);
+  constexpr double kRounding = 1e-9;
+  return std::ranges::all_of(std::array{-1.0, -0.4, 0.3, 0.7}, [&](double share) {
+    return std::abs(force_n(share * largest_m) - share * whole_n) <= kRounding * std::abs(whole_n);
+  });
 }
 
 /// A floor is an estimate: what exceeds it a little beside a clear gap elsewhere is no gap.
@@ -123,7 +135,9 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   IdentificationProblem problem;
   problem.model = model;
   problem.scales = scales_of(segments);
-  for (Segment& segment : segments) problem.segments.push_back(prepare(model, std::move(segment)));
+  problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
+  for (Segment& segment : segments)
+    problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment)));
   mark_suspects(problem.segments);
   return problem;
 }

@@ -36,6 +36,7 @@ struct IdentificationProblem {
   SiteModel model;
   std::vector<FitSegment> segments;
   SignalScales scales;
+  bool law_is_spring = false;  // linear, as far as the recordings move it, or none
 };
 
 /// @param segments   of recordings of the role fit.

@@ -35,7 +35,7 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 }  // namespace
 
 bool is_fixed(const IdentificationProblem& problem, const EffectParameter& parameter) {
-  const LawUse other = problem.model.make_law ? LawUse::without_law : LawUse::with_law;
+  const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
   return parameter.search_low == parameter.search_high || parameter.needs == other;
 }
 

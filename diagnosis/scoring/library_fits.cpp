@@ -29,8 +29,8 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
 /// the specimen turns into a specimen that yields, which is another effect.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
   const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
-  // A ratio where the model has a law, else a spring of its own.
-  const double unit = problem.model.make_law ? 1.0 : problem.scales.of(ParameterScale::stiffness_n_per_m);
+  // A spring beside another one, else the ratio of a law's stiffness.
+  const double unit = problem.law_is_spring ? problem.scales.of(ParameterScale::stiffness_n_per_m) : 1.0;
   std::size_t column = 0;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     if (!fit.segments[i].touched) continue;
@@ -177,7 +177,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
     try {
       Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
-      candidate.score = held_out_score(extended, candidate.fit) + prior(extended, candidate.fit);
+      candidate.score = held_out_score(extended, candidate.fit);
       screened[i] = std::move(candidate);
     } catch (const ConfigError&) {
       screened[i].reset();

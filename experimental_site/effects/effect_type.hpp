@@ -42,8 +42,8 @@ enum class ParameterScale : std::uint8_t {
   compliance_m_per_n,   // peak displacement over peak force
 };
 
-/// With which models of a specimen a search looks for a parameter; with others it has its fallback.
-enum class LawUse : std::uint8_t { any, with_law, without_law };
+/// Beside which law of a specimen a search looks for a parameter; beside another one it has its fallback.
+enum class LawUse : std::uint8_t { any, spring_or_none, with_strength };
 
 struct EffectParameter {
   std::string_view name;  // its unit last: `friction_force_n`
