@@ -12,12 +12,10 @@ namespace hybridtest {
 namespace {
 
 /// Around its mean.
-template <class Values>
-double deviation(const Values& values) {
-  const Eigen::VectorXd copy = values;
-  if (copy.size() == 0) return 0.0;
-  const double mean = copy.mean();
-  return std::sqrt((copy.array() - mean).square().mean());
+double deviation(const Eigen::VectorXd& values) {
+  if (values.size() == 0) return 0.0;
+  const double mean = values.mean();
+  return std::sqrt((values.array() - mean).square().mean());
 }
 
 Eigen::VectorXd displacements(const std::vector<Motion>& motion) {
