@@ -19,13 +19,14 @@ std::string label(const EffectType& type) {
 }
 
 /// A value well inside the range of each parameter, so that the effect shows.
-/// Three quarters up the search range; what may be left out is, unless that leaves nothing of the effect.
+/// Three quarters up the search range; what may be left out is, but for the last one where all may.
 std::vector<double> some_values(const EffectType& type) {
   const bool has_to_be_given =
       std::ranges::any_of(type.parameters, [](const EffectParameter& p) { return std::isnan(p.fallback); });
   std::vector<double> values;
   for (const EffectParameter& parameter : type.parameters) {
-    const bool is_left_out = has_to_be_given && !std::isnan(parameter.fallback);
+    const bool is_last = values.size() + 1 == type.parameters.size();
+    const bool is_left_out = !std::isnan(parameter.fallback) && (has_to_be_given || !is_last);
     values.push_back(is_left_out ? parameter.fallback : 0.25 * parameter.search_low + 0.75 * parameter.search_high);
   }
   return values;
