@@ -9,6 +9,7 @@
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/carrying_over.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
 #include "diagnosis/verdict/excitation.hpp"
 #include "diagnosis/verdict/judgement.hpp"
@@ -205,6 +206,18 @@ std::string next_experiment(const Selection& selection, const Judgement& judgeme
   return {};
 }
 
+void drop_what_does_not_carry_over(Diagnosis& diagnosis) {
+  report::DiagnosisReport& report = diagnosis.report;
+  const Verdict verdict = verdict_carried_over(report.verdict, *report.interface_shrink);
+  if (verdict == report.verdict) return;
+  report.notes.push_back(report.ranking.front().effect +
+                         " goes with the recordings that it was found in and leaves the gap of those held out.");
+  report.verdict = verdict;
+  for (RankedCause& cause : report.ranking) cause.is_cause = cause.is_indistinguishable = false;
+  report.interface_shrink.reset();
+  diagnosis.causes.clear();
+}
+
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -280,13 +293,15 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
 
   std::vector<Segment> judged = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
-  if (judged.empty()) {
+  const bool is_held_out = !judged.empty();
+  if (!is_held_out) {
     judged = segments;
     if (has_causes) {
       report.notes.emplace_back("No recording was held out: how far the gap shrinks is measured on those fitted.");
     }
   }
   if (has_causes) report.interface_shrink = shrink_on(model, diagnosis.causes, judged, settings.seed);
+  if (has_causes && is_held_out && traces.empty()) drop_what_does_not_carry_over(diagnosis);
   for (const Segment& segment : judged) {
     report.series.push_back(series_of(model, segment, recordings[segment.recording], diagnosis, settings.dof));
   }

@@ -42,7 +42,7 @@ struct Diagnosis {
 /// the gap shrinks with it. Pure: the same input gives the same bytes.
 ///
 /// Effects are searched and judged on the recordings of the role fit, on blocks left out of the fit;
-/// those of the role held_out serve to measure how far the gap shrinks, and nothing else.
+/// those of the role held_out serve to measure how far the gap shrinks, and to drop causes that leave it there.
 /// @param recordings   at least one of the role fit; all have the degree of freedom asked for.
 [[nodiscard]] Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings,
                                  const DiagnoseSettings& settings);

@@ -75,6 +75,8 @@ inline constexpr double kPartialLeaves = 0.3;
 /// Likewise where everything is computed and nothing measured: wrong ratios come within a hundredth, right ones
 /// within rounding.
 inline constexpr double kComputedLeaves = 1e-6;
+/// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
+inline constexpr double kCarriesOver = 0.5;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
 

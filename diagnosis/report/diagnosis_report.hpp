@@ -94,6 +94,7 @@ struct Shrink {
   double nrmse_before = 0.0;
   double nrmse_after = 0.0;
   double floor_nrmse = 0.0;
+  double changed_nrmse = 0.0;     // by how much the causes change the prediction
   double variance_removed = 0.0;  // 0 to 1
   std::optional<Interval> ci95{};
   std::optional<double> explainable_fraction{};  // (E0 - E1) / (E0 - floor)

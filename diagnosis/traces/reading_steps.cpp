@@ -48,6 +48,12 @@ struct Readings {
   double span = 0.0;
   double way = 0.0;  // all of them
 
+  /// As many as would make up the way in equal parts.
+  [[nodiscard]] double samples_that_count() const {
+    double squares = 0.0;
+    for (const double part : ways) squares += part * part;
+    return way * way / squares;
+  }
   [[nodiscard]] double coherence(double steps_in_span) const {
     std::complex<double> sum;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -117,7 +123,10 @@ ReadingSteps steps_of_readings(std::span<const double> values) {
   // A way from one reversal to the next leaves at most q / pi.
   const double reversals = 1.0 + static_cast<double>(reversals_of(values, reversal_threshold_m(values)).size());
   const double by_chance = reversals * readings.span / (std::numbers::pi * rough * readings.way);
-  if (*peak < std::max(kCoherent, kOverChance * by_chance)) return {};
+  // A way that few samples make up, as of a spike, keeps to some step or other: the largest of so many random sums.
+  const double tried = static_cast<double>(end - begin);
+  const double by_few = std::sqrt(std::log(tried + 2.0) / readings.samples_that_count());
+  if (*peak < std::max(kCoherent, kOverChance * std::max(by_chance, by_few))) return {};
   const double steps = refined(readings, rough);
   ReadingSteps result{.step = readings.span / steps, .coherence = readings.coherence(steps)};
   return result.coherence < kCoherent ? ReadingSteps{} : result;

@@ -17,12 +17,14 @@ constexpr std::size_t kResamples = 200;
 struct BlockEnergy {
   double before = 0.0;
   double after = 0.0;
+  double changed = 0.0;
   double floor = 0.0;
   double samples = 0.0;
 
   BlockEnergy& operator+=(const BlockEnergy& other) {
     before += other.before;
     after += other.after;
+    changed += other.changed;
     floor += other.floor;
     samples += other.samples;
     return *this;
@@ -62,6 +64,7 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
     for (std::size_t i = n * b / kBlocks; i < n * (b + 1) / kBlocks; ++i) {
       block.before += std::pow(segment.measured[i] - before[i], 2) / output;
       block.after += std::pow(segment.measured[i] - after[i], 2) / output;
+      block.changed += std::pow(after[i] - before[i], 2) / output;
       block.floor += floor * floor / output;
       block.samples += 1.0;
     }
@@ -100,6 +103,7 @@ report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> 
   shrink.nrmse_before = std::sqrt(sum.before / sum.samples);
   shrink.nrmse_after = std::sqrt(sum.after / sum.samples);
   shrink.floor_nrmse = std::sqrt(sum.floor / sum.samples);
+  shrink.changed_nrmse = std::sqrt(sum.changed / sum.samples);
   shrink.variance_removed = removed(sum);
   shrink.ci95 = interval_of(blocks, seed);
   if (sum.before > sum.floor) shrink.explainable_fraction = (sum.before - sum.after) / (sum.before - sum.floor);

@@ -75,6 +75,15 @@ TEST(ReadingSteps, AreNotSeenWhereThereAreNone) {
   EXPECT_EQ(steps_of_readings(std::vector<double>(kSamples, 0.25)).step, 0.0);
 }
 
+TEST(ReadingSteps, AreNotSeenInAFewSpikes) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random{seed};
+    std::vector<double> spikes(kSamples, 0.0);
+    for (int i = 0; i < 12; ++i) spikes[random.below(kSamples)] = 1.0 + random.uniform();
+    EXPECT_EQ(steps_of_readings(with_noise(spikes, 1e-4, seed)).step, 0.0) << seed;
+  }
+}
+
 TEST(ReadingSteps, ThatNoiseHidesAreLeftAlone) {
   const double step = span_of(motion_m()) / 50.0;
   EXPECT_EQ(steps_of_readings(with_noise(in_steps(motion_m(), step), 0.3 * step)).step, 0.0);
