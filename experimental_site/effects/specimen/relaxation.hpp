@@ -20,7 +20,7 @@ class Relaxation final : public Effect {
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
                                                           .scale = ParameterScale::stiffness_n_per_m,
-                                                          .search_low = -1.0,
+                                                          .search_low = 0.0,
                                                           .search_high = 3.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "time_constant_s",
