@@ -14,6 +14,7 @@
 #include "diagnosis/verdict/excitation.hpp"
 #include "diagnosis/verdict/judgement.hpp"
 #include "diagnosis/verdict/next_experiment.hpp"
+#include "diagnosis/verdict/ranked_cause.hpp"
 #include "diagnosis/verdict/repeatability.hpp"
 #include "diagnosis/verdict/selection.hpp"
 #include "diagnosis/verdict/sensor_facts.hpp"
@@ -71,33 +72,12 @@ bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
          });
 }
 
-RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates) {
-  constexpr double kTwoSided95 = 1.96;
-  RankedCause cause;
-  cause.interface = name_of(effect.type->interface);
-  cause.effect = effect.type->name;
-  cause.equation = effect.type->equation;
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    const EffectParameter& parameter = effect.type->parameters[i];
-    report::ReportedParameter reported;
-    reported.name = parameter.name;
-    reported.unit = parameter.unit;
-    reported.value = estimates[i].value;
-    reported.is_at_bound = estimates[i].at_bound;
-    const double half = kTwoSided95 * estimates[i].standard_error;
-    if (half > 0.0) reported.ci95 = report::Interval{reported.value - half, reported.value + half};
-    cause.parameters.push_back(std::move(reported));
-  }
-  return cause;
-}
-
 /// The verdict's causes first, then what else was considered.
 std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
                               const Judgement& judgement) {
   constexpr std::size_t kMostAlternatives = 8;
   std::vector<RankedCause> ranking;
-  const bool has_causes =
-      judgement.verdict == Verdict::named || judgement.verdict == Verdict::set || judgement.verdict == Verdict::partial;
+  const bool has_causes = report::names_a_cause(judgement.verdict);
   std::vector<const EffectType*> listed;
   if (has_causes) {
     const std::vector<double> shares = cause_shares(problem, selection.baseline, selection.chosen);

@@ -142,8 +142,17 @@ SegmentResult untouched(const FitSegment& fit) {
   return result;
 }
 
+std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effects) {
+  std::vector<const EffectType*> types;
+  std::ranges::transform(effects, std::back_inserter(types), &EffectSetting::type);
+  return types;
+}
+
+enum class Look { from_start, everywhere };
+
+/// @param start   where to look first; empty: nowhere in particular.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
-                    const std::vector<EffectSetting>& start, int starts, bool with_nuisance) {
+                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
   const VariableProjection projection{problem, plan_search(problem, effects), with_nuisance};
   const SearchPlan& plan = projection.plan();
   Eigen::VectorXd first(start.empty() ? 0 : static_cast<Eigen::Index>(plan.searched.size()));
@@ -151,6 +160,7 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
     const SearchedParameter& searched = plan.searched[static_cast<std::size_t>(i)];
     first[i] = searched.place_of(start[searched.effect].values[searched.parameter]);
   }
+  const int starts = look == Look::everywhere ? starts_for(static_cast<Eigen::Index>(plan.searched.size())) : 0;
   const Eigen::VectorXd places = search_best(projection, first, starts);
   const Projected solution = projection.solve(places);
   const Linearisation linear = linearise(projection, places, solution);
@@ -183,27 +193,21 @@ double SegmentResult::held_out_mean_square(const FitSegment& segment) const {
 
 FitOutcome fit_effects(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                        bool with_nuisance) {
-  const auto searched = static_cast<Eigen::Index>(plan_search(problem, effects).searched.size());
-  return fit_from(problem, effects, {}, starts_for(searched), with_nuisance);
+  return fit_from(problem, effects, {}, Look::everywhere, with_nuisance);
 }
 
 FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                          bool with_nuisance) {
-  std::vector<const EffectType*> effects;
-  std::ranges::transform(start, std::back_inserter(effects), &EffectSetting::type);
-  return fit_from(problem, effects, start, 0, with_nuisance);
+  return fit_from(problem, types_of(start), start, Look::from_start, with_nuisance);
 }
 
 FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                           bool with_nuisance) {
-  std::vector<const EffectType*> effects;
-  std::ranges::transform(start, std::back_inserter(effects), &EffectSetting::type);
-  const auto searched = static_cast<Eigen::Index>(plan_search(problem, effects).searched.size());
-  return fit_from(problem, effects, start, starts_for(searched), with_nuisance);
+  return fit_from(problem, types_of(start), start, Look::everywhere, with_nuisance);
 }
 
 FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance) {
-  return fit_from(problem, {}, {}, 0, with_nuisance);
+  return fit_from(problem, {}, {}, Look::from_start, with_nuisance);
 }
 
 }  // namespace hybridtest

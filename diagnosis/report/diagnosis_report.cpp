@@ -14,4 +14,8 @@ std::string_view name_of(Verdict verdict) noexcept {
   return "";
 }
 
+bool names_a_cause(Verdict verdict) noexcept {
+  return verdict == Verdict::named || verdict == Verdict::set || verdict == Verdict::partial;
+}
+
 }  // namespace hybridtest::report

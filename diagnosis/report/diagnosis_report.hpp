@@ -21,6 +21,8 @@ struct Interval {
 enum class Verdict : std::uint8_t { none, named, set, partial, unknown, not_excited };
 /// As in diagnosis.json: `not_excited`.
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
+/// `named`, `set` and `partial` do.
+[[nodiscard]] bool names_a_cause(Verdict verdict) noexcept;
 
 struct ReportedRecording {
   std::string file;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/ranked_cause.hpp"
 
 namespace hybridtest {
 namespace {
@@ -93,11 +94,7 @@ double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& r
   const double own = gap.is_at_fault ? excess(gap.nrmse, gap.floor_nrmse) : 0.0;
   gap.share = own > 0.0 ? own / (own + others) : 0.0;
   gap.share_ci95 = {gap.share, gap.share};
-  for (report::InterfaceGap& other : report.where) {
-    other.share *= 1.0 - gap.share;
-    other.share_ci95.low *= 1.0 - gap.share;
-    other.share_ci95.high *= 1.0 - gap.share;
-  }
+  scale_shares(report.where, 1.0 - gap.share);
   const double share = gap.share;
   report.where.push_back(std::move(gap));
   std::ranges::stable_sort(report.where, [](const report::InterfaceGap& a, const report::InterfaceGap& b) {
@@ -106,29 +103,22 @@ double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& r
   return share;
 }
 
-std::vector<report::RankedCause> ranked(const StructureDiagnosis& structure, double share_of_gap) {
-  constexpr double kTwoSided95 = 1.96;
-  std::vector<report::RankedCause> causes;
+EffectSetting setting_of(const FittedRatio& ratio) {
+  return {find_effect(EffectInterface::numerical_substructure, ratio.effect->name), {ratio.value}};
+}
+
+void add_causes(const StructureDiagnosis& structure, double share_of_gap, std::vector<report::RankedCause>& ranking) {
   for (std::size_t i = 0; i < structure.fit.ratios.size(); ++i) {
     const FittedRatio& ratio = structure.fit.ratios[i];
-    const EffectType& type = *find_effect(EffectInterface::numerical_substructure, ratio.effect->name);
-    report::RankedCause cause;
-    cause.interface = name_of(type.interface);
-    cause.effect = type.name;
-    cause.equation = type.equation;
+    report::RankedCause cause =
+        ranked(setting_of(ratio),
+               {{.value = ratio.value, .standard_error = ratio.standard_error, .at_bound = ratio.at_bound}});
     cause.probability = 1.0 - structure.gap_left;
     cause.share = share_of_gap * structure.shares[i];
     cause.is_cause = true;
-    report::ReportedParameter parameter;
-    parameter.name = type.parameters.front().name;
-    parameter.value = ratio.value;
-    parameter.is_at_bound = ratio.at_bound;
-    const double half = kTwoSided95 * ratio.standard_error;
-    if (half > 0.0) parameter.ci95 = report::Interval{ratio.value - half, ratio.value + half};
-    cause.parameters.push_back(std::move(parameter));
-    causes.push_back(std::move(cause));
+    ranking.insert(ranking.begin() + static_cast<std::ptrdiff_t>(i), std::move(cause));
   }
-  return causes;
+  put_causes_first(ranking);
 }
 
 report::Shrink shrink_of(const StructureDiagnosis& structure) {
@@ -199,19 +189,13 @@ void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis) {
     report.notes.emplace_back("The causes are of the numerical substructure; the gap at the site stays unexplained.");
   }
   for (report::RankedCause& cause : report.ranking) cause.share *= 1.0 - share;
-  std::vector<report::RankedCause> causes = ranked(structure, share);
-  report.ranking.insert(report.ranking.begin(), causes.begin(), causes.end());
-  std::ranges::stable_sort(report.ranking, [](const report::RankedCause& a, const report::RankedCause& b) {
-    return a.is_cause && (!b.is_cause || a.share > b.share);
-  });
+  add_causes(structure, share, report.ranking);
   if (!report.interface_shrink) report.interface_shrink = shrink_of(structure);
 }
 
 std::vector<EffectSetting> causes_of(const StructureDiagnosis& structure) {
   std::vector<EffectSetting> causes;
-  for (const FittedRatio& ratio : structure.fit.ratios) {
-    causes.push_back({find_effect(EffectInterface::numerical_substructure, ratio.effect->name), {ratio.value}});
-  }
+  for (const FittedRatio& ratio : structure.fit.ratios) causes.push_back(setting_of(ratio));
   return causes;
 }
 

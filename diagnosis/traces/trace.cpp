@@ -4,18 +4,13 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnosis/localisation/gap_signals.hpp"
 #include "diagnosis/traces/network_lags.hpp"
 #include "diagnosis/traces/reading_steps.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
-
-double mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
 
 bool has(const SiteModel& model, const EffectType* type) {
   return std::ranges::any_of(model.effects, [type](const EffectSetting& effect) { return effect.type == type; });

@@ -5,22 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/localisation/gap_signals.hpp"
 #include "diagnosis/report/wording.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
 
-/// Around its mean.
-double deviation(const Eigen::VectorXd& values) {
-  if (values.size() == 0) return 0.0;
-  const double mean = values.mean();
-  return std::sqrt((values.array() - mean).square().mean());
-}
+double deviation(std::span<const double> values) { return std::sqrt(variance(values)); }
 
-Eigen::VectorXd displacements(const std::vector<Motion>& motion) {
-  Eigen::VectorXd values(std::ssize(motion));
-  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = motion[static_cast<std::size_t>(i)].displacement_m;
+std::vector<double> displacements(const std::vector<Motion>& motion) {
+  std::vector<double> values(motion.size());
+  std::ranges::transform(motion, values.begin(), &Motion::displacement_m);
   return values;
 }
 
@@ -72,7 +68,7 @@ std::vector<Excitation> excitations_of(const IdentificationProblem& problem) {
     excitation.output = fit.segment.to;
     excitation.motion_m = deviation(displacements(fit.segment.input));
     excitation.motion_noise_m = deviation(displacements(fit.segment.noise));
-    excitation.output_size = deviation(fit.measured);
+    excitation.output_size = deviation({fit.measured.data(), static_cast<std::size_t>(fit.measured.size())});
     excitation.output_floor = fit.floor;
     excitations.push_back(std::move(excitation));
   }
@@ -100,8 +96,7 @@ std::string experiment_that_excites(const std::vector<Excitation>& excitations) 
   if (closest->output_size <= 0.0) return "Look at the sensor: " + closest->why_not() + ".";
   return fmt::format(
       "Repeat with at least {:.0f} times the motion, or with sensors as much quieter: {}. At thirty times the noise "
-      "what "
-      "changes a tenth of the signal shows.",
+      "what changes a tenth of the signal shows.",
       std::ceil(tuning::kWellExcitedOverNoise / margin(*closest)), closest->why_not());
 }
 

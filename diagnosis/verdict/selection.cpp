@@ -106,8 +106,8 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
 }
 
 /// The best pair that one of the leading effects is part of.
-FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
-                      std::size_t threads) {
+FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                      const Selection& selection, std::size_t threads) {
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
   FitOutcome best = first;
   double best_score = -std::numeric_limits<double>::infinity();
@@ -116,13 +116,13 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
   const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < leaders; ++i) {
     if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
-    std::vector<Candidate> beside = fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
+    const std::vector<Candidate> beside =
+        fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
     const Candidate* const second = first_that_earns(problem, selection.baseline, first, beside);
     if (second != nullptr && second->score > best_score) {
       best = second->fit;
       best_score = second->score;
     }
-    if (i == 0) selection.seconds = std::move(beside);
   }
   return best;
 }

@@ -12,7 +12,6 @@ struct Selection {
   std::vector<Candidate> library;     // every effect by itself, best first
   FitOutcome chosen;                  // effects together; none in `effects` when the gap asks for none
   std::vector<double> probabilities;  // one per entry of `library`: that it is the first cause
-  std::vector<Candidate> seconds;     // what was tried beside the first effect, best first
 };
 
 /// Fits the library, takes the best effect and adds others for as long as each removes a good part of

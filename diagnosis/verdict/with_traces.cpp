@@ -5,6 +5,7 @@
 
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/ranked_cause.hpp"
 
 namespace hybridtest {
 
@@ -37,33 +38,21 @@ void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vecto
   if (traces.empty() || known <= 0.0) return;
   for (report::RankedCause& cause : ranking) cause.share *= parts.explained / known;
   for (const Trace& trace : traces) {
-    report::RankedCause cause;
-    cause.interface = name_of(trace.effect.type->interface);
-    cause.effect = trace.effect.type->name;
-    cause.equation = trace.effect.type->equation;
+    std::vector<ParameterEstimate> read;
+    for (const double value : trace.effect.values) read.push_back({.value = value});
+    report::RankedCause cause = ranked(trace.effect, read);
     cause.probability = 1.0;
     cause.share = trace.gap_share / known;
     cause.is_cause = true;
-    for (std::size_t i = 0; i < trace.effect.values.size(); ++i) {
-      const EffectParameter& parameter = trace.effect.type->parameters[i];
-      cause.parameters.push_back(
-          {.name = std::string{parameter.name}, .unit = std::string{parameter.unit}, .value = trace.effect.values[i]});
-    }
     ranking.push_back(std::move(cause));
   }
-  std::ranges::stable_sort(ranking, [](const report::RankedCause& a, const report::RankedCause& b) {
-    return a.is_cause != b.is_cause ? a.is_cause : a.is_cause && a.share > b.share;
-  });
+  put_causes_first(ranking);
 }
 
 void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vector<report::InterfaceGap>& where) {
   const double all = parts.all();
   if (traces.empty() || all <= 0.0) return;
-  for (report::InterfaceGap& gap : where) {
-    const double kept = (parts.explained + parts.left) / all;
-    gap.share *= kept;
-    gap.share_ci95 = {gap.share_ci95.low * kept, gap.share_ci95.high * kept};
-  }
+  scale_shares(where, (parts.explained + parts.left) / all);
   for (const Trace& trace : traces) {
     const auto name = name_of(trace.effect.type->interface);
     auto found = std::ranges::find(where, name, &report::InterfaceGap::interface);
