@@ -1,10 +1,12 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <map>
+#include <utility>
 
+#include "diagnosis/identification/modelled_segments.hpp"
 #include "diagnosis/localisation/gap_signals.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/traces/trace.hpp"
@@ -29,39 +31,12 @@ namespace {
 using report::RankedCause;
 using report::Verdict;
 
-/// Where the model has inertia, the force follows the acceleration, which no displacement sensor measures well: windows
-/// as wide as the displacement bears smear it, narrow ones drown it in noise. The width is then the one with which
-/// the model comes nearest to the force.
-Segment best_for_inertia(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
-  constexpr std::array<std::size_t, 8> kHalfWidths{3, 4, 5, 7, 10, 14, 20, 28};
-  const EffectType* const inertia = find_effect(EffectInterface::specimen, "inertia");
-  const bool has_inertia =
-      std::ranges::any_of(model.effects, [&](const EffectSetting& e) { return e.type == inertia; });
-  if (segment.to != Channel::measured_force || !has_inertia) return segment;
-  Segment best = segment;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::size_t half_width : kHalfWidths) {
-    if (2 * half_width + 1 > segment.measured.size()) break;
-    Segment tried = with_half_width(segment, dof, half_width);
-    const std::vector<double> predicted = predict(model, tried);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < predicted.size(); ++i) squares += std::pow(segment.measured[i] - predicted[i], 2);
-    if (squares < least) {
-      least = squares;
-      best = std::move(tried);
-    }
-  }
-  return best;
-}
-
 std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Recording> recordings, RecordingRole role,
                                       std::size_t dof) {
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
-    for (const Segment& segment : segments_of(recordings[i], dof, i)) {
-      if (is_modelled(model, segment)) segments.push_back(best_for_inertia(model, segment, recordings[i].dofs[dof]));
-    }
+    std::ranges::move(modelled_segments(model, recordings[i], dof, i), std::back_inserter(segments));
   }
   return segments;
 }
@@ -186,14 +161,50 @@ std::string next_experiment(const Selection& selection, const Judgement& judgeme
   return {};
 }
 
-void drop_what_does_not_carry_over(Diagnosis& diagnosis) {
+std::vector<EffectSetting> causes_of(const Selection& selection, const Judgement& judgement,
+                                     std::span<const Trace> traces) {
+  std::vector<EffectSetting> causes;
+  if (report::names_a_cause(judgement.verdict)) causes = selection.chosen.effects;
+  std::ranges::transform(traces, std::back_inserter(causes), &Trace::effect);
+  return causes;
+}
+
+/// Where the fit found a gap. A further channel that a cause acts on too, and that stays within its floor with it and
+/// without it, says nothing of how far the gap shrinks.
+std::vector<Segment> with_a_gap(const IdentificationProblem& problem, std::span<const Segment> segments) {
+  std::vector<Segment> kept;
+  std::ranges::copy_if(segments, std::back_inserter(kept), [&](const Segment& segment) {
+    const auto alike = [&](const FitSegment& fit) {
+      return fit.segment.from == segment.from && fit.segment.to == segment.to;
+    };
+    return std::ranges::none_of(problem.segments, alike) ||
+           std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.is_suspect && alike(fit); });
+  });
+  return kept;
+}
+
+/// Of each kind of segment that the causes act on.
+std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const EffectSetting> causes,
+                                    std::span<const Segment> segments, std::uint64_t seed) {
+  std::map<std::pair<Channel, Channel>, std::vector<Segment>> kinds;
+  for (const Segment& segment : segments) {
+    const bool touched =
+        std::ranges::any_of(causes, [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
+    if (touched) kinds[{segment.from, segment.to}].push_back(segment);
+  }
+  std::vector<report::Shrink> result;
+  for (const auto& [channels, alike] : kinds) result.push_back(shrink_on(model, causes, alike, seed));
+  return result;
+}
+
+void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
+                                   const Selection& selection, Judgement& judgement, Diagnosis& diagnosis) {
   report::DiagnosisReport& report = diagnosis.report;
-  const Verdict verdict = verdict_carried_over(report.verdict, *report.interface_shrink);
-  if (verdict == report.verdict) return;
-  report.notes.push_back(report.ranking.front().effect +
+  const Verdict verdict = verdict_carried_over(judgement.verdict, shrinks(model, diagnosis.causes, held_out, seed));
+  if (verdict == judgement.verdict) return;
+  report.notes.push_back(std::string{selection.chosen.effects.front().type->name} +
                          " goes with the recordings that it was found in and leaves the gap of those held out.");
-  report.verdict = verdict;
-  for (RankedCause& cause : report.ranking) cause.is_cause = cause.is_indistinguishable = false;
+  judgement = {.verdict = verdict, .indistinguishable = {}, .gap_left = 1.0};
   report.interface_shrink.reset();
   diagnosis.causes.clear();
 }
@@ -250,15 +261,25 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
   const IdentificationProblem coarse = make_problem(model, std::move(thin));
   const Selection selection = select_effects(problem, coarse, settings.threads, settings.progress);
-  const Judgement judgement = judge(problem, selection);
+  Judgement judgement = judge(problem, selection);
+  diagnosis.causes = causes_of(selection, judgement, traces);
+  const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
+  const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
+  if (!diagnosis.causes.empty()) {
+    const std::vector<Segment> with_gap = with_a_gap(problem, judged);
+    report.interface_shrink = shrink_on(model, diagnosis.causes, with_gap, settings.seed);
+    if (held_out.empty()) {
+      report.notes.emplace_back("No recording was held out: how far the gap shrinks is measured on those fitted.");
+    } else if (traces.empty()) {
+      drop_what_does_not_carry_over(model, with_gap, settings.seed, selection, judgement, diagnosis);
+    }
+  }
   const GapParts parts = gap_parts(problem, selection, judgement, traces);
   report.verdict = verdict_with(traces, judgement, parts);
   report.ranking = rank(problem, selection, judgement);
-  const bool has_chosen = std::ranges::any_of(report.ranking, &RankedCause::is_cause);
-  if (has_chosen) diagnosis.causes = selection.chosen.effects;
-  for (const Trace& trace : traces) diagnosis.causes.push_back(trace.effect);
-  const bool has_causes = !diagnosis.causes.empty();
-  report.where = locate(problem, selection.baseline, has_chosen ? selection.chosen : selection.baseline, settings.seed);
+  report.where =
+      locate(problem, selection.baseline,
+             report::names_a_cause(judgement.verdict) ? selection.chosen : selection.baseline, settings.seed);
   add_traces(traces, parts, report.ranking);
   add_traces(traces, parts, report.where);
   report.next_experiment = next_experiment(selection, judgement, report.where);
@@ -272,16 +293,6 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     report.ranking.clear();
   }
 
-  std::vector<Segment> judged = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
-  const bool is_held_out = !judged.empty();
-  if (!is_held_out) {
-    judged = segments;
-    if (has_causes) {
-      report.notes.emplace_back("No recording was held out: how far the gap shrinks is measured on those fitted.");
-    }
-  }
-  if (has_causes) report.interface_shrink = shrink_on(model, diagnosis.causes, judged, settings.seed);
-  if (has_causes && is_held_out && traces.empty()) drop_what_does_not_carry_over(diagnosis);
   for (const Segment& segment : judged) {
     report.series.push_back(series_of(model, segment, recordings[segment.recording], diagnosis, settings.dof));
   }

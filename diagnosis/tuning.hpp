@@ -77,6 +77,9 @@ inline constexpr double kPartialLeaves = 0.3;
 inline constexpr double kComputedLeaves = 1e-6;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;
+/// Probabilities are the softmax of the scores over this: fitted on development batches, where the first of a set was
+/// right more often than the scores alone say.
+inline constexpr double kTemperature = 0.5;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
 

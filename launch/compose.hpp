@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compensation/compensator.hpp"
+#include "compensation/delay_setting.hpp"
 #include "compensation/force_compensator.hpp"
 #include "coordinator/integrator.hpp"
 #include "coordinator/linear_structure.hpp"
@@ -52,8 +53,10 @@ struct RigReading {
 [[nodiscard]] RigReading read_rig(config::Section section, int dofs, const std::filesystem::path& directory, int site);
 
 struct CompensatorReading {
-  std::function<std::unique_ptr<Compensator>(double control_period_s)> make;
+  /// @param delay_change_s   added to its setting; 0 where it has none that `setting` speaks of.
+  std::function<std::unique_ptr<Compensator>(double control_period_s, double delay_change_s)> make;
   double delay_s = 0.0;  // that it makes up for
+  DelaySetting setting = {};
 };
 /// `none` when no type is given.
 [[nodiscard]] CompensatorReading read_compensator(config::Section section);

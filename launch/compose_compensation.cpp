@@ -1,6 +1,7 @@
 // The compensators, compensators on forces and delay estimators that a scenario can name. Ranges
 // are checked by their constructors, once the control period is known.
 
+#include <algorithm>
 #include <utility>
 
 #include "compensation/adaptive_inverse.hpp"
@@ -49,8 +50,29 @@ double required_delay(Section& section, std::string_view key) { return section.n
 
 template <class Part>
 CompensatorReading compensator(const typename Part::Parameters& parameters, double delay_s) {
-  return {[parameters](double period_s) { return std::make_unique<Part>(parameters, period_s); }, delay_s};
+  return {.make = [parameters](double period_s, double) { return std::make_unique<Part>(parameters, period_s); },
+          .delay_s = delay_s};
 }
+
+/// One whose delay is a setting.
+/// @param most_s   that the setting may be.
+template <class Part>
+CompensatorReading compensator_set_to(const typename Part::Parameters& parameters, double Part::Parameters::*delay_s,
+                                      double most_s = 1.0) {
+  const double set_s = parameters.*delay_s;
+  return {.make =
+              [parameters, delay_s](double period_s, double delay_change_s) {
+                typename Part::Parameters changed = parameters;
+                changed.*delay_s += delay_change_s;
+                return std::make_unique<Part>(changed, period_s);
+              },
+          .delay_s = set_s,
+          .setting = {.set_s = set_s, .most_s = std::max(set_s, most_s)}};
+}
+
+/// The most that a compensator makes up for whose points stay where they are: eight spacings, of which the rounding to
+/// control periods may take a third.
+double most_ahead_s(double point_spacing_s) { return point_spacing_s > 0.0 ? 5.0 * point_spacing_s : 1.0; }
 
 template <class Part>
 ForceCompensatorMaker force_compensator(const typename Part::Parameters& parameters) {
@@ -66,33 +88,41 @@ typename Part::Parameters polynomial_parameters(Section& section) {
   return parameters;
 }
 
+/// What is set where nothing was said to be is not known; it is taken for the usual polynomial.
 CompensatorReading read_none(Section&) {
-  return {[](double) { return std::make_unique<NoCompensation>(); }, 0.0};
+  return {.make = [](double period_s, double delay_change_s) -> std::unique_ptr<Compensator> {
+            if (delay_change_s <= 0.0) return std::make_unique<NoCompensation>();
+            return std::make_unique<PolynomialDisplacement>(
+                PolynomialDisplacement::Parameters{.delay_s = delay_change_s}, period_s);
+          },
+          .setting = {.set_s = 0.0, .most_s = 1.0}};
 }
 
 CompensatorReading read_polynomial_displacement(Section& section) {
   const auto parameters = polynomial_parameters<PolynomialDisplacement>(section);
-  return compensator<PolynomialDisplacement>(parameters, parameters.delay_s);
+  return compensator_set_to<PolynomialDisplacement>(parameters, &PolynomialDisplacement::Parameters::delay_s,
+                                                    most_ahead_s(parameters.point_spacing_s));
 }
 
 CompensatorReading read_newmark_kinematics(Section& section) {
   NewmarkKinematics::Parameters parameters;
   parameters.delay_s = required_delay(section, "delay_s");
   take(section, "step_s", parameters.step_s);
-  return compensator<NewmarkKinematics>(parameters, parameters.delay_s);
+  return compensator_set_to<NewmarkKinematics>(parameters, &NewmarkKinematics::Parameters::delay_s);
 }
 
 CompensatorReading read_linear_acceleration(Section& section) {
   LinearAcceleration::Parameters parameters;
   parameters.delay_s = required_delay(section, "delay_s");
   take(section, "point_spacing_s", parameters.point_spacing_s);
-  return compensator<LinearAcceleration>(parameters, parameters.delay_s);
+  return compensator_set_to<LinearAcceleration>(parameters, &LinearAcceleration::Parameters::delay_s,
+                                                most_ahead_s(parameters.point_spacing_s));
 }
 
 CompensatorReading read_inverse_compensation(Section& section) {
   InverseCompensation::Parameters parameters;
   parameters.delay_s = required_delay(section, "delay_s");
-  return compensator<InverseCompensation>(parameters, parameters.delay_s);
+  return compensator_set_to<InverseCompensation>(parameters, &InverseCompensation::Parameters::delay_s);
 }
 
 CompensatorReading read_adaptive_inverse(Section& section) {
@@ -101,7 +131,7 @@ CompensatorReading read_adaptive_inverse(Section& section) {
   take(section, "proportional_gain_per_m2", parameters.proportional_gain_per_m2);
   take(section, "integral_gain_per_m2_s", parameters.integral_gain_per_m2_s);
   take(section, "delay_correction_s_max", parameters.delay_correction_s_max);
-  return compensator<AdaptiveInverse>(parameters, parameters.delay_s);
+  return compensator_set_to<AdaptiveInverse>(parameters, &AdaptiveInverse::Parameters::delay_s);
 }
 
 template <class Part>
@@ -316,9 +346,10 @@ CompensatorReading read_compensator(Section section) {
        {"adaptive_model_inverse", read_adaptive_model_inverse}},
       "none");
   if (estimator_maker) {
-    reading.make = [make = reading.make, make_estimator = *estimator_maker](double period_s) {
-      return std::make_unique<EstimatedDelayCompensation>(make(period_s), make_estimator(period_s));
+    reading.make = [make = reading.make, make_estimator = *estimator_maker](double period_s, double) {
+      return std::make_unique<EstimatedDelayCompensation>(make(period_s, 0.0), make_estimator(period_s));
     };
+    reading.setting = {};
   }
   return reading;
 }

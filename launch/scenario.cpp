@@ -222,7 +222,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.compensated_delay_s = std::ranges::min(commands, {}, &CompensatorReading::delay_s).delay_s;
   substructure.make_compensation = [commands, forces](double period_s) {
     SiteCompensation made;
-    for (const CompensatorReading& compensator : commands) made.commands.push_back(compensator.make(period_s));
+    for (const CompensatorReading& compensator : commands) made.commands.push_back(compensator.make(period_s, 0.0));
     for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
     return made;
   };

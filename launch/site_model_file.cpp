@@ -71,7 +71,11 @@ void give_compensators(const std::vector<CompensatorReading>& readings, Section&
     beside.error("compensator", "expected one, or one for each degree of freedom");
     return;
   }
-  for (std::size_t i = 0; i < dofs.size(); ++i) dofs[i].make_compensator = readings[readings.size() == 1 ? 0 : i].make;
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    const CompensatorReading& reading = readings[readings.size() == 1 ? 0 : i];
+    dofs[i].make_compensator = reading.make;
+    dofs[i].compensator_delay = reading.setting;
+  }
 }
 
 /// Makes every part once, so that what they object to is found here.
@@ -79,7 +83,7 @@ void try_out(const std::vector<SiteModel>& dofs, double period_s) {
   for (const SiteModel& dof : dofs) {
     static_cast<void>(dof.make_transfer_system(period_s, delay_change_s(dof)));
     if (dof.make_law) static_cast<void>(dof.make_law());
-    if (dof.make_compensator) static_cast<void>(dof.make_compensator(period_s));
+    if (dof.make_compensator) static_cast<void>(dof.make_compensator(period_s, setting_change_s(dof)));
     for (const EffectInterface interface : site_interfaces()) static_cast<void>(effects_at(dof, interface, period_s));
   }
 }

@@ -16,6 +16,11 @@ namespace {
 /// has to move over several samples to be felt.
 constexpr double kDifferenceStep = 1e-3;
 
+/// Instants are looked for so much more densely, and then by halving steps down to that share of the record.
+constexpr int kDenser = 6;
+constexpr double kFirstStep = 1e-2;
+constexpr double kLastStep = 1e-5;
+
 class ProjectedResidual final : public ceres::CostFunction {
  public:
   ProjectedResidual(const VariableProjection& projection, Eigen::Index searched) : projection_{projection} {
@@ -102,6 +107,26 @@ Start refine(const VariableProjection& projection, const Start& start) {
   return cost < start.cost ? Start{places, cost} : start;
 }
 
+/// The nearer an instant is to the right one, the less of the record it gets wrong.
+Start settle_instants(const VariableProjection& projection, Start best) {
+  const std::vector<SearchedParameter>& searched = projection.plan().searched;
+  const auto improves = [&](Eigen::Index i, double step) {
+    Start moved = best;
+    moved.places[i] = std::clamp(moved.places[i] + step, 0.0, 1.0);
+    moved.cost = cost_at(projection, moved.places);
+    if (!(moved.cost < best.cost)) return false;
+    best = std::move(moved);
+    return true;
+  };
+  for (Eigen::Index i = 0; i < best.places.size(); ++i) {
+    if (!searched[static_cast<std::size_t>(i)].is_instant) continue;
+    for (double step = kFirstStep; step > kLastStep; step *= 0.5) {
+      if (!improves(i, step)) improves(i, -step);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 int starts_for(Eigen::Index searched) noexcept {
@@ -112,6 +137,8 @@ int starts_for(Eigen::Index searched) noexcept {
 Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first, int starts) {
   const auto searched = static_cast<Eigen::Index>(projection.plan().searched.size());
   if (searched == 0) return Eigen::VectorXd{};
+  const bool has_instant = std::ranges::any_of(projection.plan().searched, &SearchedParameter::is_instant);
+  if (has_instant) starts *= kDenser;
   std::vector<Start> tried;
   if (first.size() == searched) tried.push_back({first, cost_at(projection, first)});
   for (int i = 0; i < starts; ++i) {
@@ -122,7 +149,7 @@ Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::V
   Start best = tried.front();
   const std::size_t refined = std::min<std::size_t>(tried.size(), tuning::kRefinedStarts);
   for (std::size_t i = 0; i < refined; ++i) {
-    const Start found = refine(projection, tried[i]);
+    const Start found = settle_instants(projection, refine(projection, settle_instants(projection, tried[i])));
     if (found.cost < best.cost) best = found;
   }
   return best.places;

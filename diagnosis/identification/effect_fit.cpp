@@ -21,6 +21,8 @@ constexpr double kRidge = 1e-9;
 struct Linearisation {
   Eigen::MatrixXd columns;        // change of the prediction per searched, linear, nuisance parameter
   std::vector<std::size_t> free;  // of them, those not held at a bound
+  // Positions in `columns` of what a block can be held out from: an instant lies in one block alone.
+  std::vector<Eigen::Index> held_out_with;
 };
 
 Linearisation linearise(const VariableProjection& projection, const Eigen::VectorXd& places,
@@ -41,11 +43,12 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   for (std::size_t i = 0; i < solution.held.size(); ++i) {
     if (!solution.held[i]) result.free.push_back(static_cast<std::size_t>(searched) + i);
   }
-  Eigen::MatrixXd kept(result.columns.rows(), static_cast<Eigen::Index>(result.free.size()));
+  const std::vector<SearchedParameter>& parameters = projection.plan().searched;
   for (std::size_t i = 0; i < result.free.size(); ++i) {
-    kept.col(static_cast<Eigen::Index>(i)) = result.columns.col(static_cast<Eigen::Index>(result.free[i]));
+    const bool is_instant = result.free[i] < parameters.size() && parameters[result.free[i]].is_instant;
+    if (!is_instant) result.held_out_with.push_back(static_cast<Eigen::Index>(i));
   }
-  result.columns = std::move(kept);
+  result.columns = Eigen::MatrixXd{result.columns(Eigen::all, result.free)};
   return result;
 }
 
@@ -67,7 +70,8 @@ Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
 
 void hold_out(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
               const Eigen::VectorXd& residual, FitOutcome& outcome) {
-  const Eigen::MatrixXd normal = linear.columns.transpose() * linear.columns;
+  const Eigen::MatrixXd columns = linear.columns(Eigen::all, linear.held_out_with);
+  const Eigen::MatrixXd normal = columns.transpose() * columns;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const std::size_t position = projection.touched()[t];
     const FitSegment& fit = problem.segments[position];
@@ -79,8 +83,8 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
       const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
       Eigen::VectorXd block = residual.segment(first, size);
-      if (linear.columns.cols() > 0) {
-        const auto inside = linear.columns.middleRows(first, size);
+      if (columns.cols() > 0) {
+        const auto inside = columns.middleRows(first, size);
         const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
         block += inside * rest.ldlt().solve(inside.transpose() * block);
       }
@@ -89,7 +93,34 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
   }
 }
 
+/// Variances of the free parameters: the larger of what a residual of one level says, of as many independent samples
+/// as its neighbours leave, and what its blocks say, however their levels and neighbours are (Liang and Zeger,
+/// Biometrika 73, 1986, of blocks for clusters): no model is so right that all blocks ask for the same parameters.
+Eigen::VectorXd variances_of(const VariableProjection& projection, const IdentificationProblem& problem,
+                             const Linearisation& linear, const Eigen::VectorXd& residual) {
+  const Eigen::Index count = linear.columns.cols();
+  const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, projection.rows() - count));
+  const double variance = residual.squaredNorm() / (freedom * effective_share(residual));
+  const Eigen::MatrixXd inverse =
+      regularised(linear.columns.transpose() * linear.columns).ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(count, count);
+  double blocks = 0.0;
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b, blocks += 1.0) {
+      const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
+      const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
+      const Eigen::VectorXd own = linear.columns.middleRows(first, size).transpose() * residual.segment(first, size);
+      pull += own * own.transpose();
+    }
+  }
+  const double few = blocks / std::max(1.0, blocks - 1.0);
+  const Eigen::VectorXd of_blocks = (few * inverse * pull * inverse).diagonal();
+  return (variance * inverse.diagonal()).cwiseMax(of_blocks).cwiseMax(0.0);
+}
+
 std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& projection,
+                                                      const IdentificationProblem& problem,
                                                       const Eigen::VectorXd& places, const Projected& solution,
                                                       const Linearisation& linear, const FitOutcome& outcome) {
   std::vector<std::vector<ParameterEstimate>> result;
@@ -97,16 +128,10 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
     result.emplace_back();
     for (const double value : effect.values) result.back().push_back({.value = value});
   }
-  const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, projection.rows() - linear.columns.cols()));
-  const double variance = solution.residual.squaredNorm() / (freedom * effective_share(solution.residual));
-  const Eigen::MatrixXd covariance =
-      variance * regularised(linear.columns.transpose() * linear.columns)
-                     .ldlt()
-                     .solve(Eigen::MatrixXd::Identity(linear.columns.cols(), linear.columns.cols()));
+  const Eigen::VectorXd variances = variances_of(projection, problem, linear, solution.residual);
   const SearchPlan& plan = projection.plan();
   for (std::size_t i = 0; i < linear.free.size(); ++i) {
-    const auto diagonal = static_cast<Eigen::Index>(i);
-    const double deviation = std::sqrt(std::max(0.0, covariance(diagonal, diagonal)));
+    const double deviation = std::sqrt(variances[static_cast<Eigen::Index>(i)]);
     const std::size_t index = linear.free[i];
     if (index < plan.searched.size()) {
       const SearchedParameter& searched = plan.searched[index];
@@ -180,7 +205,7 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
     result.change = fit.measured - fit.baseline -
                     solution.residual.segment(projection.first_row(t), fit.measured.size()) / fit.weight;
   }
-  outcome.parameters = estimates(projection, places, solution, linear, outcome);
+  outcome.parameters = estimates(projection, problem, places, solution, linear, outcome);
   return outcome;
 }
 

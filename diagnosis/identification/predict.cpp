@@ -77,6 +77,13 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   return predicted;
 }
 
+/// Of an end that is not judged nothing else is predicted than what was measured.
+void leave_out_ends(const Segment& segment, std::vector<double>& predicted) {
+  const auto end = static_cast<std::ptrdiff_t>(segment.unjudged);
+  std::copy_n(segment.measured.begin(), end, predicted.begin());
+  std::copy_n(segment.measured.rbegin(), end, predicted.rbegin());
+}
+
 std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& others) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
     motions[i].displacement_m += others[i].displacement_m;
@@ -93,8 +100,10 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   for (const EffectSetting& effect : added) {
     if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
   }
-  return segment.to == Channel::measured_force ? predict_force(extended, segment)
-                                               : predict_displacement(extended, segment);
+  std::vector<double> predicted = segment.to == Channel::measured_force ? predict_force(extended, segment)
+                                                                        : predict_displacement(extended, segment);
+  leave_out_ends(segment, predicted);
+  return predicted;
 }
 
 double input_floor(const SiteModel& model, const Segment& segment,

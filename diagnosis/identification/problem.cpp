@@ -91,7 +91,8 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) 
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
   fit.sample_floor = noise_floor(model, fit.segment);
-  fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(static_cast<double>(fit.averaged)),
+  const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
+  fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(independent),
                          input_floor(model, fit.segment, [&](std::span<const double> values) {
                            return root_mean_square(fit.average(values));
                          }));

@@ -19,6 +19,26 @@ bool touches_several(const IdentificationProblem& problem, const EffectType& eff
   return force && effect.interface == EffectInterface::displacement_sensor;
 }
 
+/// Damping of a specimen's law at rest in the middle, which an effect may take off.
+double damping_of_law(const IdentificationProblem& problem) {
+  if (!problem.model.make_law) return 0.0;
+  const double velocity_m_per_s = problem.scales.of(ParameterScale::velocity_m_per_s);
+  return problem.model.make_law()->trial(0.0, velocity_m_per_s) / velocity_m_per_s;
+}
+
+/// The least that real sites have of a linear parameter: what is searched for above zero only, none; of an amount, none
+/// together with what the model has.
+double least_of(const IdentificationProblem& problem, const EffectType& effect, std::size_t index) {
+  const EffectParameter& parameter = effect.parameters[index];
+  if (parameter.search_low >= 0.0) return std::max(0.0, parameter.low);
+  if (!parameter.is_amount) return parameter.low;
+  double has = parameter.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
+  for (const EffectSetting& known : problem.model.effects) {
+    if (known.type == &effect) has += known.values[index];
+  }
+  return std::max(parameter.low, -std::max(0.0, has));
+}
+
 SearchedParameter searched(const IdentificationProblem& problem, const EffectType& effect, std::size_t position,
                            std::size_t index) {
   const EffectParameter& parameter = effect.parameters[index];
@@ -28,6 +48,12 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
   result.high = std::clamp(parameter.search_high * scale, parameter.low, parameter.high);
   const bool is_delay = effect.interface == EffectInterface::transfer_system && effect.name == "delay";
   if (is_delay) result.low = std::max(result.low, -problem.model.removable_delay_s);
+  const DelaySetting& setting = problem.model.compensator_delay;
+  if (effect.interface == EffectInterface::compensator && effect.name == "setting_mismatch" && setting.most_s > 0.0) {
+    result.low = std::max(result.low, -setting.set_s);
+    result.high = std::min(result.high, setting.most_s - setting.set_s);
+  }
+  result.is_instant = parameter.scale == ParameterScale::duration_s;
   result.logarithmic = result.low > 0.0 && result.high > kDecade * result.low;
   return result;
 }
@@ -63,8 +89,7 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
         neutral.values.push_back(parameter.fallback);
       } else if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        // What is searched for above zero only is nothing that real sites have below.
-        const double low = parameter.search_low >= 0.0 ? std::max(0.0, parameter.low) : parameter.low;
+        const double low = least_of(problem, effect, j);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
         removed_by_linear = true;
       } else {

@@ -14,6 +14,8 @@ struct SearchedParameter {
   double low = 0.0;
   double high = 0.0;
   bool logarithmic = false;
+  // A time in the record: it is felt in one place only, which derivatives do not see from afar.
+  bool is_instant = false;
 
   [[nodiscard]] double at(double place) const noexcept;
   [[nodiscard]] double place_of(double value) const noexcept;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "core/random.hpp"
+#include "diagnosis/signals/flat_smoother.hpp"
 #include "diagnosis/signals/local_polynomial.hpp"
 #include "diagnosis/traces/reading_steps.hpp"
 
@@ -53,6 +54,16 @@ void smooth_input(Segment& segment, std::span<const double> displacement_m, std:
   const LocalPolynomial narrow{half_width / 2, segment.period_s};
   segment.narrow_input = narrow.motion(displacement_m);
   segment.narrow_noise = narrow.motion(error);
+}
+
+std::vector<Motion> smooth_motion(const FlatSmoother& smoother, std::vector<Motion> motion) {
+  for (double Motion::*channel : {&Motion::displacement_m, &Motion::velocity_m_per_s, &Motion::acceleration_m_per_s2}) {
+    std::vector<double> values(motion.size());
+    std::ranges::transform(motion, values.begin(), [channel](const Motion& at) { return at.*channel; });
+    values = smoother.smooth(values);
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i].*channel = values[i];
+  }
+  return motion;
 }
 
 Segment segment_between(const Recording& recording, std::size_t position, const DofRecording& dof, Channel from,
@@ -106,9 +117,20 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
          effect.make_inverse != nullptr;
 }
 
-Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width) {
+Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation) {
+  const FlatSmoother smoother{deviation};
+  const LocalPolynomial narrowest{LocalPolynomial::kSmallestHalfWidth, segment.period_s};
   Segment result = segment;
-  smooth_input(result, dof.of(Channel::measured_displacement), half_width);
+  result.input = smooth_motion(smoother, narrowest.motion(dof.of(segment.from)));
+  const std::vector<double> error = drawn_error(result.input, segment.input_noise, segment.input_step);
+  result.noise = smooth_motion(smoother, narrowest.motion(error));
+  result.narrow_input.clear();
+  result.narrow_noise.clear();
+  result.measured = smoother.smooth(dof.of(segment.to));
+  result.unjudged = std::min(smoother.reach() + LocalPolynomial::kSmallestHalfWidth, result.measured.size() / 2);
+  result.noise_span = 1.0 / smoother.noise_share();
+  result.measured_noise = segment.measured_noise * std::sqrt(smoother.noise_share());
+  result.step_noise = segment.step_noise * std::sqrt(smoother.noise_share());
   return result;
 }
 
@@ -122,6 +144,8 @@ Segment thinned(const Segment& segment, double rate_hz) {
   };
   Segment result = segment;
   result.period_s = segment.period_s * static_cast<double>(stride);
+  result.unjudged = (segment.unjudged + stride - 1) / stride;
+  result.noise_span = std::max(1.0, segment.noise_span / static_cast<double>(stride));
   result.input = every(segment.input);
   result.load_n = every(segment.load_n);
   result.noise = every(segment.noise);

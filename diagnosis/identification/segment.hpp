@@ -23,15 +23,19 @@ struct Segment {
   double period_s = 0.0;
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
-  std::vector<double> measured;  // `to` as recorded
+  std::vector<double> measured;  // `to` as recorded; smoothed_alike() says so where it is smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
   double input_step = 0.0;       // of the converter that it came through [m]; 0: none seen
   std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
-  // Standard deviation of the white noise of `measured`.
+  // Samples at either end of which the motion is not known well enough to judge by; what is predicted of them is what
+  // was measured.
+  std::size_t unjudged = 0;
+  // Standard deviation of the noise of `measured`, and over how many samples it is one and the same.
   double measured_noise = 0.0;
+  double noise_span = 1.0;
   // Standard deviation of what a coarse converter adds to `measured`; it need not be white. 0: none seen.
   double step_noise = 0.0;
 
@@ -42,9 +46,11 @@ struct Segment {
 /// Everything that one degree of freedom of a recording can judge, along the chain.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
-/// The specimen's segment with the motion smoothed over windows of that half width instead of those that the
-/// displacement alone asks for.
-[[nodiscard]] Segment with_half_width(const Segment& segment, const DofRecording& dof, std::size_t half_width);
+/// The specimen's segment with force and motion smoothed by the same weights (FlatSmoother), the motion's
+/// derivatives taken over the narrowest window before: what smoothing takes off a force that is linear in the motion it
+/// takes off the prediction as well.
+/// @param deviation   of the weights, in samples.
+[[nodiscard]] Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation);
 
 /// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
 /// left. A segment with a compensator between its channels, whose command depends on its own rate,

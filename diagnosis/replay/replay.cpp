@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "diagnosis/identification/modelled_segments.hpp"
 #include "diagnosis/localisation/gap_signals.hpp"
 
 namespace hybridtest {
@@ -68,8 +69,8 @@ std::vector<CsvColumn> columns_of(const Recording& recording,
 
 std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof) {
   std::vector<ReplayedChannel> channels;
-  for (const Segment& segment : segments_of(recording, dof, 0)) {
-    if (is_modelled(model, segment)) channels.push_back(replayed(model, segment));
+  for (const Segment& segment : modelled_segments(model, recording, dof, 0)) {
+    channels.push_back(replayed(model, segment));
   }
   share_out(channels);
   return channels;

@@ -17,7 +17,7 @@ std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
   std::vector<double> probabilities;
   double sum = 0.0;
   for (const Candidate& candidate : library) {
-    probabilities.push_back(std::exp(candidate.score - library.front().score));
+    probabilities.push_back(std::exp((candidate.score - library.front().score) / tuning::kTemperature));
     sum += probabilities.back();
   }
   for (double& probability : probabilities) probability /= sum;

@@ -79,17 +79,23 @@ std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, c
   std::array<double, kInterfaces> squares{};
   std::array<double, kInterfaces> floors{};
   std::array<double, kInterfaces> judged{};
-  for (const FitSegment& fit : problem.segments) {
-    const auto k = static_cast<std::size_t>(blamed(fit.segment, chosen));
-    const Eigen::Map<const Eigen::VectorXd> measured{fit.segment.measured.data(),
-                                                     static_cast<Eigen::Index>(fit.segment.measured.size())};
-    const std::vector<double> predicted = predict(problem.model, fit.segment);
-    const Eigen::Map<const Eigen::VectorXd> model{predicted.data(), measured.size()};
+  const auto add = [&](EffectInterface interface, const FitSegment& fit, const std::vector<double>& predicted) {
+    const auto k = static_cast<std::size_t>(interface);
+    const auto size = static_cast<Eigen::Index>(fit.segment.measured.size());
+    const Eigen::Map<const Eigen::VectorXd> measured{fit.segment.measured.data(), size};
+    const Eigen::Map<const Eigen::VectorXd> model{predicted.data(), size};
     const double output = measured.squaredNorm();
-    if (output <= 0.0) continue;
+    if (output <= 0.0) return;
     squares[k] += (measured - model).squaredNorm() / output;
-    floors[k] += fit.sample_floor * fit.sample_floor * static_cast<double>(measured.size()) / output;
+    floors[k] += fit.sample_floor * fit.sample_floor * static_cast<double>(size) / output;
     judged[k] += 1.0;
+  };
+  for (const FitSegment& fit : problem.segments) {
+    const EffectInterface at = blamed(fit.segment, chosen);
+    add(at, fit, predict(problem.model, fit.segment));
+    // The stage itself is judged with what was found of its neighbour.
+    if (at != fit.segment.interface)
+      add(fit.segment.interface, fit, predict(problem.model, fit.segment, chosen.effects));
   }
   std::vector<report::InterfaceGap> where;
   for (std::size_t k = 0; k < kInterfaces; ++k) {

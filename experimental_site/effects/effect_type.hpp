@@ -64,6 +64,8 @@ struct EffectParameter {
   // What a scenario that leaves it out gets; NaN when it has to be given.
   double fallback = std::numeric_limits<double>::quiet_NaN();
   LawUse needs = LawUse::any;
+  // A real site has no less than none of it: a search takes off at most what the model has.
+  bool is_amount = false;
 };
 
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an

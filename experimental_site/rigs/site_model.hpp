@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compensation/compensator.hpp"
+#include "compensation/delay_setting.hpp"
 #include "experimental_site/effects/effect_type.hpp"
 #include "experimental_site/effects/stage.hpp"
 #include "experimental_site/transfer_systems/transfer_system.hpp"
@@ -33,7 +34,9 @@ struct SiteModel {
   std::function<std::unique_ptr<TransferSystem>(double sample_period_s, double delay_change_s)> make_transfer_system;
   double removable_delay_s = 0.0;                  // the transfer system's own pure delay
   std::function<std::unique_ptr<Law>()> make_law;  // empty: the specimen has no force
-  std::function<std::unique_ptr<Compensator>(double sample_period_s)> make_compensator;  // empty: none
+  /// @param delay_change_s   added to its setting, which stays between 0 and the most it may be. Empty: none.
+  std::function<std::unique_ptr<Compensator>(double sample_period_s, double delay_change_s)> make_compensator;
+  DelaySetting compensator_delay = {};
   SensorNoise noise;
   std::vector<EffectSetting> effects;
 };
@@ -45,5 +48,10 @@ struct SiteModel {
 /// Sum of what the `delay` effects of the transfer system take off its own delay; zero or negative.
 /// @throws ConfigError when that is more than there is.
 [[nodiscard]] double delay_change_s(const SiteModel& model);
+
+/// Sum of what the `setting_mismatch` effects change a compensator's setting by; 0 where it has none, and the effects
+/// work on its command.
+/// @throws ConfigError when that is more than the setting allows.
+[[nodiscard]] double setting_change_s(const SiteModel& model);
 
 }  // namespace hybridtest

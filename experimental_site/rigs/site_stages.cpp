@@ -35,8 +35,9 @@ CompensatorStage::CompensatorStage(std::unique_ptr<Compensator> compensator, Sta
     : compensator_{std::move(compensator)}, effects_{std::move(effects)} {}
 
 CompensatorStage::CompensatorStage(const SiteModel& model, double sample_period_s)
-    : CompensatorStage{model.make_compensator ? model.make_compensator(sample_period_s) : nullptr,
-                       effects_at(model, At::compensator, sample_period_s)} {}
+    : CompensatorStage{
+          model.make_compensator ? model.make_compensator(sample_period_s, setting_change_s(model)) : nullptr,
+          effects_at(model, At::compensator, sample_period_s)} {}
 
 double CompensatorStage::step(const StageSample& sample, double measured_displacement_m) noexcept {
   return effects_.step(sample, [&](const Motion& target) {

@@ -1,6 +1,7 @@
 #include "diagnosis/blind/blind_plant/blind_case.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "diagnosis/blind/blind_plant/collinearity.hpp"
@@ -90,6 +91,15 @@ double gap_to_floor(const Site& site, const PlantEffect& effect, Residual residu
   return rms(true_gap(residual, site, run_plant(site, {effect}, sent))) / floor;
 }
 
+/// Of the causes that hold every sample up by as much, and that nothing in a recording of one clock tells apart, the
+/// other one.
+std::optional<Cause> twin_of(const PlantEffect& effect) {
+  if (effect.interface != "network") return {};
+  if (effect.name == "latency") return Cause{"network", "clock_offset"};
+  if (effect.name == "clock_offset") return Cause{"network", "latency"};
+  return {};
+}
+
 /// Fills in where the gap is largest and how large, and the acceptable causes.
 void judge(BlindCase& blind_case, const TrueSignals& first, const TrueSignals& held_out, RandomStream random) {
   const CaseSetting& setting = blind_case.setting;
@@ -109,6 +119,7 @@ void judge(BlindCase& blind_case, const TrueSignals& first, const TrueSignals& h
     if (truth.kind == TruthClass::unknown) continue;
     std::vector<Cause> causes = collinear_causes(setting, residual, gap, floor, random);
     causes.insert(causes.begin(), {effect.interface, effect.name});
+    if (auto twin = twin_of(effect)) causes.push_back(std::move(*twin));
     for (Cause& cause : causes) {
       if (std::ranges::find(truth.acceptable, cause) == truth.acceptable.end()) {
         truth.acceptable.push_back(std::move(cause));

@@ -9,7 +9,9 @@ namespace hybridtest {
 
 /// The compensator makes up for another delay than its setting says (Wallace, Sieber, Neild, Wagg and Krauskopf,
 /// Earthquake Eng. Struct. Dyn. 34, 2005: a forward prediction by a wrong time): its command is that of another
-/// instant, to first order in the difference. The rate is the second-order backward difference.
+/// instant. Of a compensator whose setting a model of the site knows (SiteModel) the setting itself is changed, of
+/// `none` to a polynomial of order 3; else, and in a rig, which sees only the command, it is to first order in the
+/// difference, with the second-order backward difference for the rate.
 class SettingMismatch final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = u0 + e u0'";
@@ -21,8 +23,7 @@ class SettingMismatch final : public Effect {
                                                           .high = 10.0,
                                                           .scale = ParameterScale::time_s,
                                                           .search_low = -0.1,
-                                                          .search_high = 0.1,
-                                                          .is_linear = true}};
+                                                          .search_high = 0.1}};
 
   SettingMismatch(std::span<const double> values, double sample_period_s)
       : error_samples_{values[0] / sample_period_s} {}

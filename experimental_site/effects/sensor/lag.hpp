@@ -32,18 +32,33 @@ class SensorLag final : public Effect {
   FirstOrderLag lag_;
 };
 
-/// y = r + T r', and its derivative; the acceleration, whose derivative is not known, is left as read.
+/// y = r + T r', and its derivatives; that of the acceleration is the second-order backward difference.
 class InverseSensorLag final : public Effect {
  public:
-  InverseSensorLag(std::span<const double> values, double /*sample_period_s*/) : time_constant_s_{values[0]} {}
+  InverseSensorLag(std::span<const double> values, double sample_period_s)
+      : time_constant_s_{values[0]}, sample_period_s_{sample_period_s} {}
   void before(const StageSample& /*sample*/, Motion& motion) noexcept override {
+    const double read = motion.acceleration_m_per_s2;
+    if (samples_ < 2) {
+      ++samples_;
+      if (samples_ == 1) before_ = read;
+      long_before_ = before_;
+    }
     motion.displacement_m += time_constant_s_ * motion.velocity_m_per_s;
-    motion.velocity_m_per_s += time_constant_s_ * motion.acceleration_m_per_s2;
+    motion.velocity_m_per_s += time_constant_s_ * read;
+    motion.acceleration_m_per_s2 +=
+        time_constant_s_ * (1.5 * read - 2.0 * before_ + 0.5 * long_before_) / sample_period_s_;
+    long_before_ = before_;
+    before_ = read;
   }
-  void reset() noexcept override {}
+  void reset() noexcept override { samples_ = 0; }
 
  private:
   double time_constant_s_;
+  double sample_period_s_;
+  int samples_ = 0;  // read so far, up to 2
+  double before_ = 0.0;
+  double long_before_ = 0.0;
 };
 
 }  // namespace hybridtest

@@ -21,7 +21,8 @@ class Inertia final : public Effect {
                                                           .scale = ParameterScale::mass_kg,
                                                           .search_low = -2.0,
                                                           .search_high = 2.0,
-                                                          .is_linear = true}};
+                                                          .is_linear = true,
+                                                          .is_amount = true}};
 
   Inertia(std::span<const double> values, double /*sample_period_s*/) : mass_kg_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

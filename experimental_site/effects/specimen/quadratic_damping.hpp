@@ -22,7 +22,8 @@ class QuadraticDamping final : public Effect {
                                                           .scale = ParameterScale::damping_n_s2_per_m2,
                                                           .search_low = -2.0,
                                                           .search_high = 2.0,
-                                                          .is_linear = true}};
+                                                          .is_linear = true,
+                                                          .is_amount = true}};
 
   QuadraticDamping(std::span<const double> values, double /*sample_period_s*/) : damping_n_s2_per_m2_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

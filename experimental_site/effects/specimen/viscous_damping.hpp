@@ -21,7 +21,8 @@ class ViscousDamping final : public Effect {
                                                           .scale = ParameterScale::damping_n_s_per_m,
                                                           .search_low = -2.0,
                                                           .search_high = 2.0,
-                                                          .is_linear = true}};
+                                                          .is_linear = true,
+                                                          .is_amount = true}};
 
   ViscousDamping(std::span<const double> values, double /*sample_period_s*/) : damping_n_s_per_m_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/polynomial_displacement.hpp"
 #include "diagnosis/report/diagnosis_json.hpp"
 #include "made_recording.hpp"
 
@@ -14,6 +15,12 @@ namespace {
 using report::Verdict;
 
 double spring_n(double time_s) { return kMadeStiffness_n_per_m * made_motion_m(time_s); }
+
+DiagnoseSettings one_thread() {
+  DiagnoseSettings settings;
+  settings.threads = 1;
+  return settings;
+}
 
 Diagnosis diagnosis_of(const Recording& recording, std::size_t threads = 1) {
   DiagnoseSettings settings;
@@ -78,6 +85,58 @@ TEST(Diagnose, TellsADisplacementSensorFromAnActuatorByTheForce) {
   EXPECT_TRUE(has_cause(diagnosis, "displacement_sensor", "gain"));
   EXPECT_FALSE(has_cause(diagnosis, "transfer_system", "gain"));
   EXPECT_EQ(diagnosis.report.where.front().interface, "displacement_sensor");
+  // Actuator and specimen are judged with the transducer's gain taken off, and are as modelled.
+  for (const char* stage : {"transfer_system", "specimen"}) {
+    const auto gap = std::ranges::find(diagnosis.report.where, stage, &report::InterfaceGap::interface);
+    ASSERT_NE(gap, diagnosis.report.where.end()) << stage;
+    EXPECT_TRUE(gap->is_judged) << stage;
+    EXPECT_EQ(gap->share, 0.0) << stage;
+    EXPECT_FALSE(gap->is_at_fault) << stage;
+  }
+}
+
+/// A force in which nothing but noise is seen says nothing of how well a cause does elsewhere.
+TEST(Diagnose, JudgesACauseWhereThereIsAGap) {
+  const auto read_m = [](double t) { return made_motion_m(t) + 0.002; };
+  std::vector<Recording> recordings(2, made_recording(
+                                           read_m, [](double) { return 0.0; }, 1.0));
+  recordings[1].role = RecordingRole::held_out;
+  SiteModel model = made_model();
+  model.make_law = nullptr;
+  model.effects.push_back({find_effect(EffectInterface::specimen, "inertia"), {1e-3}});
+  const Diagnosis diagnosis = diagnose(model, recordings, one_thread());
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  EXPECT_TRUE(has_cause(diagnosis, "displacement_sensor", "bias"));
+  EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
+}
+
+/// 20 ms more than is believed: a first-order change of the command would be far off.
+TEST(Diagnose, FindsWhatACompensatorWasReallySetTo) {
+  const auto compensator = [](double delay_s) {
+    return std::make_unique<PolynomialDisplacement>(PolynomialDisplacement::Parameters{.order = 2, .delay_s = delay_s},
+                                                    kSitePeriod_s);
+  };
+  SiteModel model = made_model();
+  model.make_compensator = [&](double, double delay_change_s) { return compensator(0.030 + delay_change_s); };
+  model.compensator_delay = {.set_s = 0.030, .most_s = 1.0};
+  Recording recording = made_recording(made_motion_m, spring_n);
+  DofRecording& dof = recording.dofs[0];
+  const auto real = compensator(0.050);
+  for (const double command_m : dof.of(Channel::command_displacement)) {
+    dof.of(Channel::target_displacement).push_back(command_m);
+  }
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    dof.of(Channel::command_displacement)[i] = real->command({.target_m = dof.of(Channel::target_displacement)[i]});
+    dof.of(Channel::measured_displacement)[i] = dof.of(Channel::command_displacement)[i];
+    dof.of(Channel::measured_force)[i] = kMadeStiffness_n_per_m * dof.of(Channel::measured_displacement)[i];
+  }
+  const Diagnosis diagnosis = diagnose(model, {&recording, 1}, one_thread());
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  ASSERT_TRUE(has_cause(diagnosis, "compensator", "setting_mismatch"));
+  // Its points move by whole samples of 2 ms, in between the search is by derivatives.
+  EXPECT_NEAR(diagnosis.causes[0].values[0], 0.020, 1e-5);
+  // The real one's order was lower until its points lay in the record.
+  EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
 }
 
 TEST(Diagnose, SaysUnknownWhereTheLibraryHasNothing) {

@@ -66,5 +66,24 @@ TEST(Sensors, DisplacementReadBackwardsIsTheTrueMotion) {
   }
 }
 
+/// The lag of an acceleration is taken off by its own difference: second order in the sample period.
+TEST(Sensors, AccelerationBehindALagIsTheTrueOne) {
+  constexpr double kTime_s = 0.004;
+  constexpr double kOmega = 2.0 * std::numbers::pi * 3.0;
+  const auto inverse = find_effect(kDisplacement, "lag")->make_inverse(std::vector{kTime_s}, kBenchPeriod_s);
+  for (int round = 0; round < 2; ++round) {  // and as new after a reset
+    for (int i = 0; i < 500; ++i) {
+      const double t = kBenchPeriod_s * i;
+      Motion motion{.displacement_m = 0.0, .velocity_m_per_s = 0.0, .acceleration_m_per_s2 = std::cos(kOmega * t)};
+      inverse->before({.time_s = t, .motion = motion}, motion);
+      if (i < 2) continue;
+      const double expected = std::cos(kOmega * t) - kTime_s * kOmega * std::sin(kOmega * t);
+      ASSERT_NEAR(motion.acceleration_m_per_s2, expected,
+                  kTime_s * kOmega * std::pow(kOmega * kBenchPeriod_s, 2) / 3.0 * 1.01);
+    }
+    inverse->reset();
+  }
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -106,14 +106,36 @@ TEST(SiteStages, ThePiecesTogetherAreTheRig) {
 
 TEST(SiteStages, TheCompensatorIsTheModels) {
   SiteModel model = delayed_spring();
-  model.make_compensator = [](double period_s) {
-    return std::make_unique<PolynomialDisplacement>(PolynomialDisplacement::Parameters{.order = 1, .delay_s = 0.002},
-                                                    period_s);
+  model.make_compensator = [](double period_s, double delay_change_s) {
+    return std::make_unique<PolynomialDisplacement>(
+        PolynomialDisplacement::Parameters{.order = 1, .delay_s = 0.002 + delay_change_s}, period_s);
   };
   CompensatorStage stage{model, kPeriod_s};
   double commanded_m = 0.0;
   for (int i = 0; i < 10; ++i) commanded_m = stage.step(command(0.001 * i));
   EXPECT_NEAR(commanded_m, 0.011, 1e-15);  // 2 ms ahead on a ramp of 1 mm per sample
+}
+
+/// Of a wave, on which a first-order change of the command would not be the other setting's.
+TEST(SiteStages, AnotherSettingOfACompensatorIsThatCompensator) {
+  const auto compensated = [](double delay_s, double mismatch_s) {
+    SiteModel model = delayed_spring();
+    model.make_compensator = [delay_s](double period_s, double delay_change_s) {
+      return std::make_unique<PolynomialDisplacement>(
+          PolynomialDisplacement::Parameters{.order = 2, .delay_s = delay_s + delay_change_s}, period_s);
+    };
+    model.compensator_delay = {.set_s = delay_s, .most_s = 1.0};
+    model.effects = {{find_effect(EffectInterface::compensator, "setting_mismatch"), {mismatch_s}}};
+    CompensatorStage stage{model, kPeriod_s};
+    std::vector<double> command_m;
+    for (int i = 0; i < 200; ++i) command_m.push_back(stage.step(command(0.02 * std::sin(0.3 * i))));
+    return command_m;
+  };
+  EXPECT_EQ(compensated(0.008, 0.004), compensated(0.012, 0.0));
+  EXPECT_EQ(compensated(0.008, -0.008), compensated(0.0, 0.0));
+  EXPECT_NE(compensated(0.008, 0.004), compensated(0.008, 0.0));
+  EXPECT_THROW(compensated(0.008, -0.009), ConfigError);
+  EXPECT_THROW(compensated(0.008, 0.993), ConfigError);
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
   }
 }
 
-std::vector<double> moved(const char* name, double value, const std::vector<double>& path) {
-  return along(*made(EffectInterface::transfer_system, name, {value}), path, through);
+std::vector<double> moved(const char* name, std::vector<double> values, const std::vector<double>& path) {
+  return along(*made(EffectInterface::transfer_system, name, std::move(values)), path, through);
 }
 
 TEST(TransferSystemEffects, FollowTheirDefinitionsAlongAPath) {
@@ -56,12 +56,33 @@ TEST(TransferSystemEffects, FollowTheirDefinitionsAlongAPath) {
     for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(moved[i], expected[i], 1e-12) << i;
   };
   const std::vector<double> path{0.0, 0.05, 0.5, 0.45, 0.2, 0.35};
-  expect(moved("backlash", 0.2, path), {0.0, 0.0, 0.4, 0.4, 0.3, 0.3});
-  expect(moved("deadband", 0.1, path), {0.0, 0.0, 0.4, 0.35, 0.1, 0.25});
-  expect(moved("velocity_limit", 100.0, path), {0.0, 0.05, 0.15, 0.25, 0.2, 0.3});  // 0.1 m in a sample
-  expect(moved("stroke_limit", 0.4, path), {0.0, 0.05, 0.4, 0.4, 0.2, 0.35});
-  expect(moved("stiction", 0.1, path), {0.0, 0.0, 0.5, 0.5, 0.2, 0.35});
-  expect(moved("gain", 0.1, path), {0.0, 0.055, 0.55, 0.495, 0.22, 0.385});
+  expect(moved("backlash", {0.2}, path), {0.0, 0.0, 0.4, 0.4, 0.3, 0.3});
+  expect(moved("deadband", {0.1}, path), {0.0, 0.0, 0.4, 0.35, 0.1, 0.25});
+  expect(moved("velocity_limit", {100.0}, path), {0.0, 0.05, 0.15, 0.25, 0.2, 0.3});  // 0.1 m in a sample
+  expect(moved("stroke_limit", {0.4}, path), {0.0, 0.05, 0.4, 0.4, 0.2, 0.35});
+  expect(moved("stiction", {0.1, 0.0}, path), {0.0, 0.0, 0.5, 0.5, 0.2, 0.35});
+  expect(moved("gain", {0.1}, path), {0.0, 0.055, 0.55, 0.495, 0.22, 0.385});
+}
+
+/// Behind a ramp by its slip time, as one pole is, once it is free; it stays where it is when that turns.
+TEST(TransferSystemEffects, StictionSlipsInItsTime) {
+  constexpr double kSlip_s = 0.004;
+  constexpr double kStick = 2.5 * kBenchPeriod_s;
+  const auto effect = made(EffectInterface::transfer_system, "stiction", {kStick, kSlip_s});
+  double last = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const double t = kBenchPeriod_s * i;
+    double displacement_m = t;
+    effect->after({}, {}, displacement_m);
+    // Free between the second and the third sample: t - T + (T - 2 dt) e^(-(t - 2 dt) / T)
+    const double free_s = t - 2.0 * kBenchPeriod_s;
+    const double expected = i < 3 ? 0.0 : t - kSlip_s + (kSlip_s - 2.0 * kBenchPeriod_s) * std::exp(-free_s / kSlip_s);
+    EXPECT_NEAR(displacement_m, expected, 1e-15) << i;
+    last = displacement_m;
+  }
+  double held_m = last + 0.1 * kBenchPeriod_s;  // back from where it was asked to be
+  effect->after({}, {}, held_m);
+  EXPECT_EQ(held_m, last);
 }
 
 TEST(TransferSystemEffects, ComplianceGivesWayUnderTheForce) {

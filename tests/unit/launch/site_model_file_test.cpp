@@ -67,6 +67,26 @@ TEST_F(SiteFile, IsTheSameAtTheTopUnderRigAndInAScenario) {
   EXPECT_EQ(read(site.text).dofs[0].removable_delay_s, 0.004);
 }
 
+/// From none at all to far ahead, so that a search for what was set finds a compensator everywhere.
+TEST_F(SiteFile, ACompensatorCanBeMadeForEveryDelayThatItsSettingAllows) {
+  for (const char* text :
+       {"{type: polynomial_displacement, delay_s: 0.01}",
+        "{type: polynomial_displacement, delay_s: 0.01, point_spacing_s: 0.0029}",
+        "{type: newmark_kinematics, delay_s: 0.01}", "{type: linear_acceleration, delay_s: 0.01}",
+        "{type: linear_acceleration, delay_s: 0.01, point_spacing_s: 0.0029}",
+        "{type: inverse_compensation, delay_s: 0.01}", "{type: adaptive_inverse, delay_s: 0.01}", "{type: none}"}) {
+    const SiteModel model = read("compensator: " + std::string{text} + "\n").dofs[0];
+    const DelaySetting setting = model.compensator_delay;
+    EXPECT_GT(setting.most_s, 0.0) << text;
+    for (const double share : {0.0, 0.01, 0.3, 1.0}) {
+      const double delay_s = share * setting.most_s;
+      EXPECT_NO_THROW(static_cast<void>(model.make_compensator(0.002, delay_s - setting.set_s))) << text << delay_s;
+    }
+    EXPECT_NO_THROW(static_cast<void>(model.make_compensator(0.002, 0.0))) << text;
+  }
+  EXPECT_EQ(read("compensator: {type: adaptive_time_series}\n").dofs[0].compensator_delay.most_s, 0.0);
+}
+
 TEST_F(SiteFile, EffectsAreAddedBehindThoseItHas) {
   for (const std::string& text :
        {std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"},
