@@ -100,6 +100,11 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   for (const EffectSetting& effect : added) {
     if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
   }
+  if (segment.is_smoothed) {
+    // Together with the steps of its converter.
+    const EffectType* const steps = find_effect(EffectInterface::force_sensor, "quantization");
+    std::erase_if(extended.effects, [steps](const EffectSetting& effect) { return effect.type == steps; });
+  }
   std::vector<double> predicted = segment.to == Channel::measured_force ? predict_force(extended, segment)
                                                                         : predict_displacement(extended, segment);
   leave_out_ends(segment, predicted);

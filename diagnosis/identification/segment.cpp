@@ -128,6 +128,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.narrow_noise.clear();
   result.measured = smoother.smooth(dof.of(segment.to));
   result.unjudged = std::min(smoother.reach() + LocalPolynomial::kSmallestHalfWidth, result.measured.size() / 2);
+  result.is_smoothed = deviation > 0.0;
   result.noise_span = 1.0 / smoother.noise_share();
   result.measured_noise = segment.measured_noise * std::sqrt(smoother.noise_share());
   result.step_noise = segment.step_noise * std::sqrt(smoother.noise_share());

@@ -23,13 +23,14 @@ struct Segment {
   double period_s = 0.0;
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
-  std::vector<double> measured;  // `to` as recorded; smoothed_alike() says so where it is smoothed
+  std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
   double input_step = 0.0;       // of the converter that it came through [m]; 0: none seen
   std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
+  bool is_smoothed = false;  // `measured`, see smoothed_alike()
   // Samples at either end of which the motion is not known well enough to judge by; what is predicted of them is what
   // was measured.
   std::size_t unjudged = 0;

@@ -84,6 +84,19 @@ TEST(ModelledSegments, EndsThatAreNotJudgedArePredictedAsMeasured) {
   EXPECT_NE(predicted[smooth.unjudged], smooth.measured[smooth.unjudged]);
 }
 
+TEST(ModelledSegments, StepsOfAConverterAreSmoothedAway) {
+  SiteModel coarse = mass_only();
+  coarse.effects.push_back({find_effect(EffectInterface::force_sensor, "quantization"), {200.0}});
+  const Recording recording = made_recording(
+      motion_m, [](double t) { return 200.0 * std::round(kMass_kg * acceleration_m_per_s2(t) / 200.0); }, 0.0);
+  const auto segments = modelled_segments(coarse, recording, 0, 0);
+  const Segment& smooth = of_force(segments);
+  ASSERT_TRUE(smooth.is_smoothed);
+  EXPECT_EQ(predict(coarse, smooth), predict(mass_only(), smooth));
+  // Of an even error between half a step each way less than half is left.
+  EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
+}
+
 TEST(ModelledSegments, ASpringIsJudgedByWhatWasRecorded) {
   const Recording recording = made_recording(motion_m, [](double t) { return 2e6 * motion_m(t); });
   for (const Segment& segment : modelled_segments(made_model(), recording, 0, 0)) {
