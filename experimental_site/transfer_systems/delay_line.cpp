@@ -21,7 +21,7 @@ DelayLine::DelayLine(Duration delay, Duration control_period) {
   static_cast<void>(checked("delay_s", to_seconds(delay), up_to_limit));
   whole_intervals_ = static_cast<std::size_t>(delay / control_period);
   fraction_ = to_seconds(delay % control_period) / to_seconds(control_period);
-  samples_.assign(whole_intervals_ + 2, 0.0);
+  samples_.assign(whole_intervals_ + 3, 0.0);
 }
 
 DelayLine::DelayLine(double delay_s, double period_s) {
@@ -30,7 +30,7 @@ DelayLine::DelayLine(double delay_s, double period_s) {
   const double intervals = checked("delay_s", delay_s, up_to_limit) / period_s;
   whole_intervals_ = static_cast<std::size_t>(intervals);
   fraction_ = intervals - std::floor(intervals);
-  samples_.assign(whole_intervals_ + 2, 0.0);
+  samples_.assign(whole_intervals_ + 3, 0.0);
 }
 
 void DelayLine::push(double value) noexcept {
@@ -42,6 +42,12 @@ void DelayLine::reset() noexcept { std::fill(samples_.begin(), samples_.end(), 0
 
 double DelayLine::delayed() const noexcept {
   return (1.0 - fraction_) * ago(whole_intervals_) + fraction_ * ago(whole_intervals_ + 1);
+}
+
+double DelayLine::delayed_smoothly() const noexcept {
+  const double f = fraction_;
+  return 0.5 * (1.0 - f) * (2.0 - f) * ago(whole_intervals_) + f * (2.0 - f) * ago(whole_intervals_ + 1) -
+         0.5 * f * (1.0 - f) * ago(whole_intervals_ + 2);
 }
 
 double DelayLine::corner() const noexcept { return ago(whole_intervals_ + 1); }

@@ -26,7 +26,7 @@ class TimeSkew final : public Effect {
   TimeSkew(std::span<const double> values, double sample_period_s) : line_{values[0], sample_period_s} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& force_n) noexcept override {
     line_.push(force_n);
-    force_n = line_.delayed();
+    force_n = line_.delayed_smoothly();
   }
   void reset() noexcept override { line_.reset(); }
 

@@ -28,7 +28,7 @@ class TransferDelay final : public Effect {
       : line_{std::max(0.0, values[0]), sample_period_s} {}
   void before(const StageSample& /*sample*/, Motion& command) noexcept override {
     line_.push(command.displacement_m);
-    command.displacement_m = line_.delayed();
+    command.displacement_m = line_.delayed_smoothly();
   }
   void reset() noexcept override { line_.reset(); }
 

@@ -43,7 +43,7 @@ TEST(Sensors, FollowLate) {
     }
   }
   const auto skewed = readings(kForce, "time_skew", 0.0035, ramp);
-  for (std::size_t i = 4; i < ramp.size(); ++i) ASSERT_NEAR(skewed[i], ramp[i] - 0.0035, 1e-13);
+  for (std::size_t i = 5; i < ramp.size(); ++i) ASSERT_NEAR(skewed[i], ramp[i] - 0.0035, 1e-13);
 }
 
 TEST(Sensors, DisplacementReadBackwardsIsTheTrueMotion) {

@@ -42,8 +42,19 @@ TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
   const auto effect = made(EffectInterface::transfer_system, "delay", {0.0025});
   const Driver ramp{[](double t) { return t; }, [](double) { return 1.0; }, [](double) { return 0.0; }};
   const auto outputs = response(*effect, ramp, 20, through);
-  for (std::size_t i = 3; i < outputs.size(); ++i) {
+  for (std::size_t i = 4; i < outputs.size(); ++i) {  // with all three samples of the ramp
     EXPECT_NEAR(outputs[i], kBenchPeriod_s * (static_cast<double>(i) - 2.5), 1e-15);
+  }
+}
+
+TEST(TransferDelay, IsThatOfASineBetweenItsSamples) {
+  constexpr double kOmega = 60.0;
+  const auto effect = made(EffectInterface::transfer_system, "delay", {0.0015});
+  const auto outputs = response(*effect, sine(1.0, kOmega), 400, through);
+  for (std::size_t i = 5; i < outputs.size(); ++i) {
+    // (omega dt)^3 / 16 of the amplitude in the middle between samples; by straight lines it would be (omega dt)^2 / 8.
+    EXPECT_NEAR(outputs[i], std::sin(kOmega * (kBenchPeriod_s * static_cast<double>(i) - 0.0015)),
+                std::pow(kOmega * kBenchPeriod_s, 3) / 16.0 * 1.01);
   }
 }
 
