@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 

@@ -1,7 +1,7 @@
 #include "compensation/estimated_delay.hpp"
 
-#include "core/config/error.hpp"
-#include "core/config/scalar.hpp"
+#include "core/config_error.hpp"
+#include "core/text/scalar.hpp"
 
 namespace hybridtest {
 
@@ -13,8 +13,8 @@ void check_estimated_delay(const DelayAdaptive* compensator, const DelayEstimato
   }
   if (estimator == nullptr) throw ConfigError{"no delay estimator is given; expected one"};
   if (estimator->delay_s() > compensator->delay_s_max() * (1.0 + 1e-9)) {
-    throw ConfigError{"initial_delay_s is " + config::written_number(estimator->delay_s()) + "; expected at most " +
-                      config::written_number(compensator->delay_s_max()) +
+    throw ConfigError{"initial_delay_s is " + written_number(estimator->delay_s()) + "; expected at most " +
+                      written_number(compensator->delay_s_max()) +
                       " s, because the compensator cannot make up for more; widen its point_spacing_s"};
   }
 }

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/config/error.hpp"
-#include "core/config/scalar.hpp"
+#include "core/config_error.hpp"
+#include "core/text/scalar.hpp"
 
 namespace hybridtest {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 constexpr double kMaxPeriods = 1e6;
 
 std::string described(ParameterRange range) {
-  const std::string low = config::written_number(range.low);
-  const std::string high = config::written_number(range.high);
+  const std::string low = written_number(range.low);
+  const std::string high = written_number(range.high);
   return range.includes_low ? low + " to " + high : "more than " + low + ", at most " + high;
 }
 
@@ -22,7 +22,7 @@ std::string described(ParameterRange range) {
 double checked_parameter(std::string_view name, double value, ParameterRange range, std::string_view reason) {
   const bool is_above_low = range.includes_low ? value >= range.low : value > range.low;
   if (is_above_low && value <= range.high) return value;
-  throw ConfigError{std::string{name} + " is " + config::written_number(value) + "; expected " + described(range) +
+  throw ConfigError{std::string{name} + " is " + written_number(value) + "; expected " + described(range) +
                     ", because " + std::string{reason}};
 }
 
@@ -35,9 +35,9 @@ std::size_t checked_periods(std::string_view name, double span_s, double control
                             std::string_view reason) {
   const double periods = std::round(span_s / control_period_s);
   if (periods >= static_cast<double>(least) && periods <= kMaxPeriods) return static_cast<std::size_t>(periods);
-  throw ConfigError{std::string{name} + " is " + config::written_number(span_s) + "; expected " +
-                    config::written_integer(static_cast<std::int64_t>(least)) + " to 1000000 control periods of " +
-                    config::written_number(control_period_s) + " s, because " + std::string{reason}};
+  throw ConfigError{std::string{name} + " is " + written_number(span_s) + "; expected " +
+                    written_integer(static_cast<std::int64_t>(least)) + " to 1000000 control periods of " +
+                    written_number(control_period_s) + " s, because " + std::string{reason}};
 }
 
 }  // namespace hybridtest

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "compensation/parameter_check.hpp"
-#include "core/config/error.hpp"
-#include "core/config/scalar.hpp"
+#include "core/config_error.hpp"
+#include "core/text/scalar.hpp"
 
 namespace hybridtest {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxPeriodsPerPoint = 10'000.0;
 constexpr double kRounding = 1e-9;  // of a duration, through its conversions
 
-std::string written(double duration_s) { return config::written_number(duration_s) + " s"; }
+std::string written(double duration_s) { return written_number(duration_s) + " s"; }
 
 int checked_order(int order) {
   if (order >= 1 && order <= kMaxPolynomialOrder) return order;
@@ -36,7 +36,7 @@ double checked_spacing(const PolynomialParameters& parameters, double period_s) 
   const double count = std::max(std::round(wanted_s / period_s), 1.0);
   if (count > kMaxPeriodsPerPoint) {
     throw ConfigError{(is_given ? "point spacing is " : "delay is ") + written(wanted_s) + "; expected at most " +
-                      config::written_integer(static_cast<std::int64_t>(kMaxPeriodsPerPoint)) + " control periods of " +
+                      written_integer(static_cast<std::int64_t>(kMaxPeriodsPerPoint)) + " control periods of " +
                       written(period_s)};
   }
   const double delay_s_max = PolynomialExtrapolation::kMaxSpacingsAhead * count * period_s;

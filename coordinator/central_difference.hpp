@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "coordinator/factorised_matrix.hpp"
 #include "coordinator/initial_motion.hpp"
 #include "coordinator/integrator.hpp"
-#include "coordinator/linear_structure.hpp"
+#include "mechanics/structure/factorised_matrix.hpp"
+#include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "coordinator/integrator.hpp"
-#include "coordinator/linear_structure.hpp"
+#include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
 

@@ -1,3 +1,3 @@
-#include "launch/participant_process.hpp"
+#include "runtime/participant_process.hpp"
 
 int main(int argc, char** argv) { return hybridtest::participant_main(argc, argv, hybridtest::Role::coordinator); }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "core/faults.hpp"
 #include "core/fixed_text.hpp"
@@ -22,6 +23,8 @@ inline constexpr int kCommandPoints = 4;
 inline constexpr int kMaxSignalSamples = 32;
 
 using ParticipantId = FixedText<48>;
+/// The id of the coordinator of every test.
+inline constexpr std::string_view kCoordinatorId = "coordinator";
 using ScenarioDigest = std::array<std::uint8_t, 32>;  // SHA-256 of the effective scenario
 
 /// Drawn anew by each process at start; tells two processes with one id apart.

@@ -10,8 +10,8 @@
 #include "diagnosis/localisation/localise.hpp"
 #include "diagnosis/localisation/time_windows.hpp"
 #include "diagnosis/recording.hpp"
-#include "diagnosis/report/diagnosis_report.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

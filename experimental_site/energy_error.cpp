@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 

@@ -6,16 +6,16 @@
 #include <string>
 
 #include "core/exit_code.hpp"
-#include "diagnosis/blind/make_batch.hpp"
-#include "diagnosis/blind/run_batch.hpp"
-#include "diagnosis/blind/score/score_batch.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
+#include "diagnosis/runs/read_recording.hpp"
 #include "launch/commands.hpp"
-#include "launch/diagnose_site.hpp"
-#include "launch/read_recording.hpp"
-#include "launch/scenario_digest.hpp"
-#include "launch/studies/output_file.hpp"
-#include "launch/studies/parallel_runs.hpp"
-#include "launch/studies/study_progress.hpp"
+#include "scenario/scenario_digest.hpp"
+#include "validation/blind_batches/make_batch.hpp"
+#include "validation/blind_batches/run_batch.hpp"
+#include "validation/blind_batches/score/score_batch.hpp"
+#include "validation/studies/output_file.hpp"
+#include "validation/studies/parallel_runs.hpp"
+#include "validation/studies/study_progress.hpp"
 
 namespace hybridtest {
 namespace {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "coordinator/damping.hpp"
 #include "coordinator/preflight/critical_delay.hpp"
 #include "coordinator/preflight/site_coupling.hpp"
 #include "coordinator/preflight/step_stability.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
-#include "launch/scenario.hpp"
+#include "mechanics/structure/damping.hpp"
+#include "scenario/scenario.hpp"
 
 namespace hybridtest {
 namespace {

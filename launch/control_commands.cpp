@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "launch/commands.hpp"
-#include "launch/executor.hpp"
-#include "launch/incarnation.hpp"
-#include "launch/network_options.hpp"
-#include "launch/participant.hpp"
-#include "launch/scenario.hpp"
+#include "runtime/executor.hpp"
+#include "runtime/incarnation.hpp"
+#include "runtime/network_options.hpp"
+#include "runtime/participant.hpp"
+#include "scenario/scenario.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
 namespace hybridtest {

@@ -4,13 +4,13 @@
 #include <optional>
 #include <thread>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/exit_code.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
+#include "diagnosis/runs/read_recording.hpp"
+#include "diagnosis/runs/rerun.hpp"
 #include "launch/commands.hpp"
-#include "launch/diagnose_site.hpp"
 #include "launch/diagnosis_progress.hpp"
-#include "launch/read_recording.hpp"
-#include "launch/rerun_test.hpp"
 
 namespace hybridtest {
 namespace {

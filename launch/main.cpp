@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
-#include "launch/version.hpp"
+#include "runtime/version.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{

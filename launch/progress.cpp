@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/event_text.hpp"
-#include "launch/participant.hpp"
+#include "runtime/participant.hpp"
 
 namespace hybridtest {
 namespace {

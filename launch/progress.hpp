@@ -7,7 +7,7 @@
 
 #include "core/messages.hpp"
 #include "core/time.hpp"
-#include "launch/scenario.hpp"
+#include "scenario/scenario.hpp"
 
 namespace hybridtest {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <fstream>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "diagnosis/replay/replay.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
+#include "diagnosis/runs/read_recording.hpp"
 #include "launch/commands.hpp"
-#include "launch/diagnose_site.hpp"
-#include "launch/read_recording.hpp"
-#include "launch/site_model_file.hpp"
+#include "scenario/site_model_file.hpp"
 
 namespace hybridtest {
 namespace {

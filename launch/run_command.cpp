@@ -3,18 +3,19 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
+#include "diagnosis/runs/diagnose_run.hpp"
 #include "launch/child_process.hpp"
 #include "launch/commands.hpp"
-#include "launch/diagnose_run.hpp"
-#include "launch/executor.hpp"
+#include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
-#include "launch/network_options.hpp"
-#include "launch/participant.hpp"
 #include "launch/progress.hpp"
-#include "launch/run_directory.hpp"
 #include "launch/run_monitor.hpp"
-#include "launch/scenario.hpp"
+#include "runtime/executor.hpp"
+#include "runtime/network_options.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/run_directory.hpp"
+#include "scenario/scenario.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
 namespace hybridtest {
@@ -96,7 +97,7 @@ int run(RunOptions options) {
     }
   }
   const int exit_code = finish_run(options.directory, coordinator_exit);
-  if (options.diagnose) diagnose_run(scenario, options.directory, std::cout);
+  if (options.diagnose) diagnose_run(scenario, options.directory, {.fits = show_fits, .rerun = show_rerun}, std::cout);
   return exit_code;
 }
 

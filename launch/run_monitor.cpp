@@ -4,7 +4,7 @@
 #include <csignal>
 #include <utility>
 
-#include "launch/executor.hpp"
+#include "runtime/executor.hpp"
 
 namespace hybridtest {
 namespace {

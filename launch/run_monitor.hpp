@@ -7,7 +7,7 @@
 #include "core/node.hpp"
 #include "launch/child_process.hpp"
 #include "launch/progress.hpp"
-#include "launch/scenario.hpp"
+#include "scenario/scenario.hpp"
 #include "transport/transport.hpp"
 
 namespace hybridtest {

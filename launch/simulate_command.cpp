@@ -5,18 +5,19 @@
 #include <iostream>
 #include <map>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/event_text.hpp"
+#include "diagnosis/runs/diagnose_run.hpp"
 #include "launch/commands.hpp"
-#include "launch/diagnose_run.hpp"
-#include "launch/executor.hpp"
+#include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
-#include "launch/incarnation.hpp"
-#include "launch/participant.hpp"
 #include "launch/progress.hpp"
-#include "launch/run_directory.hpp"
-#include "launch/simulation.hpp"
 #include "recording/recorder.hpp"
+#include "runtime/executor.hpp"
+#include "runtime/incarnation.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/run_directory.hpp"
+#include "runtime/simulation.hpp"
 
 namespace hybridtest {
 namespace {
@@ -167,7 +168,7 @@ int simulate_scenario(SimulateOptions options) {
   }
   recording.close(result);
   const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason));
-  if (options.diagnose) diagnose_run(scenario, options.directory, std::cout);
+  if (options.diagnose) diagnose_run(scenario, options.directory, {.fits = show_fits, .rerun = show_rerun}, std::cout);
   return exit_code;
 }
 

@@ -7,12 +7,12 @@
 
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
-#include "launch/studies/compensator_character/character_study.hpp"
-#include "launch/studies/founding_study/founding_report.hpp"
-#include "launch/studies/output_file.hpp"
-#include "launch/studies/parallel_runs.hpp"
-#include "launch/studies/rths_benchmark/rths_page.hpp"
-#include "launch/studies/rths_benchmark/rths_tables.hpp"
+#include "validation/studies/compensator_character/character_study.hpp"
+#include "validation/studies/founding_study/founding_report.hpp"
+#include "validation/studies/output_file.hpp"
+#include "validation/studies/parallel_runs.hpp"
+#include "validation/studies/rths_benchmark/rths_page.hpp"
+#include "validation/studies/rths_benchmark/rths_tables.hpp"
 
 namespace hybridtest {
 namespace {

@@ -1,7 +1,7 @@
 #include "numerical_substructure/elastic_matrix.hpp"
 
 #include "core/assert.hpp"
-#include "mechanics/stiffness_matrix.hpp"
+#include "mechanics/structure/stiffness_matrix.hpp"
 
 namespace hybridtest {
 

@@ -1,4 +1,4 @@
-#include "launch/participant_process.hpp"
+#include "runtime/participant_process.hpp"
 
 int main(int argc, char** argv) {
   return hybridtest::participant_main(argc, argv, hybridtest::Role::numerical_substructure);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mechanics/law.hpp"
+#include "mechanics/laws/law.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 
 namespace hybridtest {

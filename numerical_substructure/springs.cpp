@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <system_error>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest::motion_text {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "coordinator/linear_structure.hpp"
 #include "coordinator/preflight/site_coupling.hpp"
+#include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/linear_structure.hpp"
-#include "coordinator/vibration_modes.hpp"
+#include "mechanics/structure/linear_structure.hpp"
+#include "mechanics/structure/vibration_modes.hpp"
 
 namespace hybridtest {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 

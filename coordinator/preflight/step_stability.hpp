@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coordinator/vibration_modes.hpp"
+#include "mechanics/structure/vibration_modes.hpp"
 
 namespace hybridtest {
 

@@ -6,9 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "core/config/scalar.hpp"
 #include "core/config/wording.hpp"
 #include "core/config/yaml_reader.hpp"
+#include "core/text/scalar.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest::config {
 namespace {

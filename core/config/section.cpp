@@ -6,10 +6,11 @@
 #include <unordered_set>
 
 #include "core/assert.hpp"
-#include "core/config/scalar.hpp"
 #include "core/config/section_state.hpp"
 #include "core/config/value_reader.hpp"
 #include "core/config/wording.hpp"
+#include "core/text/scalar.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest::config {
 namespace {

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,20 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
+#include "core/parameters/range.hpp"
 
 namespace hybridtest::config {
-
-/// Closed or half-open range of a number, for the check and for the error message.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;  // low itself is not allowed
-  bool high_open = false;
-};
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{.low = 0.0, .low_open = true};
-inline constexpr Range kNotNegative{.low = 0.0};
 
 class Document;
 class SectionState;
@@ -137,10 +126,5 @@ class Document {
   explicit Document(std::unique_ptr<DocumentState> state);
   std::unique_ptr<DocumentState> state_;
 };
-
-/// The name in `known` with the smallest edit distance to `name`, if it is near enough to be a
-/// likely misspelling (at most a third of its length, at least one edit allowed). A swap of two
-/// neighbouring letters is one edit; of several nearest the first.
-[[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace hybridtest::config

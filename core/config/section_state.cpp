@@ -4,8 +4,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/config/scalar.hpp"
 #include "core/config/wording.hpp"
+#include "core/text/scalar.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest::config {
 namespace {

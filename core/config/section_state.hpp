@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/config/error.hpp"
 #include "core/config/node.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest::config {
 

@@ -4,25 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "core/config/scalar.hpp"
 #include "core/config/wording.hpp"
+#include "core/text/scalar.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest::config {
 namespace {
-
-std::string bounds(const Range& range) {
-  const bool has_low = std::isfinite(range.low);
-  const bool has_high = std::isfinite(range.high);
-  const std::string low = written_number(range.low);
-  const std::string high = written_number(range.high);
-  if (has_low && has_high && !range.low_open && !range.high_open) return " from " + low + " to " + high;
-  std::string text;
-  if (has_low) text += (range.low_open ? " greater than " : " of at least ") + low;
-  if (has_low && has_high) text += " and";
-  const char* const at_most = has_low ? " at most " : " of at most ";
-  if (has_high) text += (range.high_open ? " less than " : at_most) + high;
-  return text;
-}
 
 /// What to change in a scalar that should be a number.
 std::string number_advice(const Node& node) {
@@ -44,11 +31,6 @@ std::string integer_advice(const Node& node) {
 
 }  // namespace
 
-std::string expected_number(const Range& range) {
-  const std::string text = bounds(range);
-  return text.empty() ? "a finite number" : "a number" + text;
-}
-
 std::string expected_integer(std::int64_t low, std::int64_t high) {
   const bool has_low = low != std::numeric_limits<std::int64_t>::min();
   const bool has_high = high != std::numeric_limits<std::int64_t>::max();
@@ -56,12 +38,6 @@ std::string expected_integer(std::int64_t low, std::int64_t high) {
   if (has_low) return "an integer of at least " + written_integer(low);
   if (has_high) return "an integer of at most " + written_integer(high);
   return "an integer";
-}
-
-bool contains(const Range& range, double value) noexcept {
-  const bool above = range.low_open ? value > range.low : value >= range.low;
-  const bool below = range.high_open ? value < range.high : value <= range.high;
-  return above && below;
 }
 
 double usable(const Range& range) noexcept {

@@ -8,15 +8,13 @@
 #include "core/config/node.hpp"
 #include "core/config/section.hpp"
 #include "core/config/section_state.hpp"
+#include "core/parameters/range.hpp"
 
 namespace hybridtest::config {
 
-/// `a number greater than 0`, for messages.
-[[nodiscard]] std::string expected_number(const Range& range);
 /// `an integer from 1 to 4`.
 [[nodiscard]] std::string expected_integer(std::int64_t low, std::int64_t high);
 
-[[nodiscard]] bool contains(const Range& range, double value) noexcept;
 /// Some small value inside the range, to go on with after an error.
 [[nodiscard]] double usable(const Range& range) noexcept;
 [[nodiscard]] std::int64_t usable(std::int64_t low, std::int64_t high) noexcept;

@@ -10,8 +10,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/config/scalar.hpp"
 #include "core/config/wording.hpp"
+#include "core/text/scalar.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest::config {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {

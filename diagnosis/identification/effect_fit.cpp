@@ -12,7 +12,7 @@ namespace hybridtest {
 namespace {
 
 /// Step of the numeric derivatives at the optimum, as a share of the search range.
-constexpr double kDifferenceStep = 1e-3;
+constexpr double kSlopeStep = 1e-3;
 /// Nearer than this to the end of its range a parameter is said to have hit it.
 constexpr double kAtBound = 1e-3;
 constexpr double kRidge = 1e-9;
@@ -33,7 +33,7 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, solution) : Eigen::VectorXd{};
   for (Eigen::Index i = 0; i < searched; ++i) {
     Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? kDifferenceStep : -kDifferenceStep;
+    const double step = places[i] < 0.5 ? kSlopeStep : -kSlopeStep;
     moved[i] += step;
     result.columns.col(i) = (projection.predicted(moved, solution) - here) / step;
     const bool at_bound = places[i] < kAtBound || places[i] > 1.0 - kAtBound;
@@ -137,8 +137,8 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
       const SearchedParameter& searched = plan.searched[index];
       const double place = places[static_cast<Eigen::Index>(index)];
       const double per_place =
-          (searched.at(std::min(1.0, place + kDifferenceStep)) - searched.at(std::max(0.0, place - kDifferenceStep))) /
-          (2.0 * kDifferenceStep);
+          (searched.at(std::min(1.0, place + kSlopeStep)) - searched.at(std::max(0.0, place - kSlopeStep))) /
+          (2.0 * kSlopeStep);
       result[searched.effect][searched.parameter].standard_error = deviation * std::abs(per_place);
     } else if (index - plan.searched.size() < plan.linear.size()) {
       const LinearParameter& parameter = plan.linear[index - plan.searched.size()];

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "diagnosis/identification/segment.hpp"
-#include "experimental_site/rigs/site_stages.hpp"
+#include "plant/site_stages.hpp"
 
 namespace hybridtest {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "diagnosis/recording.hpp"
-#include "experimental_site/effects/effect.hpp"
-#include "experimental_site/effects/effect_type.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "plant/effects/effect.hpp"
+#include "plant/effects/effect_type.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

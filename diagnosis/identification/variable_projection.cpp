@@ -15,7 +15,7 @@ constexpr double kRidge = 1e-10;
 /// residual; else they are linearised again where they are, so many times and by that step (in units of the parameter).
 constexpr double kAsGoodAsLinear = 1e-3;
 constexpr int kRelinearisations = 3;
-constexpr double kDifferenceStep = 1e-2;
+constexpr double kCoefficientStep = 1e-2;
 
 using Bounds = VariableProjection::Bounds;
 
@@ -144,7 +144,7 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
   for (int pass = 0; pass < kRelinearisations; ++pass) {
     for (Eigen::Index i = 0; i < linear; ++i) {
       Projected moved = solution;
-      const double step = moved.coefficients[i] > 0.0 ? -kDifferenceStep : kDifferenceStep;
+      const double step = moved.coefficients[i] > 0.0 ? -kCoefficientStep : kCoefficientStep;
       moved.coefficients[i] += step;
       solution.columns.col(i) = (predicted(places, moved) - here) / step;
     }

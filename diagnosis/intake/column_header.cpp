@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "core/config/wording.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest {
 namespace {
@@ -46,8 +46,7 @@ bool is_left_aside(std::string_view header) {
 std::string unknown_column_advice(std::string_view header) {
   std::vector<std::string> known{std::string{kTimeColumn}};
   for (std::size_t i = 0; i < kChannels; ++i) known.emplace_back(column_name(channel_at(i)));
-  return "unknown column" + config::name_advice(header, known, "known here") +
-         "; _1, _2 ... for several degrees of freedom";
+  return "unknown column" + name_advice(header, known, "known here") + "; _1, _2 ... for several degrees of freedom";
 }
 
 }  // namespace hybridtest

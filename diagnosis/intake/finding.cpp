@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/config/wording.hpp"
+#include "core/text/shown.hpp"
 
 namespace hybridtest {
 
@@ -10,8 +10,8 @@ std::string IntakeFinding::text(const std::string& file) const {
   std::string text = file;
   if (row > 0) text += ":" + std::to_string(row);
   text += ": ";
-  if (!column.empty()) text += "column '" + config::shown(column) + "': ";
-  if (!value.empty()) text += "'" + config::shown(value) + "': ";
+  if (!column.empty()) text += "column '" + shown(column) + "': ";
+  if (!value.empty()) text += "'" + shown(value) + "': ";
   text += what;
   if (more == 1) text += " (and in row " + std::to_string(last_row) + ")";
   if (more > 1) text += " (and in " + std::to_string(more) + " more rows, the last " + std::to_string(last_row) + ")";

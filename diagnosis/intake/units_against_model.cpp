@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "diagnosis/identification/segment.hpp"
 
 namespace hybridtest {

@@ -5,7 +5,7 @@
 
 #include "diagnosis/intake/finding.hpp"
 #include "diagnosis/recording.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

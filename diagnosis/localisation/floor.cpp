@@ -24,12 +24,6 @@ double difference_variance(std::span<const double> values, std::size_t lag) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-double span_of(std::span<const double> values) {
-  if (values.empty()) return 0.0;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return *high - *low;
-}
-
 /// Samples whose input was the same `lag` before, in place and in what came around it.
 std::vector<std::size_t> repeated(std::span<const double> input_m, std::size_t lag, double tolerance_m) {
   std::vector<std::size_t> samples;

@@ -9,13 +9,13 @@ namespace {
 constexpr double kRestSpan = 0.001;
 constexpr double kLength_s = 0.2;
 
+}  // namespace
+
 double span_of(std::span<const double> values) {
   if (values.empty()) return 0.0;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
 }
-
-}  // namespace
 
 std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s) {
   const auto length = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(kLength_s / period_s)));

@@ -7,7 +7,7 @@
 
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/recording.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

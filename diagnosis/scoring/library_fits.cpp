@@ -7,7 +7,7 @@
 #include <optional>
 #include <thread>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "diagnosis/identification/search_range.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/traces/trace.hpp"

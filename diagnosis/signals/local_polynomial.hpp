@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "experimental_site/effects/effect.hpp"
+#include "plant/effects/effect.hpp"
 
 namespace hybridtest {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "coordinator/integrator.hpp"
-#include "coordinator/linear_structure.hpp"
+#include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
 

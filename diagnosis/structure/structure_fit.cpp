@@ -6,7 +6,7 @@
 
 #include "core/assert.hpp"
 #include "diagnosis/tuning.hpp"
-#include "experimental_site/effects/effect_type.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 namespace {

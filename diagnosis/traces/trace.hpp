@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnosis/recording.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

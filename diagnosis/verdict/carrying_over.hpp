@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "diagnosis/report/diagnosis_report.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
 
 namespace hybridtest {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/localisation/gap_signals.hpp"
-#include "diagnosis/report/wording.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnosis/identification/problem.hpp"
-#include "diagnosis/report/diagnosis_report.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
 
 namespace hybridtest {
 

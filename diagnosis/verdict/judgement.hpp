@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "diagnosis/report/diagnosis_report.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
 #include "diagnosis/verdict/selection.hpp"
 
 namespace hybridtest {

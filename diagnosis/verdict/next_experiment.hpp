@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experimental_site/effects/effect_type.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "diagnosis/recording.hpp"
-#include "diagnosis/report/diagnosis_report.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
 
 namespace hybridtest {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <string>
 
-#include "diagnosis/report/wording.hpp"
-#include "experimental_site/effects/effect_type.hpp"
+#include "diagnosis/page/wording.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "diagnosis/recording.hpp"
-#include "diagnosis/report/diagnosis_report.hpp"
-#include "experimental_site/rigs/site_model.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 

@@ -12,7 +12,7 @@ namespace hybridtest {
 namespace {
 
 constexpr std::size_t kInterfaces = 7;
-constexpr int kResamples = 200;
+constexpr int kShareResamples = 200;
 using Shares = std::array<double, kInterfaces>;
 
 /// The interface that a segment's gap is put down to.
@@ -56,7 +56,7 @@ std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem&
                                                     const FitOutcome& chosen, std::uint64_t seed) {
   Random random{seed};
   std::array<std::vector<double>, kInterfaces> drawn;
-  for (int i = 0; i < kResamples; ++i) {
+  for (int i = 0; i < kShareResamples; ++i) {
     const Shares shares =
         shares_of(problem, baseline, chosen, [&](std::size_t, std::size_t blocks) { return random.below(blocks); });
     for (std::size_t k = 0; k < kInterfaces; ++k) drawn[k].push_back(shares[k]);
@@ -64,7 +64,7 @@ std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem&
   std::array<report::Interval, kInterfaces> result;
   for (std::size_t k = 0; k < kInterfaces; ++k) {
     std::ranges::sort(drawn[k]);
-    result[k] = {drawn[k][kResamples / 40], drawn[k][kResamples - 1 - kResamples / 40]};
+    result[k] = {drawn[k][kShareResamples / 40], drawn[k][kShareResamples - 1 - kShareResamples / 40]};
   }
   return result;
 }

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <string>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/assert.hpp"
-#include "core/config/error.hpp"
-#include "mechanics/checked_parameter.hpp"
+#include "core/config_error.hpp"
+#include "core/parameters/checked_parameter.hpp"
 
 namespace hybridtest {
 
@@ -26,7 +26,7 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
                            std::unique_ptr<Specimen> specimen, const SensorNoise& noise, Duration control_period,
                            std::vector<Effects> effects)
     : specimen_{std::move(specimen)},
-      control_period_s_{checked("control_period_s", to_seconds(control_period), config::kPositive)} {
+      control_period_s_{checked("control_period_s", to_seconds(control_period), kPositive)} {
   HYBRIDTEST_ASSERT(specimen_ != nullptr);
   const int dofs = specimen_->dofs();
   if (std::cmp_not_equal(transfer_systems.size(), dofs)) {
@@ -36,8 +36,8 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
   }
   HYBRIDTEST_ASSERT(effects.empty() || effects.size() == transfer_systems.size());
   effects.resize(transfer_systems.size());
-  const double displacement_noise_m = checked("displacement_noise_m", noise.displacement_noise_m, config::kNotNegative);
-  const double force_noise_n = checked("force_noise_n", noise.force_noise_n, config::kNotNegative);
+  const double displacement_noise_m = checked("displacement_noise_m", noise.displacement_noise_m, kNotNegative);
+  const double force_noise_n = checked("force_noise_n", noise.force_noise_n, kNotNegative);
   std::uint64_t stream = noise.first_stream;
   for (std::size_t i = 0; i < transfer_systems.size(); ++i, stream += 2) {
     Effects& of = effects[i];

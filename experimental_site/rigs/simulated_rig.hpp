@@ -7,11 +7,11 @@
 
 #include "core/time.hpp"
 #include "experimental_site/rigs/rig.hpp"
-#include "experimental_site/rigs/site_model.hpp"
-#include "experimental_site/rigs/site_stages.hpp"
-#include "experimental_site/rigs/specimen.hpp"
-#include "experimental_site/sensors/noisy_sensor.hpp"
-#include "experimental_site/transfer_systems/transfer_system.hpp"
+#include "plant/sensors/noisy_sensor.hpp"
+#include "plant/site_model.hpp"
+#include "plant/site_stages.hpp"
+#include "plant/specimens/specimen.hpp"
+#include "plant/transfer_systems/transfer_system.hpp"
 
 namespace hybridtest {
 

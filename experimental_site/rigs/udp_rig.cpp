@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/assert.hpp"
-#include "core/config/error.hpp"
-#include "mechanics/checked_parameter.hpp"
+#include "core/config_error.hpp"
+#include "core/parameters/checked_parameter.hpp"
 
 namespace hybridtest {
 namespace {
@@ -38,11 +38,10 @@ UdpRig::UdpRig(const Settings& settings, std::unique_ptr<DatagramPort> port)
   const double period_s = to_seconds(settings.control_period);
   static_cast<void>(checked("control_period_s", period_s, {.low = 0.0, .high = 4.29, .low_open = true}));
   static_cast<void>(checked("watchdog_s", to_seconds(settings.watchdog), {.low = 2.0 * period_s}));
-  const config::Range waits = settings.follows_datagrams
-                                  ? config::kNotNegative
-                                  : config::Range{.low = 0.0, .high = period_s, .high_open = true};
+  const Range waits =
+      settings.follows_datagrams ? kNotNegative : Range{.low = 0.0, .high = period_s, .high_open = true};
   static_cast<void>(checked("reply_wait_s", to_seconds(settings.reply_wait), waits));
-  static_cast<void>(checked("connect_timeout_s", to_seconds(settings.connect_timeout), config::kPositive));
+  static_cast<void>(checked("connect_timeout_s", to_seconds(settings.connect_timeout), kPositive));
   watchdog_samples_ = whole_samples(settings.watchdog, settings.control_period);
   rest_.displacement_m = InterfaceVector::Zero(settings.actuators);
 }

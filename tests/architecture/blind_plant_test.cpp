@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr const char* kPlant = "diagnosis/blind/blind_plant/";
+constexpr const char* kPlant = "validation/blind_batches/plant/";
 
 /// Includes of the plant that are neither its own, nor of the standard library, nor Eigen's.
 std::vector<std::string> borrowed(const std::vector<SourceFile>& files) {
@@ -38,14 +38,14 @@ TEST(BlindPlant, SharesNoCodeWithTheLibraryThatItJudges) {
 }
 
 TEST(BlindPlant, BorrowedCodeIsFound) {
-  EXPECT_THAT(borrowed({{"diagnosis/blind/blind_plant/plant.cpp",
+  EXPECT_THAT(borrowed({{"validation/blind_batches/plant/plant.cpp",
                          "#include <cmath>\n#include <Eigen/Core>\n#include \"core/random.hpp\"\n"
-                         "#include \"diagnosis/recording.hpp\"\n#include \"diagnosis/blind/blind_plant/site.hpp\"\n"
-                         "#include \"experimental_site/effects/effect.hpp\"\n"},
-                        {"diagnosis/blind/make_batch.cpp", "#include \"diagnosis/recording.hpp\"\n"}}),
-              ElementsAre("diagnosis/blind/blind_plant/plant.cpp includes core/random.hpp",
-                          "diagnosis/blind/blind_plant/plant.cpp includes diagnosis/recording.hpp",
-                          "diagnosis/blind/blind_plant/plant.cpp includes experimental_site/effects/effect.hpp"));
+                         "#include \"diagnosis/recording.hpp\"\n#include \"validation/blind_batches/plant/site.hpp\"\n"
+                         "#include \"plant/effects/effect.hpp\"\n"},
+                        {"validation/blind_batches/make_batch.cpp", "#include \"diagnosis/recording.hpp\"\n"}}),
+              ElementsAre("validation/blind_batches/plant/plant.cpp includes core/random.hpp",
+                          "validation/blind_batches/plant/plant.cpp includes diagnosis/recording.hpp",
+                          "validation/blind_batches/plant/plant.cpp includes plant/effects/effect.hpp"));
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ TEST_P(Forbidden, IsFound) {
 INSTANTIATE_TEST_SUITE_P(
     Arrows, Forbidden,
     testing::Values(
-        ForbiddenLine{"core/node.hpp", "#include \"mechanics/law.hpp\"",
-                      "core/node.hpp includes mechanics/law.hpp: no arrow from core to it"},
+        ForbiddenLine{"core/node.hpp", "#include \"mechanics/laws/law.hpp\"",
+                      "core/node.hpp includes mechanics/laws/law.hpp: no arrow from core to it"},
         ForbiddenLine{"coordinator/coordinator.cpp", "#include \"experimental_site/site_link.hpp\"",
                       "coordinator/coordinator.cpp includes experimental_site/site_link.hpp: no arrow from "
                       "coordinator to it"},
-        ForbiddenLine{"coordinator/coordinator.cpp", "#include \"launch/executor.hpp\"",
-                      "coordinator/coordinator.cpp includes launch/executor.hpp: no arrow from coordinator to it"},
+        ForbiddenLine{"coordinator/coordinator.cpp", "#include \"runtime/executor.hpp\"",
+                      "coordinator/coordinator.cpp includes runtime/executor.hpp: no arrow from coordinator to it"},
         ForbiddenLine{"diagnosis/replay.cpp", "#include \"experimental_site/site_link.hpp\"",
                       "diagnosis/replay.cpp includes experimental_site/site_link.hpp: no arrow from diagnosis to it"},
         ForbiddenLine{"launch/main.cpp", "#include \"tests/architecture/rules.hpp\"",
@@ -55,18 +55,19 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Libraries, Forbidden,
-    testing::Values(ForbiddenLine{"launch/participant.cpp", "#include <fastdds/dds/topic/Topic.hpp>",
-                                  "launch/participant.cpp includes fastdds/dds/topic/Topic.hpp: a header of DDS, which "
-                                  "has no business here"},
-                    ForbiddenLine{"transport/in_process/hub.cpp", "#include \"hybridtestPubSubTypes.h\"",
-                                  "transport/in_process/hub.cpp includes hybridtestPubSubTypes.h: a header of DDS, "
-                                  "which has no business here"},
-                    ForbiddenLine{"launch/scenario.cpp", "#include <yaml-cpp/yaml.h>",
-                                  "launch/scenario.cpp includes yaml-cpp/yaml.h: a header of yaml-cpp, which has no "
-                                  "business here"},
-                    ForbiddenLine{"core/faults.cpp", "#  include <spdlog/spdlog.h>",
-                                  "core/faults.cpp includes spdlog/spdlog.h: a header of spdlog, which has no business "
-                                  "here"}));
+    testing::Values(
+        ForbiddenLine{"runtime/participant.cpp", "#include <fastdds/dds/topic/Topic.hpp>",
+                      "runtime/participant.cpp includes fastdds/dds/topic/Topic.hpp: a header of DDS, which "
+                      "has no business here"},
+        ForbiddenLine{"transport/in_process/hub.cpp", "#include \"hybridtestPubSubTypes.h\"",
+                      "transport/in_process/hub.cpp includes hybridtestPubSubTypes.h: a header of DDS, "
+                      "which has no business here"},
+        ForbiddenLine{"scenario/scenario.cpp", "#include <yaml-cpp/yaml.h>",
+                      "scenario/scenario.cpp includes yaml-cpp/yaml.h: a header of yaml-cpp, which has no "
+                      "business here"},
+        ForbiddenLine{"core/faults.cpp", "#  include <spdlog/spdlog.h>",
+                      "core/faults.cpp includes spdlog/spdlog.h: a header of spdlog, which has no business "
+                      "here"}));
 
 INSTANTIATE_TEST_SUITE_P(
     TimeAndChance, Forbidden,
@@ -82,17 +83,17 @@ INSTANTIATE_TEST_SUITE_P(
                                   "tests/unit/core/presence_test.cpp:2 sleeps: usleep"},
                     ForbiddenLine{"experimental_site/site_link.cpp", "arrived.wait_for(lock, kPatience);",
                                   "experimental_site/site_link.cpp:2 waits for a time: wait_for"},
-                    ForbiddenLine{"experimental_site/sensors/noisy_sensor.cpp", "std::normal_distribution<> noise;",
-                                  "experimental_site/sensors/noisy_sensor.cpp:2 draws from a generator that is not "
+                    ForbiddenLine{"plant/sensors/noisy_sensor.cpp", "std::normal_distribution<> noise;",
+                                  "plant/sensors/noisy_sensor.cpp:2 draws from a generator that is not "
                                   "core/random.hpp: normal_distribution"}));
 
 TEST(IncludeDirection, WhatTheDesignAllowsIsNotFound) {
   EXPECT_THAT(violations({
-                  {"coordinator/main.cpp", "#include \"launch/participant_process.hpp\"\n"},
-                  {"experimental_site/rigs/simulated_rig.cpp", "#include \"mechanics/law.hpp\"\n"},
+                  {"coordinator/main.cpp", "#include \"runtime/participant_process.hpp\"\n"},
+                  {"experimental_site/rigs/simulated_rig.cpp", "#include \"mechanics/laws/law.hpp\"\n"},
                   {"transport/fast_dds/ports.cpp", "#include <fastdds/dds/topic/Topic.hpp>\n"},
                   {"core/config/yaml_reader.cpp", "#include <yaml-cpp/parser.h>\n"},
-                  {"launch/executor.cpp", "std::this_thread::sleep_until(t);\n"},
+                  {"runtime/executor.cpp", "std::this_thread::sleep_until(t);\n"},
                   {"core/node.hpp",
                    "// steady_clock::now() would not do\n/* #include \"launch/x.hpp\" */\n"
                    "const char* text = \"now()\"; int n = 1'000; char c = '\"'; // sleep_for\n"},

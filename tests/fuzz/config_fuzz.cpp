@@ -12,8 +12,6 @@ namespace hybridtest {
 namespace {
 
 using config::Document;
-using config::kNotNegative;
-using config::kPositive;
 using config::Section;
 
 void read_law(Section law) {

@@ -8,7 +8,7 @@
 
 #include "coordinator/ground_motion/read_ground_motion.hpp"
 #include "core/assert.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -11,9 +11,9 @@
 #include "diagnosis/identification/modelled_segments.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/verdict/shrink.hpp"
-#include "experimental_site/transfer_systems/delay.hpp"
-#include "experimental_site/transfer_systems/ideal.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/transfer_systems/delay.hpp"
+#include "plant/transfer_systems/ideal.hpp"
 
 /// What the diagnosis says of recordings that laboratories made. The figures asserted are findings about
 /// the data (shared/data/README.md, and fits by other means), not answers of an earlier version.

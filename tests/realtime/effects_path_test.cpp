@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "experimental_site/rigs/law_specimen.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
-#include "experimental_site/transfer_systems/servo_hydraulic.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/specimens/law_specimen.hpp"
+#include "plant/transfer_systems/servo_hydraulic.hpp"
 #include "tests/realtime/forbidden_calls.hpp"
 
 /// A simulated rig is exercised by the same control path as a laboratory: its exchange keeps the same rules, whatever

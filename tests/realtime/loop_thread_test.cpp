@@ -1,4 +1,4 @@
-#include "launch/loop_thread.hpp"
+#include "runtime/loop_thread.hpp"
 
 #include <gtest/gtest.h>
 

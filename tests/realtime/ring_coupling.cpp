@@ -8,10 +8,10 @@
 #include "compensation/no_force_compensation.hpp"
 #include "compensation/polynomial_displacement.hpp"
 #include "coordinator/central_difference.hpp"
-#include "experimental_site/rigs/law_specimen.hpp"
-#include "experimental_site/transfer_systems/second_order.hpp"
-#include "mechanics/bilinear.hpp"
+#include "mechanics/laws/bilinear.hpp"
 #include "numerical_substructure/springs.hpp"
+#include "plant/specimens/law_specimen.hpp"
+#include "plant/transfer_systems/second_order.hpp"
 
 namespace hybridtest {
 namespace {

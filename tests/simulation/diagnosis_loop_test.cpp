@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "experimental_site/effects/effect_type.hpp"
-#include "launch/diagnose_run.hpp"
-#include "launch/rerun_test.hpp"
-#include "launch/structure_record.hpp"
+#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/rerun.hpp"
+#include "diagnosis/runs/structure_record.hpp"
+#include "plant/effects/effect_type.hpp"
 #include "recording/run_file_reader.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 #include "tests/simulation/recorded_simulation.hpp"
@@ -77,7 +77,7 @@ TEST_F(DiagnosisLoop, WhatADiagnosisAddsClosesTheGap) {
   const Scenario real =
       simulate("real", {in_rig(kModel + kNoise + kFriction), "substructures[storey_1].model={" + kModel + "}"});
   std::ostringstream said;
-  diagnose_run(real, directory_ / "real", said);
+  diagnose_run(real, directory_ / "real", {}, said);
   const std::filesystem::path diagnosis = directory_ / "real" / "diagnosis";
   ASSERT_TRUE(std::filesystem::exists(diagnosis / "augmented_model.yaml")) << said.str();
   EXPECT_TRUE(std::filesystem::exists(diagnosis / "diagnosis.json"));
@@ -183,7 +183,7 @@ TEST_F(DiagnosisLoop, ASiteThatRecordedElsewhereIsLeftOut) {
   const Scenario scenario = shipped_scenario("two_storey_one_site", {});
   prepare_run_directory(directory_ / "empty", scenario);
   std::ostringstream said;
-  diagnose_run(scenario, directory_ / "empty", said);
+  diagnose_run(scenario, directory_ / "empty", {}, said);
   EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its records are not in"));
 }
 

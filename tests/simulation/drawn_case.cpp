@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/random.hpp"
-#include "launch/participant.hpp"
+#include "runtime/participant.hpp"
 
 namespace hybridtest {
 namespace {

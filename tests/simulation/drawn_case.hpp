@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/simulation.hpp"
+#include "runtime/simulation.hpp"
 
 namespace hybridtest {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/config/scalar.hpp"
-#include "experimental_site/effects/effect_type.hpp"
+#include "core/text/scalar.hpp"
+#include "plant/effects/effect_type.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 
 /// Every effect of the library switched on in a scenario by name.
@@ -58,7 +58,7 @@ std::string written(const EffectType& type) {
     if (has_to_be_given && !std::isnan(parameter.fallback)) continue;
     const double share = parameter.search_low + 0.55 * (parameter.search_high - parameter.search_low);
     const double value = std::clamp(scale_of(parameter) * share, parameter.low, parameter.high);
-    text += ", " + std::string{parameter.name} + ": " + config::written_number(value);
+    text += ", " + std::string{parameter.name} + ": " + written_number(value);
   }
   return text + "}]";
 }
@@ -167,7 +167,7 @@ TEST(Effects, DampAndLimitAsTheyShould) {
             0.8 * peak(floor_1_m(without())));
   const double half_n = 0.5 * peak(force_n(without()));
   EXPECT_EQ(peak(force_n(shaken({std::string{kRig} + "[{interface: force_sensor, effect: saturation, limit_n: " +
-                                 config::written_number(half_n) + "}]"}))),
+                                 written_number(half_n) + "}]"}))),
             half_n);
 }
 

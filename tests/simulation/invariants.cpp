@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "launch/participant.hpp"
+#include "runtime/participant.hpp"
 
 namespace hybridtest {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "launch/simulation.hpp"
+#include "runtime/simulation.hpp"
 #include "tests/support/kept_rows.hpp"
 
 namespace hybridtest {

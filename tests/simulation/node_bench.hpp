@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "launch/participant.hpp"
-#include "launch/scenario.hpp"
+#include "runtime/participant.hpp"
+#include "scenario/scenario.hpp"
 #include "tests/support/kept_rows.hpp"
 #include "transport/simulated/simulated_network.hpp"
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "launch/participant.hpp"
-#include "launch/run_directory.hpp"
-#include "launch/simulation.hpp"
 #include "recording/recorder.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/run_directory.hpp"
+#include "runtime/simulation.hpp"
 
 namespace hybridtest {
 

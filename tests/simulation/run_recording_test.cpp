@@ -6,11 +6,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/config/error.hpp"
-#include "launch/read_recording.hpp"
-#include "launch/scenario_digest.hpp"
+#include "core/config_error.hpp"
+#include "diagnosis/runs/read_recording.hpp"
 #include "recording/csv_export.hpp"
 #include "recording/run_file_reader.hpp"
+#include "scenario/scenario_digest.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 #include "tests/simulation/recorded_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "launch/studies/founding_study/founding_study.hpp"
+#include "validation/studies/founding_study/founding_study.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "launch/studies/founding_study/findings.hpp"
+#include "validation/studies/founding_study/findings.hpp"
 
 namespace hybridtest::founding {
 namespace {

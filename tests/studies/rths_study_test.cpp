@@ -1,14 +1,14 @@
-#include "launch/studies/rths_benchmark/rths_study.hpp"
+#include "validation/studies/rths_benchmark/rths_study.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "launch/studies/parallel_runs.hpp"
-#include "launch/studies/rths_benchmark/harness_check.hpp"
-#include "launch/studies/rths_benchmark/rths_tables.hpp"
-#include "launch/studies/rths_benchmark/verdict.hpp"
-#include "tests/unit/studies/benchmark_motions.hpp"
+#include "tests/unit/validation/studies/benchmark_motions.hpp"
+#include "validation/studies/parallel_runs.hpp"
+#include "validation/studies/rths_benchmark/harness_check.hpp"
+#include "validation/studies/rths_benchmark/rths_tables.hpp"
+#include "validation/studies/rths_benchmark/verdict.hpp"
 
 namespace hybridtest::rths {
 namespace {

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 #include "tests/system/reference_building.hpp"
 
 /// A whole test over DDS against time histories of an established program (OpenSees 3.8).

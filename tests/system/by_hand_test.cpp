@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// The three programs started one by one, as on three hosts: each with records of its own, brought together later.
 namespace hybridtest {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 #include "tests/system/reference_building.hpp"
 
 /// The linear two-storey building with an actuator that answers 20 ms late: four times the delay at which its

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// The same scenario gives the same bytes: over DDS in several processes, simulated in one, and at every
 /// optimisation level.

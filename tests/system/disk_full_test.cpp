@@ -9,7 +9,7 @@
 #include <string>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// No room for records: the test goes on or ends, as the scenario says, and never passes for valid.
 namespace hybridtest {

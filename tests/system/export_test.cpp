@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// `hybridtest export` writes what was recorded, to the last bit.
 namespace hybridtest {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// Limits that are passed and numbers that are none end a test safely, and the records say why.
 namespace hybridtest {

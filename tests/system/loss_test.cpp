@@ -12,7 +12,7 @@
 
 #include "core/time.hpp"
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// Participants that never come, die, freeze or are orphaned.
 namespace hybridtest {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// Wall time follows model time.
 namespace hybridtest {

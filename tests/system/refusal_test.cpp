@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// Who does not belong to a test is refused, and the test does not notice.
 namespace hybridtest {

@@ -8,7 +8,7 @@
 
 #include "core/faults.hpp"
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// The control loop of a site by itself when those above it fail.
 namespace hybridtest {

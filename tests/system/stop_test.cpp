@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tests/support/recording_checks.hpp"
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// Stopped by hand: safely, with every record in order.
 namespace hybridtest {

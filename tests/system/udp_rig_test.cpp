@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// A site with a rig of type `udp`, and a controller at the other end in a process of its own.
 namespace hybridtest {

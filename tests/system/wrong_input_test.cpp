@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "tests/support/system_test.hpp"
+#include "tests/support/system_fixture.hpp"
 
 /// What a user gets wrong is answered with what, where, what was expected, and exit code 2.
 namespace hybridtest {

@@ -15,15 +15,15 @@
 
 #include "experimental_site/geometry/rigid_beam.hpp"
 #include "experimental_site/geometry/transformed_rig.hpp"
-#include "experimental_site/rigs/law_specimen.hpp"
 #include "experimental_site/rigs/replay_rig.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
 #include "experimental_site/rigs/udp_rig.hpp"
-#include "experimental_site/transfer_systems/second_order.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/specimens/law_specimen.hpp"
+#include "plant/transfer_systems/second_order.hpp"
 #include "tests/contract/rigs/example_rig.hpp"
+#include "tests/support/allocation_count.hpp"
 #include "tests/support/echo_port.hpp"
-#include "tests/unit/experimental_site/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/exit_code.hpp"
-#include "launch/scenario.hpp"
-#include "launch/scenario_digest.hpp"
-#include "launch/simulation.hpp"
+#include "runtime/simulation.hpp"
+#include "scenario/scenario.hpp"
+#include "scenario/scenario_digest.hpp"
 
 namespace hybridtest {
 namespace {

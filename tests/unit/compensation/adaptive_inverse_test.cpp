@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "compensation/inverse_compensation.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 #include "tests/unit/compensation/transfer_system_plant.hpp"

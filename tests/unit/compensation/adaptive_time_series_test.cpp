@@ -8,7 +8,7 @@
 #include <string>
 
 #include "compensation/conditional_adaptive_time_series.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 #include "tests/unit/compensation/second_order_actuator.hpp"

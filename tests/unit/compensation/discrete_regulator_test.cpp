@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "compensation/transfer_system_model.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -17,7 +17,7 @@
 #include "compensation/linear_acceleration.hpp"
 #include "compensation/newmark_kinematics.hpp"
 #include "compensation/polynomial_displacement.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/delay_line.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 

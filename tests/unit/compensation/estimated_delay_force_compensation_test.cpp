@@ -9,7 +9,7 @@
 #include "compensation/delay_estimators/recursive_least_squares.hpp"
 #include "compensation/force_correction.hpp"
 #include "compensation/polynomial_force.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/delayed_motion.hpp"
 
 namespace hybridtest {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 #include "tests/unit/compensation/transfer_system_plant.hpp"
 

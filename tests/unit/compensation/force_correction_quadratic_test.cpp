@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "compensation/force_correction_quadratic.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 
 namespace hybridtest {

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/delayed_motion.hpp"
 
 namespace hybridtest {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 
 namespace hybridtest {

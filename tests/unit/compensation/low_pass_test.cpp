@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 
 namespace hybridtest {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compensation/no_force_compensation.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 
 namespace hybridtest {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/compensation/delayed_motion.hpp"
 
 namespace hybridtest {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "compensation/polynomial_displacement.hpp"
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "tests/unit/compensation/frequency_response.hpp"
 #include "tests/unit/compensation/second_order_actuator.hpp"

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "coordinator/central_difference.hpp"
-#include "coordinator/damping.hpp"
 #include "coordinator/preflight/loop_transfer.hpp"
-#include "tests/unit/coordinator/structures.hpp"
+#include "mechanics/structure/damping.hpp"
+#include "tests/support/structures.hpp"
 
 namespace hybridtest {
 namespace {

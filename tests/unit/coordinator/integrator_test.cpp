@@ -8,9 +8,9 @@
 
 #include "coordinator/central_difference.hpp"
 #include "coordinator/explicit_newmark.hpp"
-#include "core/config/error.hpp"
-#include "tests/unit/coordinator/malloc_count.hpp"
-#include "tests/unit/coordinator/structures.hpp"
+#include "core/config_error.hpp"
+#include "tests/support/malloc_count.hpp"
+#include "tests/support/structures.hpp"
 
 namespace hybridtest {
 namespace {

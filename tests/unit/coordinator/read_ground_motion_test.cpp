@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

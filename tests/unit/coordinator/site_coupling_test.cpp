@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/config/error.hpp"
-#include "tests/unit/coordinator/structures.hpp"
+#include "core/config_error.hpp"
+#include "tests/support/structures.hpp"
 
 namespace hybridtest {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/config/error.hpp"
-#include "tests/unit/coordinator/structures.hpp"
+#include "core/config_error.hpp"
+#include "tests/support/structures.hpp"
 
 namespace hybridtest {
 namespace {

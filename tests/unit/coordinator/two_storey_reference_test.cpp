@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "coordinator/central_difference.hpp"
-#include "coordinator/damping.hpp"
 #include "coordinator/explicit_newmark.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
-#include "tests/unit/coordinator/structures.hpp"
+#include "mechanics/structure/damping.hpp"
+#include "tests/support/structures.hpp"
 
 /// The integrators against time histories of an established program (OpenSees 3.8, Newmark's
 /// average acceleration at 0.0005 s): reader, damping, integrator and load together.

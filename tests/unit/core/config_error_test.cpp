@@ -1,4 +1,4 @@
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "compensation/polynomial_displacement.hpp"
-#include "diagnosis/report/diagnosis_json.hpp"
-#include "made_recording.hpp"
+#include "diagnosis/page/diagnosis_json.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
 namespace {

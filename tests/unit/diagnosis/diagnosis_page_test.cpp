@@ -1,4 +1,4 @@
-#include "diagnosis/report/diagnosis_page.hpp"
+#include "diagnosis/page/diagnosis_page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/report/wording.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "tests/unit/diagnosis/made_signals.hpp"
 
 namespace hybridtest::report {

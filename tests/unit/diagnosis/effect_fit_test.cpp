@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "made_recording.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
 namespace {

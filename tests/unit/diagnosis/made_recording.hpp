@@ -7,9 +7,9 @@
 
 #include "core/random.hpp"
 #include "diagnosis/recording.hpp"
-#include "experimental_site/rigs/site_model.hpp"
-#include "experimental_site/transfer_systems/ideal.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/site_model.hpp"
+#include "plant/transfer_systems/ideal.hpp"
 
 namespace hybridtest {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "made_recording.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
 namespace {

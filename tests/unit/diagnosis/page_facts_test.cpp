@@ -8,7 +8,7 @@
 #include "diagnosis/verdict/repeatability.hpp"
 #include "diagnosis/verdict/sensor_facts.hpp"
 #include "diagnosis/verdict/unjudged.hpp"
-#include "made_recording.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 /// What is told of a recording beside its gap.
 namespace hybridtest {

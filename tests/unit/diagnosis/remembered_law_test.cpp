@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "mechanics/bilinear.hpp"
+#include "mechanics/laws/bilinear.hpp"
 
 namespace hybridtest {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/intake/intake.hpp"
-#include "experimental_site/transfer_systems/delay.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/transfer_systems/delay.hpp"
 #include "tests/unit/diagnosis/made_signals.hpp"
 
 namespace hybridtest {

@@ -8,7 +8,7 @@
 #include "core/random.hpp"
 #include "diagnosis/traces/network_lags.hpp"
 #include "diagnosis/traces/reading_steps.hpp"
-#include "made_recording.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Effects that show in the digits of a recording.
 namespace hybridtest {

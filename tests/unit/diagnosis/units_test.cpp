@@ -7,8 +7,8 @@
 
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/intake/units_against_model.hpp"
-#include "experimental_site/transfer_systems/delay.hpp"
-#include "made_recording.hpp"
+#include "plant/transfer_systems/delay.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
 namespace {

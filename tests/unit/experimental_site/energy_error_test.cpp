@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

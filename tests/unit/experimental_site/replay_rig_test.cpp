@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

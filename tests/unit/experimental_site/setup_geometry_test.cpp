@@ -6,11 +6,11 @@
 #include <limits>
 #include <numbers>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "experimental_site/geometry/linear_geometry.hpp"
 #include "experimental_site/geometry/rigid_beam.hpp"
-#include "tests/unit/experimental_site/allocation_count.hpp"
+#include "tests/support/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

@@ -7,18 +7,18 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/config/error.hpp"
-#include "experimental_site/rigs/elastic_specimen.hpp"
-#include "experimental_site/rigs/law_specimen.hpp"
-#include "experimental_site/transfer_systems/delay.hpp"
-#include "experimental_site/transfer_systems/first_order.hpp"
-#include "experimental_site/transfer_systems/ideal.hpp"
-#include "experimental_site/transfer_systems/second_order.hpp"
-#include "mechanics/bilinear.hpp"
-#include "mechanics/bouc_wen.hpp"
-#include "mechanics/elastic.hpp"
-#include "mechanics/giuffre_menegotto_pinto.hpp"
-#include "tests/unit/experimental_site/allocation_count.hpp"
+#include "core/config_error.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/bouc_wen.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "plant/specimens/elastic_specimen.hpp"
+#include "plant/specimens/law_specimen.hpp"
+#include "plant/transfer_systems/delay.hpp"
+#include "plant/transfer_systems/first_order.hpp"
+#include "plant/transfer_systems/ideal.hpp"
+#include "plant/transfer_systems/second_order.hpp"
+#include "tests/support/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

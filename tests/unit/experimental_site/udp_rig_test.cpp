@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
+#include "tests/support/allocation_count.hpp"
 #include "tests/support/echo_port.hpp"
 #include "tests/support/kept_rows.hpp"
 #include "tests/support/scripted_controller.hpp"
 #include "tests/support/scripted_port.hpp"
-#include "tests/unit/experimental_site/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

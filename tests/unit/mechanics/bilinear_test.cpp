@@ -1,10 +1,10 @@
-#include "mechanics/bilinear.hpp"
+#include "mechanics/laws/bilinear.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {

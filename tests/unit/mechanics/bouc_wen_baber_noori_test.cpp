@@ -1,11 +1,11 @@
-#include "mechanics/bouc_wen_baber_noori.hpp"
+#include "mechanics/laws/bouc_wen_baber_noori.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/config/error.hpp"
-#include "mechanics/bouc_wen.hpp"
+#include "core/config_error.hpp"
+#include "mechanics/laws/bouc_wen.hpp"
 
 namespace hybridtest {
 namespace {

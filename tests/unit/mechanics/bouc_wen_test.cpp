@@ -1,10 +1,10 @@
-#include "mechanics/bouc_wen.hpp"
+#include "mechanics/laws/bouc_wen.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 

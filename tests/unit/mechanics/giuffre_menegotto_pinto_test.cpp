@@ -1,10 +1,10 @@
-#include "mechanics/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {

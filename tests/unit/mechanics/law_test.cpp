@@ -1,4 +1,4 @@
-#include "mechanics/law.hpp"
+#include "mechanics/laws/law.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "mechanics/bilinear.hpp"
-#include "mechanics/bouc_wen.hpp"
-#include "mechanics/bouc_wen_baber_noori.hpp"
-#include "mechanics/elastic.hpp"
-#include "mechanics/friction.hpp"
-#include "mechanics/gap_spring.hpp"
-#include "mechanics/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/bouc_wen.hpp"
+#include "mechanics/laws/bouc_wen_baber_noori.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/friction.hpp"
+#include "mechanics/laws/gap_spring.hpp"
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 
 namespace hybridtest {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "core/config/error.hpp"
-#include "mechanics/friction.hpp"
-#include "mechanics/gap_spring.hpp"
-#include "mechanics/viscous.hpp"
+#include "core/config_error.hpp"
+#include "mechanics/laws/friction.hpp"
+#include "mechanics/laws/gap_spring.hpp"
+#include "mechanics/laws/viscous.hpp"
 
 /// Laws of one line: friction, gap, viscous.
 namespace hybridtest {

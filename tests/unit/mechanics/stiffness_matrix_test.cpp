@@ -1,4 +1,4 @@
-#include "mechanics/stiffness_matrix.hpp"
+#include "mechanics/structure/stiffness_matrix.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 
 namespace hybridtest {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/error.hpp"
+#include "core/config_error.hpp"
 #include "core/random.hpp"
-#include "mechanics/bilinear.hpp"
-#include "mechanics/elastic.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/elastic.hpp"
 
 namespace hybridtest {
 namespace {

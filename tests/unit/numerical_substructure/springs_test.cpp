@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/error.hpp"
-#include "mechanics/bilinear.hpp"
-#include "mechanics/elastic.hpp"
+#include "core/config_error.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/elastic.hpp"
 
 namespace hybridtest {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "recording/event_ring.hpp"
-#include "tests/unit/recording/allocation_count.hpp"
+#include "tests/support/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

@@ -1,0 +1,158 @@
+#include "diagnosis/page/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <vector>
+
+namespace hybridtest::report {
+namespace {
+
+struct Prefix {
+  double factor;
+  std::string_view symbol;
+};
+/// Keeps a number and its unit on one line.
+constexpr std::string_view kNoBreak = "\u00a0";
+constexpr std::array<Prefix, 6> kPrefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "µ"}}};
+
+/// Units that take a prefix as they stand; others are shown as they are.
+bool takes_prefix(std::string_view unit) {
+  return !unit.empty() && std::string_view{"mNsJ"}.find(unit.front()) != std::string_view::npos;
+}
+
+std::string three_digits(double value) {
+  const double magnitude = std::abs(value);
+  if (magnitude >= 99.95) return fmt::format("{:.0f}", value);
+  if (magnitude >= 9.995) return fmt::format("{:.1f}", value);
+  return fmt::format("{:.2f}", value);
+}
+
+std::vector<std::string> causes(const DiagnosisReport& report) {
+  std::vector<std::string> names;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_cause) names.push_back(plain(cause.effect));
+  }
+  return names;
+}
+
+std::string where_it_lies(const DiagnosisReport& report) {
+  const InterfaceGap* fault = main_fault(report);
+  if (fault == nullptr) return "The model and the recordings disagree";
+  return fmt::format("The gap lies at the {} ({} of it)", plain(fault->interface), percent(fault->share));
+}
+
+std::string removal(const DiagnosisReport& report) {
+  if (!report.interface_shrink) return "";
+  return fmt::format(" Adding {} to the model removes {} of the gap there.", causes(report).size() > 1 ? "them" : "it",
+                     percent(report.interface_shrink->variance_removed));
+}
+
+std::string named_sentence(const DiagnosisReport& report) {
+  const std::vector<std::string> names = causes(report);
+  std::string text =
+      where_it_lies(report) + (names.size() > 1 ? "; its causes are " : "; its cause is ") + joined(names);
+  if (names.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
+  return text + "." + removal(report);
+}
+
+}  // namespace
+
+std::string plain(std::string_view name) {
+  std::string text{name};
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
+std::string plain_parameter(std::string_view name, std::string_view unit) {
+  std::string ending = "_";
+  for (const char letter : unit) {
+    if (letter == '/') {
+      ending += "_per_";
+    } else if (letter == ' ' || letter == '*') {
+      ending += '_';
+    } else {
+      ending += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    }
+  }
+  if (!unit.empty() && name.size() > ending.size() && name.ends_with(ending)) name.remove_suffix(ending.size());
+  return plain(name);
+}
+
+std::string sees(std::string_view interface) {
+  if (interface == "network") return "sent to received";
+  if (interface == "compensator") return "target to command";
+  if (interface == "transfer_system") return "command to displacement";
+  if (interface == "displacement_sensor") return "true to read displacement";
+  if (interface == "specimen") return "displacement to force";
+  if (interface == "force_sensor") return "true to read force";
+  if (interface == "numerical_substructure") return "forces to commands";
+  return "";
+}
+
+std::string quantity(double value, std::string_view unit) {
+  if (!std::isfinite(value)) return "not known";
+  if (!takes_prefix(unit) || value == 0.0) {
+    return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : kNoBreak, unit);
+  }
+  const auto fits =
+      std::ranges::find_if(kPrefixes, [&](const Prefix& prefix) { return std::abs(value) >= 0.9995 * prefix.factor; });
+  const Prefix& prefix = fits == kPrefixes.end() ? kPrefixes.back() : *fits;
+  return fmt::format("{}{}{}{}", three_digits(value / prefix.factor), kNoBreak, prefix.symbol, unit);
+}
+
+std::string percent(double share) {
+  const double value = 100.0 * share;
+  const double to_end = std::min(std::abs(value), std::abs(100.0 - value));
+  if (to_end == 0.0 || to_end >= 10.0) return fmt::format("{:.0f}{}%", value, kNoBreak);
+  return fmt::format("{:.{}f}{}%", value, to_end >= 0.995 ? 1 : 2, kNoBreak);
+}
+
+std::string between(const Interval& interval, std::string_view unit) {
+  return quantity(interval.low, unit) + " to " + quantity(interval.high, unit);
+}
+
+std::string between_percent(const Interval& interval) {
+  return percent(interval.low) + " to " + percent(interval.high);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+const InterfaceGap* main_fault(const DiagnosisReport& report) {
+  const InterfaceGap* largest = nullptr;
+  for (const InterfaceGap& gap : report.where) {
+    if (gap.is_judged && gap.is_at_fault && (largest == nullptr || gap.share > largest->share)) largest = &gap;
+  }
+  return largest;
+}
+
+std::string verdict_sentence(const DiagnosisReport& report) {
+  switch (report.verdict) {
+    case Verdict::none: return "Model and recordings agree: no gap stands above what repeating the test would show.";
+    case Verdict::named: return named_sentence(report);
+    case Verdict::set:
+      return where_it_lies(report) + "; these recordings cannot tell apart " + joined(causes(report)) + "." +
+             removal(report);
+    case Verdict::partial: {
+      const double unknown = report.interface_shrink ? report.interface_shrink->unknown_share : 0.0;
+      return named_sentence(report) +
+             fmt::format(" {} of the gap is repeatable and nothing in the library explains it.", percent(unknown));
+    }
+    case Verdict::unknown:
+      return where_it_lies(report) + "; it is repeatable, and no effect of the library explains it.";
+    case Verdict::not_excited: return "These recordings cannot tell whether the model is right.";
+  }
+  return "";
+}
+
+}  // namespace hybridtest::report

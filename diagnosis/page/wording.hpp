@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/result/diagnosis_report.hpp"
+
+/// How the page of a diagnosis puts things, in words that need no manual.
+namespace hybridtest::report {
+
+/// `transfer_system` as `transfer system`.
+[[nodiscard]] std::string plain(std::string_view name);
+/// A parameter without the unit that its name ends with: `friction_force_n` as `friction force`.
+[[nodiscard]] std::string plain_parameter(std::string_view name, std::string_view unit);
+/// Where it stands in the chain, in a few words: `command to measured displacement`.
+[[nodiscard]] std::string sees(std::string_view interface);
+/// Three digits with a unit of handy size, kept on one line: `16.6 ms`, `512 N`, `4.00 MN/m`.
+[[nodiscard]] std::string quantity(double value, std::string_view unit);
+/// `12 %`; more digits close to nothing and close to all, where they matter.
+[[nodiscard]] std::string percent(double share);
+/// `498 N to 527 N`
+[[nodiscard]] std::string between(const Interval& interval, std::string_view unit);
+[[nodiscard]] std::string between_percent(const Interval& interval);
+/// `a`, `a and b`, `a, b and c`.
+[[nodiscard]] std::string joined(const std::vector<std::string>& words);
+
+/// The interface at fault whose share is largest; nullptr when there is none.
+[[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
+/// The verdict in one sentence or two.
+[[nodiscard]] std::string verdict_sentence(const DiagnosisReport& report);
+
+}  // namespace hybridtest::report

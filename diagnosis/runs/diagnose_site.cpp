@@ -1,0 +1,191 @@
+#include "diagnosis/runs/diagnose_site.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "core/config_error.hpp"
+#include "core/text/scalar.hpp"
+#include "diagnosis/intake/units_against_model.hpp"
+#include "diagnosis/page/diagnosis_json.hpp"
+#include "diagnosis/page/diagnosis_page.hpp"
+#include "diagnosis/runs/structure_record.hpp"
+#include "diagnosis/structure/structure_diagnosis.hpp"
+#include "recording/error.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+
+double largest_gap(const Diagnosis& diagnosis) {
+  double largest = 0.0;
+  for (const report::InterfaceGap& gap : diagnosis.report.where) largest = std::max(largest, gap.nrmse);
+  return largest;
+}
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out{file, std::ios::binary};
+  out << text;
+  if (!out.flush()) throw ConfigError{file.string() + ": cannot be written"};
+}
+
+std::string in_words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::none: return "no gap above the floor";
+    case Verdict::named: return "the cause is named";
+    case Verdict::set: return "one of several effects that these recordings cannot tell apart";
+    case Verdict::partial: return "a cause is named, and part of the gap comes back that it does not explain";
+    case Verdict::unknown: return "the gap comes back, and no effect of the library explains it";
+    case Verdict::not_excited: return "the recordings cannot tell";
+  }
+  return {};
+}
+
+std::string parameters_in_words(const report::RankedCause& cause) {
+  std::string text;
+  for (const report::ReportedParameter& parameter : cause.parameters) {
+    text += fmt::format("      {:<32} {:.5g}", parameter.name, parameter.value);
+    if (parameter.ci95) text += fmt::format("  [{:.5g}, {:.5g}]", parameter.ci95->low, parameter.ci95->high);
+    if (parameter.is_at_bound) text += "  at the end of its range";
+    text += '\n';
+  }
+  return text;
+}
+
+/// As a scenario's list, or for --set.
+std::string written_in_one_line(std::span<const EffectSetting> effects) {
+  std::string list;
+  for (const EffectSetting& effect : effects) {
+    list += fmt::format("{}{{interface: {}, effect: {}, {}: {}}}", list.empty() ? "" : ", ",
+                        name_of(effect.type->interface), effect.type->name, effect.type->parameters.front().name,
+                        written_number(effect.values.front()));
+  }
+  return "effects=[" + list + "]";
+}
+
+std::string response_in_words(const report::ResponseShrink& response) {
+  std::string text = fmt::format("\n  response of the whole test against {}\n", response.recording);
+  const auto add = [&](std::string_view what, double before, double after) {
+    text += fmt::format("    {:<22} {:.4f} before, {:.4f} after\n", what, before, after);
+  };
+  add("displacement, NRMSE", response.nrmse_before, response.nrmse_after);
+  add("peak error", response.peak_error_before, response.peak_error_after);
+  if (response.energy_error_before && response.energy_error_after) {
+    add("energy error", *response.energy_error_before, *response.energy_error_after);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& model) const {
+  std::vector<ListedEffect> listed;
+  for (const EffectSetting& cause : diagnosis.causes) {
+    listed.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(dof)} : std::nullopt});
+  }
+  return listed;
+}
+
+void require_units(const SiteModelFile& model, std::span<const Recording> recordings) {
+  std::vector<ConfigIssue> issues;
+  for (const Recording& recording : recordings) {
+    for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+      for (const IntakeFinding& finding : check_units_against(model.dofs[dof], recording, dof)) {
+        issues.push_back({.file = {}, .what = finding.text(recording.file)});
+      }
+    }
+  }
+  if (!issues.empty()) throw ConfigError{std::move(issues)};
+}
+
+SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
+                            DiagnoseSettings settings) {
+  settings.site = model.name;
+  settings.model_file = model.file.string();
+  std::size_t dofs = model.dofs.size();
+  for (const Recording& recording : recordings) dofs = std::min(dofs, recording.dofs.size());
+  require_units(model, recordings);
+  SiteDiagnosis worst;
+  for (std::size_t dof = 0; dof < dofs; ++dof) {
+    settings.dof = dof;
+    Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
+    if (dofs > 1) diagnosis.report.notes.push_back(fmt::format("Speaks of degree of freedom {} of {}.", dof + 1, dofs));
+    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
+  }
+  return worst;
+}
+
+void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
+                           const std::filesystem::path& scenario) {
+  report::DiagnosisReport& report = diagnosis.diagnosis.report;
+  try {
+    const StructureRecord record = structure_record(run, read_scenario(scenario, {}));
+    const StructureDiagnosis structure = diagnose_structure(record.model, record.recording);
+    add_structure(structure, diagnosis.diagnosis);
+    diagnosis.structure_causes = causes_of(structure);
+    report.notes.insert(report.notes.end(), record.notes.begin(), record.notes.end());
+  } catch (const RecordingError& error) {
+    report.notes.push_back(fmt::format("The numerical substructure is not judged: {}.", error.what()));
+  }
+  if (!diagnosis.structure_causes.empty()) {
+    report.notes.push_back("Effects of the numerical substructure belong into the scenario, not into the model: " +
+                           written_in_one_line(diagnosis.structure_causes));
+  }
+}
+
+void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
+                     const std::filesystem::path& directory) {
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
+  write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
+  write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
+  write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)));
+}
+
+std::string summary_of(const SiteDiagnosis& site) {
+  const report::DiagnosisReport& report = site.diagnosis.report;
+  std::string text = fmt::format("{}: {}\n", report::name_of(report.verdict), in_words(report.verdict));
+  if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
+  for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.is_judged) {
+      text += fmt::format("    {:<22} not judged: {}\n", gap.interface, gap.why_not);
+      continue;
+    }
+    text +=
+        fmt::format("    {:<22} {:>5.1f} % [{:>5.1f}, {:>5.1f}] {:>9.4f} {:>10.4f}\n", gap.interface, 100.0 * gap.share,
+                    100.0 * gap.share_ci95.low, 100.0 * gap.share_ci95.high, gap.nrmse, gap.floor_nrmse);
+  }
+  bool causes = true;
+  for (const report::RankedCause& cause : report.ranking) {
+    if (&cause == &report.ranking.front() && cause.is_cause) text += "\n  causes\n";
+    if (causes && !cause.is_cause) {
+      text += "\n  also considered\n";
+      causes = false;
+    }
+    if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
+    text += fmt::format("    {}: {}, probability {:.3f}\n", cause.interface, cause.effect, cause.probability);
+    if (cause.is_cause) text += parameters_in_words(cause);
+  }
+  if (report.interface_shrink) {
+    const report::Shrink& shrink = *report.interface_shrink;
+    text += fmt::format("\n  gap there, NRMSE         {:.4f} before, {:.4f} after, floor {:.4f}\n", shrink.nrmse_before,
+                        shrink.nrmse_after, shrink.floor_nrmse);
+    text += fmt::format("  variance removed         {:.2f} %", 100.0 * shrink.variance_removed);
+    if (shrink.ci95) text += fmt::format(" [{:.2f}, {:.2f}]", 100.0 * shrink.ci95->low, 100.0 * shrink.ci95->high);
+    text += '\n';
+  }
+  if (report.response_shrink) {
+    text += response_in_words(*report.response_shrink);
+  } else if (!report.why_no_response.empty()) {
+    text += "\n  response of the whole test: not known, " + report.why_no_response + "\n";
+  }
+  if (!report.next_experiment.empty()) text += "\n  next: " + report.next_experiment + "\n";
+  for (const std::string& note : report.notes) text += "  note: " + note + "\n";
+  return text;
+}
+
+}  // namespace hybridtest

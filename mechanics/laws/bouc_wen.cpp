@@ -1,0 +1,99 @@
+#include "mechanics/laws/bouc_wen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parameters/checked_parameter.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr Range kExponent{.low = 1.0, .high = 100.0};
+
+/// Substeps per length over which the slope changes: classical Runge-Kutta is then exact to
+/// about (1/64)^4 / 120 = 5e-10.
+constexpr double kSubstepsPerLength = 64.0;
+/// Where |w|^n has no fifth derivative at zero, substeps grow from this with the distance.
+constexpr double kFirstSubstep = 0x1p-20;
+constexpr double kSubstepGrowth = 0.25;
+/// Enough for z to reach its limit to rounding (exp(-37)) from any state.
+constexpr int kMaxSubsteps = 4096;
+
+}  // namespace
+
+BoucWen::BoucWen(const Parameters& parameters) : parameters_{parameters} {
+  static_cast<void>(checked("stiffness_n_per_m", parameters.stiffness_n_per_m, kPositive));
+  static_cast<void>(checked("alpha", parameters.alpha, kZeroToOne));
+  static_cast<void>(checked("n", parameters.n, kExponent));
+  static_cast<void>(checked("ao", parameters.ao, kPositive));
+  static_cast<void>(checked("beta_per_m", parameters.beta_per_m, kNotNegative));
+  const Range above_minus_beta{.low = -parameters.beta_per_m, .low_open = true};
+  static_cast<void>(checked("gamma_per_m", parameters.gamma_per_m, above_minus_beta));
+  const double sum = parameters.gamma_per_m + parameters.beta_per_m;
+  ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
+  unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
+  is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
+}
+
+double BoucWen::initial_stiffness_n_per_m() const noexcept {
+  return (parameters_.alpha + (1.0 - parameters_.alpha) * parameters_.ao) * parameters_.stiffness_n_per_m;
+}
+
+double BoucWen::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
+  const double increment_m = displacement_m - committed_.displacement_m;
+  const double direction = increment_m < 0.0 ? -1.0 : 1.0;
+  const double path = std::abs(increment_m) * parameters_.ao / ultimate_m_;
+  trial_.displacement_m = displacement_m;
+  trial_.hysteretic = direction * carried_along(direction * committed_.hysteretic, path);
+  const double elastic_part = parameters_.alpha * displacement_m;
+  const double hysteretic_part = (1.0 - parameters_.alpha) * ultimate_m_ * trial_.hysteretic;
+  return parameters_.stiffness_n_per_m * (elastic_part + hysteretic_part);
+}
+
+// With w = z / zu, s = Ao |x| / zu, and w counted positive in the direction of motion, the
+// equation loses all but two of its parameters: dw/ds = 1 - c |w|^n, where c is 1 while
+// loading (w > 0) and (gamma - beta) / (gamma + beta) while unloading.
+double BoucWen::slope(double w) const noexcept {
+  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(w), parameters_.n);
+}
+
+double BoucWen::carried_along(double w, double path) const noexcept {
+  double left = path;
+  for (int i = 0; i < kMaxSubsteps && left > 0.0; ++i) {
+    double step = std::min(left, substep(w));
+    double next = runge_kutta_step(w, step);
+    if (w < 0.0 && next > 0.0) {  // the slope has a kink at zero: stop there
+      step = std::min(step, path_to_zero(w));
+      next = 0.0;
+    }
+    w = next;
+    left -= step;
+  }
+  return w;
+}
+
+double BoucWen::substep(double w) const noexcept {
+  const double n = parameters_.n;
+  const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / kSubstepsPerLength);
+  const double share = (w < 0.0 ? std::abs(unloading_) : 1.0) * std::pow(largest, n - 1.0);
+  // n * share is the derivative of the slope; its own derivatives grow n times each, so that a
+  // small share still counts with the fifth root.
+  const double change = n * (share > 1.0 ? share : std::pow(share, 0.2));
+  const double step = 1.0 / (kSubstepsPerLength * std::max(1.0, change));
+  return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), kFirstSubstep)) : step;
+}
+
+double BoucWen::runge_kutta_step(double w, double path) const noexcept {
+  const double k1 = slope(w);
+  const double k2 = slope(w + 0.5 * path * k1);
+  const double k3 = slope(w + 0.5 * path * k2);
+  const double k4 = slope(w + path * k3);
+  return w + path / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+}
+
+/// ds = dw / slope(w) from w < 0 to 0, by Simpson's rule; at most one substep away.
+double BoucWen::path_to_zero(double w) const noexcept {
+  return -w / 6.0 * (1.0 / slope(w) + 4.0 / slope(0.5 * w) + 1.0);
+}
+
+}  // namespace hybridtest

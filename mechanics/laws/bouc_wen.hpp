@@ -1,0 +1,60 @@
+#pragma once
+
+#include "mechanics/laws/law.hpp"
+
+namespace hybridtest {
+
+/// Smooth hysteresis of Bouc (1967) and Wen (J. Eng. Mech. Div. ASCE 102, 1976):
+///
+///     F = alpha k x + (1 - alpha) k z
+///     dz = (Ao - (gamma + beta sign(z dx)) |z|^n) dx
+///
+/// as BoucWen of OpenSees without degradation. Rate-independent: z depends on the path of x
+/// alone, and between two exchanges x is taken to move one way. The differential equation is
+/// integrated along that way to about 1e-9 of the ultimate z, whatever the length of the
+/// step, so that results do not change with the step as those of a one-step rule do.
+class BoucWen final : public Law {
+ public:
+  struct Parameters {
+    double stiffness_n_per_m = 0.0;  // [N/m] k, positive
+    double alpha = 0.0;              // [-] share of the elastic spring, 0 to 1
+    double n = 1.0;                  // [-] 1 to 100; the larger, the sharper the yielding
+    double gamma_per_m = 0.0;        // [1/m^n] above -beta
+    double beta_per_m = 0.0;         // [1/m^n] not negative
+    double ao = 1.0;                 // [-] positive
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  explicit BoucWen(const Parameters& parameters);
+
+  [[nodiscard]] double trial(double displacement_m, double velocity_m_per_s) noexcept override;
+  void commit() noexcept override { committed_ = trial_; }
+  void revert() noexcept override { trial_ = committed_; }
+  void reset() noexcept override { committed_ = trial_ = State{}; }
+  [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override;
+
+  /// Limit of |z| under growing displacement: (Ao / (beta + gamma))^(1/n) [m].
+  [[nodiscard]] double ultimate_m() const noexcept { return ultimate_m_; }
+
+ private:
+  struct State {
+    double displacement_m = 0.0;
+    double hysteretic = 0.0;  // z over ultimate_m()
+  };
+
+  /// Slope of w = z / ultimate_m() along the path, w counted positive in the direction of motion.
+  [[nodiscard]] double slope(double w) const noexcept;
+  [[nodiscard]] double carried_along(double w, double path) const noexcept;
+  [[nodiscard]] double substep(double w) const noexcept;
+  [[nodiscard]] double runge_kutta_step(double w, double path) const noexcept;
+  [[nodiscard]] double path_to_zero(double w) const noexcept;
+
+  Parameters parameters_;
+  double ultimate_m_;
+  double unloading_;          // (gamma - beta) / (gamma + beta)
+  bool is_singular_at_zero_;  // high derivatives of |z|^n
+  State committed_;
+  State trial_;
+};
+
+}  // namespace hybridtest

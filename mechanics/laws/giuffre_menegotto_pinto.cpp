@@ -1,0 +1,76 @@
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parameters/checked_parameter.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr Range kFromZeroToBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
+constexpr Range kCurvature{.low = 0.0, .high = 100.0, .low_open = true};
+
+}  // namespace
+
+GiuffreMenegottoPinto::GiuffreMenegottoPinto(const Parameters& parameters) : parameters_{parameters} {
+  static_cast<void>(checked("stiffness_n_per_m", parameters.stiffness_n_per_m, kPositive));
+  static_cast<void>(checked("yield_force_n", parameters.yield_force_n, kPositive));
+  static_cast<void>(checked("hardening_ratio", parameters.hardening_ratio, kFromZeroToBelowOne));
+  static_cast<void>(checked("r0", parameters.r0, kCurvature));
+  static_cast<void>(checked("cr1", parameters.cr1, kFromZeroToBelowOne));
+  static_cast<void>(checked("cr2", parameters.cr2, kPositive));
+  yield_displacement_m_ = parameters.yield_force_n / parameters.stiffness_n_per_m;
+  reset();
+}
+
+GiuffreMenegottoPinto::State GiuffreMenegottoPinto::virgin() const noexcept {
+  State state;
+  state.highest_reversal_m = yield_displacement_m_;
+  state.lowest_reversal_m = -yield_displacement_m_;
+  return state;
+}
+
+double GiuffreMenegottoPinto::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
+  const double increment_m = displacement_m - committed_.displacement_m;
+  State next = committed_;
+  if (increment_m > 0.0 && committed_.branch != Branch::rising) begin_branch(next, Branch::rising);
+  if (increment_m < 0.0 && committed_.branch != Branch::falling) begin_branch(next, Branch::falling);
+  next.force_n = force_n(next, displacement_m);
+  next.displacement_m = displacement_m;
+  trial_ = next;
+  return next.force_n;
+}
+
+/// The reversal is where `state` stands; the virgin state counts as one.
+void GiuffreMenegottoPinto::begin_branch(State& state, Branch branch) const noexcept {
+  const double hardening_ratio = parameters_.hardening_ratio;
+  const double side = branch == Branch::rising ? 1.0 : -1.0;
+  state.highest_reversal_m = std::max(state.highest_reversal_m, state.displacement_m);
+  state.lowest_reversal_m = std::min(state.lowest_reversal_m, state.displacement_m);
+  state.branch = branch;
+  state.reversal_displacement_m = state.displacement_m;
+  state.reversal_force_n = state.force_n;
+  state.corner_displacement_m =
+      side * yield_displacement_m_ +
+      (state.displacement_m - state.force_n / parameters_.stiffness_n_per_m) / (1.0 - hardening_ratio);
+  const double extreme_m = branch == Branch::rising ? state.highest_reversal_m : state.lowest_reversal_m;
+  const double xi = std::abs(extreme_m - state.corner_displacement_m) / yield_displacement_m_;
+  state.curvature = parameters_.r0 * (1.0 - parameters_.cr1 * xi / (parameters_.cr2 + xi));
+}
+
+double GiuffreMenegottoPinto::force_n(const State& state, double displacement_m) const noexcept {
+  const double from_reversal_m = displacement_m - state.reversal_displacement_m;
+  // Also keeps 0 / 0 out where a reversal falls on the asymptote itself.
+  if (from_reversal_m == 0.0) return state.reversal_force_n;
+  const double ratio = std::abs(from_reversal_m / (state.corner_displacement_m - state.reversal_displacement_m));
+  // (1 + r^R)^(1/R), which must not overflow where r^R does.
+  const double curvature = state.curvature;
+  const double rounding = ratio <= 1.0 ? std::pow(1.0 + std::pow(ratio, curvature), 1.0 / curvature)
+                                       : ratio * std::pow(1.0 + std::pow(ratio, -curvature), 1.0 / curvature);
+  const double hardening_ratio = parameters_.hardening_ratio;
+  return state.reversal_force_n +
+         parameters_.stiffness_n_per_m * from_reversal_m * (hardening_ratio + (1.0 - hardening_ratio) / rounding);
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "mechanics/laws/law.hpp"
+
+namespace hybridtest {
+
+/// Steel spring with a curved transition between the elastic and the hardening asymptote
+/// (Menegotto and Pinto, IABSE Symposium Lisbon, 1973) after Filippou, Popov and Bertero
+/// (EERC 83-19, 1983), without isotropic hardening. From the last reversal (xr, Fr) on
+///
+///     F = Fr + k (x - xr) (b + (1 - b) / (1 + |r|^R)^(1/R)),   r = (x - xr) / (x0 - xr)
+///     R = R0 (1 - cR1 xi / (cR2 + xi)),                        xi = |xp - x0| / xy
+///
+/// where x0 is the displacement at which the line of stiffness k through the reversal meets the
+/// hardening asymptote on the side it is heading for, xp the extreme displacement of an earlier
+/// reversal on that side (at least xy), and xy = Fy / k. Branches change at reversals of
+/// the displacement against the committed one, as in Steel02 of OpenSees.
+///
+/// A known property of the law: after a small unloading it reloads on a new curve and can exceed
+/// the curve it left.
+class GiuffreMenegottoPinto final : public Law {
+ public:
+  struct Parameters {
+    double stiffness_n_per_m = 0.0;  // [N/m] positive
+    double yield_force_n = 0.0;      // [N] positive
+    double hardening_ratio = 0.0;    // [-] b, 0 to less than 1
+    double r0 = 20.0;                // [-] R0 of the first branch, positive, at most 100
+    double cr1 = 0.925;              // [-] 0 to less than 1
+    double cr2 = 0.15;               // [-] positive
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  explicit GiuffreMenegottoPinto(const Parameters& parameters);
+
+  [[nodiscard]] double trial(double displacement_m, double velocity_m_per_s) noexcept override;
+  void commit() noexcept override { committed_ = trial_; }
+  void revert() noexcept override { trial_ = committed_; }
+  void reset() noexcept override { committed_ = trial_ = virgin(); }
+  [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override { return parameters_.stiffness_n_per_m; }
+
+ private:
+  enum class Branch { virgin, rising, falling };
+
+  struct State {
+    Branch branch = Branch::virgin;
+    double displacement_m = 0.0;
+    double force_n = 0.0;
+    double reversal_displacement_m = 0.0;
+    double reversal_force_n = 0.0;
+    double corner_displacement_m = 0.0;  // x0
+    double curvature = 1.0;              // R
+    double highest_reversal_m = 0.0;
+    double lowest_reversal_m = 0.0;
+  };
+
+  [[nodiscard]] State virgin() const noexcept;
+  void begin_branch(State& state, Branch branch) const noexcept;
+  [[nodiscard]] double force_n(const State& state, double displacement_m) const noexcept;
+
+  Parameters parameters_;
+  double yield_displacement_m_;
+  State committed_;
+  State trial_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "mechanics/laws/presliding_element.hpp"
+#include "plant/effects/effect_type.hpp"
+#include "plant/effects/parameter_limits.hpp"
+
+namespace hybridtest {
+
+/// Dry friction that falls with the velocity from its static value (Stribeck, 1902; Armstrong-Helouvry,
+/// Dupont and Canudas de Wit, Automatica 30, 1994), elastoplastic before it slides as
+/// coulomb_friction.
+class StribeckFriction final : public Effect {
+ public:
+  static constexpr std::string_view kEquation = "F = F0 + Fc z, dz = dx / d, |z| <= 1 + r exp(-(v / vs)^2)";
+  static constexpr std::string_view kSource = "Armstrong-Helouvry et al. (1994)";
+  static constexpr std::array kParameters{EffectParameter{.name = "friction_force_n",
+                                                          .unit = "N",
+                                                          .what = "Fc, at high velocity",
+                                                          .low = 0.0,
+                                                          .high = kUnbounded,
+                                                          .scale = ParameterScale::force_n,
+                                                          .search_low = 0.0,
+                                                          .search_high = 1.5,
+                                                          .is_linear = true},
+                                          EffectParameter{.name = "static_excess_ratio",
+                                                          .unit = "",
+                                                          .what = "r, static friction over Fc less 1",
+                                                          .low = 0.0,
+                                                          .high = 100.0,
+                                                          .search_low = 0.05,
+                                                          .search_high = 3.0,
+                                                          .neutral = kNoNeutral},
+                                          EffectParameter{.name = "stribeck_velocity_m_per_s",
+                                                          .unit = "m/s",
+                                                          .what = "vs",
+                                                          .low = 1e-9,
+                                                          .high = kUnbounded,
+                                                          .scale = ParameterScale::velocity_m_per_s,
+                                                          .search_low = 0.01,
+                                                          .search_high = 0.7,
+                                                          .neutral = kNoNeutral},
+                                          EffectParameter{.name = "presliding_displacement_m",
+                                                          .unit = "m",
+                                                          .what = "d, until it slides with Fc",
+                                                          .low = 1e-12,
+                                                          .high = kUnbounded,
+                                                          .scale = ParameterScale::displacement_m,
+                                                          .search_low = 1e-4,
+                                                          .search_high = 0.5,
+                                                          .neutral = kNoNeutral,
+                                                          .fallback = 1e-5}};
+
+  StribeckFriction(std::span<const double> values, double /*sample_period_s*/)
+      : friction_force_n_{values[0]},
+        static_excess_ratio_{values[1]},
+        velocity_m_per_s_{values[2]},
+        element_{values[3]} {}
+  void after(const StageSample& sample, const Motion& motion, double& force_n) noexcept override {
+    const double speed = sample.motion.velocity_m_per_s / velocity_m_per_s_;
+    const double limit = 1.0 + static_excess_ratio_ * std::exp(-speed * speed);
+    force_n += friction_force_n_ * element_.share(motion.displacement_m, limit);
+  }
+  void reset() noexcept override { element_.reset(); }
+
+ private:
+  double friction_force_n_;
+  double static_excess_ratio_;
+  double velocity_m_per_s_;
+  PreslidingElement element_;
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,57 @@
+#include "plant/site_model.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/config_error.hpp"
+#include "core/text/scalar.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+const EffectType* setting_mismatch() { return find_effect(EffectInterface::compensator, "setting_mismatch"); }
+
+}  // namespace
+
+StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s) {
+  const EffectType* const in_setting = model.compensator_delay.most_s > 0.0 ? setting_mismatch() : nullptr;
+  std::vector<std::unique_ptr<Effect>> made;
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type->interface == interface && effect.type->make != nullptr && effect.type != in_setting) {
+      made.push_back(effect.type->make(effect.values, sample_period_s));
+    }
+  }
+  return StageEffects{std::move(made)};
+}
+
+double delay_change_s(const SiteModel& model) {
+  const EffectType* const delay = find_effect(EffectInterface::transfer_system, "delay");
+  double change_s = 0.0;
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type == delay) change_s += std::min(0.0, effect.values[0]);
+  }
+  if (change_s < -model.removable_delay_s) {
+    throw ConfigError{"the effect delay takes " + written_number(-change_s) + " s off a transfer system that has " +
+                      written_number(model.removable_delay_s) + " s of delay; expected no more than it has"};
+  }
+  return change_s;
+}
+
+double setting_change_s(const SiteModel& model) {
+  const DelaySetting& setting = model.compensator_delay;
+  if (setting.most_s <= 0.0) return 0.0;
+  double change_s = 0.0;
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type == setting_mismatch()) change_s += effect.values[0];
+  }
+  if (setting.set_s + change_s < 0.0 || setting.set_s + change_s > setting.most_s) {
+    throw ConfigError{"the effect setting_mismatch sets the compensator's delay to " +
+                      written_number(setting.set_s + change_s) + " s; expected from 0 to " +
+                      written_number(setting.most_s) + " s"};
+  }
+  return change_s;
+}
+
+}  // namespace hybridtest

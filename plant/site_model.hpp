@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "compensation/compensator.hpp"
+#include "compensation/delay_setting.hpp"
+#include "mechanics/laws/law.hpp"
+#include "plant/effects/effect_type.hpp"
+#include "plant/effects/stage.hpp"
+#include "plant/transfer_systems/transfer_system.hpp"
+
+namespace hybridtest {
+
+/// One effect of the library with its parameters.
+struct EffectSetting {
+  const EffectType* type = nullptr;
+  std::vector<double> values;  // one per parameter, in their order
+};
+
+struct SensorNoise {
+  double displacement_noise_m = 0.0;  // [m] standard deviation, not negative
+  double force_noise_n = 0.0;         // [N] standard deviation, not negative
+  std::uint64_t seed = 0;
+  std::uint64_t first_stream = 0;  // two streams per actuator from here on: displacement, force
+};
+
+/// What is known of one degree of freedom of a site: the value that a scenario's simulated rig and the
+/// diagnosis of a recording share.
+struct SiteModel {
+  /// @param delay_change_s   added to the model's own delay, from -removable_delay_s to 0.
+  std::function<std::unique_ptr<TransferSystem>(double sample_period_s, double delay_change_s)> make_transfer_system;
+  double removable_delay_s = 0.0;                  // the transfer system's own pure delay
+  std::function<std::unique_ptr<Law>()> make_law;  // empty: the specimen has no force
+  /// @param delay_change_s   added to its setting, which stays between 0 and the most it may be. Empty: none.
+  std::function<std::unique_ptr<Compensator>(double sample_period_s, double delay_change_s)> make_compensator;
+  DelaySetting compensator_delay = {};
+  SensorNoise noise;
+  std::vector<EffectSetting> effects;
+};
+
+/// The effects of `model` at one interface, in their order.
+/// @throws ConfigError as the effects.
+[[nodiscard]] StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s);
+
+/// Sum of what the `delay` effects of the transfer system take off its own delay; zero or negative.
+/// @throws ConfigError when that is more than there is.
+[[nodiscard]] double delay_change_s(const SiteModel& model);
+
+/// Sum of what the `setting_mismatch` effects change a compensator's setting by; 0 where it has none, and the effects
+/// work on its command.
+/// @throws ConfigError when that is more than the setting allows.
+[[nodiscard]] double setting_change_s(const SiteModel& model);
+
+}  // namespace hybridtest

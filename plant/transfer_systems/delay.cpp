@@ -1,0 +1,10 @@
+#include "plant/transfer_systems/delay.hpp"
+
+namespace hybridtest {
+
+double Delay::step(double command_m) noexcept {
+  line_.push(command_m);
+  return line_.delayed();
+}
+
+}  // namespace hybridtest

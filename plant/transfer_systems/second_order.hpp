@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/time.hpp"
+#include "plant/transfer_systems/delay_line.hpp"
+#include "plant/transfer_systems/transfer_system.hpp"
+
+namespace hybridtest {
+
+/// Servo-hydraulic actuator as second-order system with delay, of unit static gain:
+///
+///     x'' + 2 zeta omega x' + omega^2 x = omega^2 u(t - delay)
+///
+/// under-, critically or overdamped. Exact for a command u that runs straight from sample to
+/// sample: both pieces between samples that a delay of broken sample count leaves are integrated
+/// with their matrix exponentials (Van Loan, IEEE Trans. Automatic Control 23, 1978), which are
+/// made at construction.
+///
+/// At rest, command and displacement are zero one control period before the first step.
+class SecondOrder final : public TransferSystem {
+ public:
+  struct Parameters {
+    double natural_frequency_hz = 0.0;  // [Hz] positive, at most 10 times the control rate
+    double damping_ratio = 0.0;         // [-] positive, at most 10
+    Duration delay{};                   // not negative, at most 100 000 control periods
+  };
+
+  /// @throws ConfigError for values outside these ranges.
+  SecondOrder(const Parameters& parameters, Duration control_period);
+
+  [[nodiscard]] double step(double command_m) noexcept override;
+  void reset() noexcept override;
+
+ private:
+  /// Displacement and velocity over omega, both in m.
+  using State = Eigen::Vector2d;
+
+  /// Carries the state over a piece of time along which the command runs straight.
+  struct Piece {
+    Eigen::Matrix2d transition;
+    Eigen::Vector2d from_begin;  // weight of the command at the begin of the piece
+    Eigen::Vector2d from_end;
+  };
+
+  /// @param angle   omega times the length of the piece.
+  [[nodiscard]] static Piece piece(double angle, double damping_ratio);
+  void advance(const Piece& piece, double begin_m, double end_m) noexcept;
+
+  DelayLine line_;
+  Piece before_corner_;
+  Piece after_corner_;
+  State state_ = State::Zero();
+};
+
+}  // namespace hybridtest

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <thread>
+#include <vector>
+
+#include "core/duration_histogram.hpp"
+#include "core/node.hpp"
+#include "core/real_time_thread.hpp"
+#include "core/records.hpp"
+#include "runtime/executor.hpp"
+
+namespace hybridtest {
+
+/// How well a control loop kept its time.
+struct LoopTiming {
+  DurationHistogram start_lateness;  // from the time of a control period to its start
+  DurationHistogram busy;            // from there to its end
+  std::int64_t overruns = 0;         // control periods that were over when they began
+};
+
+/// The thread of a control loop: absolute deadlines and, when granted, real-time scheduling. It
+/// looks for requests in every control period, and every millisecond while it has none.
+class LoopThread {
+ public:
+  /// Starts it. What it runs, and the clock, outlive it.
+  LoopThread(Node& loop, const ProcessClock& clock, const RealTimeRequest& request, Duration control_period);
+  ~LoopThread();
+  LoopThread(const LoopThread&) = delete;
+  LoopThread& operator=(const LoopThread&) = delete;
+
+  [[nodiscard]] const RealTimeGrant& grant() const noexcept { return grant_; }
+  /// Ends it after the control period that it is in.
+  void stop();
+  /// Once it has been stopped.
+  [[nodiscard]] const LoopTiming& timing() const noexcept { return timing_; }
+
+ private:
+  void run(Node& loop, const ProcessClock& clock, Duration control_period) noexcept;
+
+  LoopTiming timing_;
+  RealTimeGrant grant_;
+  std::atomic<bool> is_stopped_{false};
+  std::thread thread_;
+};
+
+/// Tables of a site whose loop has a thread: `loop_timing`, one row, and `loop_start_lateness`,
+/// one row for each bin of the histogram that holds something.
+[[nodiscard]] std::vector<TableLayout> loop_timing_tables();
+void record_loop_timing(const LoopTiming& timing, const RealTimeRequest& request, const RealTimeGrant& grant,
+                        RowSink& summary, RowSink& histogram);
+
+}  // namespace hybridtest

@@ -1,0 +1,144 @@
+#include "runtime/participant.hpp"
+
+#include <utility>
+
+namespace hybridtest {
+namespace {
+
+/// Requests or reports that can be under way between link and loop: a target a step, and the
+/// few that begin and end a test.
+constexpr std::size_t kLoopQueue = 64;
+
+CoordinatorSettings coordinator_settings(const Scenario& scenario) {
+  CoordinatorSettings settings;
+  settings.test_name = scenario.name;
+  settings.mode = scenario.time.mode;
+  settings.step_s = scenario.time.step_s;
+  settings.duration_s = scenario.time.duration_s;
+  settings.time_scale = scenario.time.time_scale;
+  settings.last_step = scenario.time.last_step;
+  settings.stop_on_recording_failure = scenario.stop_on_recording_failure;
+  settings.discovery_timeout = scenario.timeouts.discovery;
+  settings.arm_timeout = scenario.timeouts.arm;
+  settings.stop_timeout = scenario.timeouts.stop;
+  settings.ground_acceleration_m_per_s2 = scenario.ground_acceleration_m_per_s2;
+  settings.load_per_ground_acceleration_kg = scenario.structure.load_per_ground_acceleration_kg();
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    settings.substructures.push_back({substructure.id, substructure.role, substructure.interface});
+  }
+  return settings;
+}
+
+ControlLoopSettings loop_settings(const Scenario& scenario, const SubstructureScenario& substructure) {
+  ControlLoopSettings settings;
+  settings.mode = scenario.time.mode;
+  settings.dofs = static_cast<int>(substructure.interface.size());
+  settings.periods_per_step = substructure.site.periods_per_step;
+  settings.time_scale = scenario.time.time_scale;
+  settings.step_s = scenario.time.step_s * settings.time_scale;
+  const LoopScenario& loop = substructure.site.loop;
+  settings.limits = loop.limits;
+  settings.rules = loop.rules;
+  settings.tracking_window_s = loop.tracking_window_s;
+  settings.trajectory = loop.trajectory;
+  settings.ramp_in_s = loop.ramp_in_s;
+  settings.captures_zero_offsets = loop.captures_zero_offsets;
+  settings.returns_at_end = loop.returns_at_end;
+  settings.return_time_s = loop.return_time_s;
+  return settings;
+}
+
+}  // namespace
+
+Participant::Participant(const Scenario& scenario, std::string_view id, Role role,
+                         const ParticipantSurroundings& surroundings)
+    : status_in_{surroundings.transport.status_inbox()},
+      status_out_{surroundings.transport.status_outbox()},
+      control_in_{surroundings.transport.control_inbox()},
+      presence_{Identity{id, role, surroundings.incarnation, scenario.digest}, scenario.timeouts.liveliness_lease,
+                *status_in_, *status_out_, surroundings.events} {}
+
+CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const ParticipantSurroundings& surroundings)
+    : Participant{scenario, kCoordinatorId, Role::coordinator, surroundings},
+      announcements_{surroundings.transport.announcement_outbox()},
+      control_out_{surroundings.transport.control_outbox()},
+      measurements_{surroundings.transport.measurement_inbox()},
+      commands_{surroundings.transport.command_outbox(static_cast<std::uint16_t>(scenario.substructures.size()))} {
+  coordinator_ = std::make_unique<Coordinator>(
+      coordinator_settings(scenario), scenario.make_integrator(), presence_,
+      CoordinatorPorts{*announcements_, *control_in_, *control_out_, *measurements_, *commands_},
+      CoordinatorRecord{surroundings.sink("steps"), surroundings.sink("exchanges")});
+}
+
+std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario) {
+  return {Coordinator::steps_layout(scenario.dofs), Coordinator::exchanges_layout()};
+}
+
+NumericalParticipant::NumericalParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
+                                           const ParticipantSurroundings& surroundings)
+    : Participant{scenario, substructure.id, Role::numerical_substructure, surroundings},
+      announcements_{surroundings.transport.announcement_inbox()},
+      commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
+      measurements_{surroundings.transport.measurement_outbox()} {
+  numerical_ =
+      std::make_unique<NumericalNode>(scenario.index_of(substructure), substructure.make_model(), presence_,
+                                      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
+                                      *commands_, *measurements_, surroundings.sink("steps"));
+}
+
+std::vector<TableLayout> NumericalParticipant::tables(const SubstructureScenario& substructure) {
+  return {NumericalNode::steps_layout(substructure.interface_names)};
+}
+
+SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
+                                 const ParticipantSurroundings& surroundings, bool runs_loop)
+    : Participant{scenario, substructure.id, Role::experimental_site, surroundings},
+      announcements_{surroundings.transport.announcement_inbox()},
+      commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
+      measurements_{surroundings.transport.measurement_outbox()},
+      signal_blocks_{surroundings.transport.signal_outbox()},
+      requests_{kLoopQueue},
+      reports_{kLoopQueue},
+      signals_{1024},
+      waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()},
+      node_{runs_loop} {
+  const ControlLoopSettings settings = loop_settings(scenario, substructure);
+  const double control_period_s = settings.step_s / settings.periods_per_step;
+  rig_ = substructure.make_rig(control_period_s);
+  if (!substructure.site.rig_tables.empty()) rig_->record_to(surroundings.sink);
+  rig_->connect();
+  // A twentieth of the displacement limit: smaller motion does not scale the energy error.
+  EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
+  loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
+                                        std::move(energy_error), ControlLoopPorts{requests_, waking_reports_, signals_},
+                                        surroundings.sink("control"));
+  link_ = std::make_unique<SiteLink>(
+      scenario.index_of(substructure), settings.dofs, presence_,
+      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
+      SiteLinkPorts{*commands_, *measurements_, *signal_blocks_, requests_, reports_, signals_},
+      surroundings.sink("steps"));
+  node_.set(*link_, *loop_);
+}
+
+std::vector<TableLayout> SiteParticipant::tables(const SubstructureScenario& substructure) {
+  const int dofs = static_cast<int>(substructure.interface.size());
+  std::vector<TableLayout> tables{SiteLink::steps_layout(dofs), ControlLoop::control_layout(dofs)};
+  tables.insert(tables.end(), substructure.site.rig_tables.begin(), substructure.site.rig_tables.end());
+  return tables;
+}
+
+std::unique_ptr<Participant> make_substructure_participant(const Scenario& scenario,
+                                                           const SubstructureScenario& substructure,
+                                                           const ParticipantSurroundings& surroundings) {
+  if (substructure.role == Role::numerical_substructure) {
+    return std::make_unique<NumericalParticipant>(scenario, substructure, surroundings);
+  }
+  return std::make_unique<SiteParticipant>(scenario, substructure, surroundings, true);
+}
+
+std::vector<TableLayout> substructure_tables(const SubstructureScenario& substructure) {
+  return substructure.role == Role::numerical_substructure ? NumericalParticipant::tables(substructure)
+                                                           : SiteParticipant::tables(substructure);
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "coordinator/coordinator.hpp"
+#include "core/exit_code.hpp"
+#include "core/node.hpp"
+#include "core/presence.hpp"
+#include "core/records.hpp"
+#include "core/ring_port.hpp"
+#include "experimental_site/control_loop.hpp"
+#include "experimental_site/site_link.hpp"
+#include "numerical_substructure/numerical_node.hpp"
+#include "scenario/scenario.hpp"
+#include "transport/transport.hpp"
+
+namespace hybridtest {
+
+/// What a participant is given by whoever runs it, live or simulated. Outlives the participant.
+struct ParticipantSurroundings {
+  Transport& transport;
+  Outbox<Event>& events;
+  std::function<RowSink&(std::string_view table)> sink;
+  Incarnation incarnation = 0;
+};
+
+/// One participant of a test, wired: its node, and the ports the node uses.
+class Participant {
+ public:
+  virtual ~Participant() = default;
+
+  [[nodiscard]] virtual Node& node() noexcept = 0;
+  [[nodiscard]] virtual bool is_done() const noexcept = 0;
+  [[nodiscard]] virtual StopReason stop_reason() const noexcept = 0;
+  virtual void request_stop(StopReason reason) noexcept = 0;
+
+  [[nodiscard]] Presence& presence() noexcept { return presence_; }
+
+ protected:
+  Participant(const Scenario& scenario, std::string_view id, Role role, const ParticipantSurroundings& surroundings);
+
+  std::unique_ptr<Inbox<ParticipantStatus>> status_in_;
+  std::unique_ptr<Outbox<ParticipantStatus>> status_out_;
+  std::unique_ptr<Inbox<TestControl>> control_in_;
+  Presence presence_;
+};
+
+class CoordinatorParticipant final : public Participant {
+ public:
+  CoordinatorParticipant(const Scenario& scenario, const ParticipantSurroundings& surroundings);
+
+  [[nodiscard]] Node& node() noexcept override { return *coordinator_; }
+  [[nodiscard]] bool is_done() const noexcept override { return coordinator_->is_done(); }
+  [[nodiscard]] StopReason stop_reason() const noexcept override { return coordinator_->report().reason; }
+  void request_stop(StopReason reason) noexcept override { coordinator_->request_stop(reason); }
+  [[nodiscard]] CoordinatorReport report() const noexcept { return coordinator_->report(); }
+
+  [[nodiscard]] static std::vector<TableLayout> tables(const Scenario& scenario);
+
+ private:
+  std::unique_ptr<Outbox<TestAnnouncement>> announcements_;
+  std::unique_ptr<Outbox<TestControl>> control_out_;
+  std::unique_ptr<Inbox<ForceMeasurement>> measurements_;
+  std::unique_ptr<Outbox<DisplacementCommand>> commands_;
+  std::unique_ptr<Coordinator> coordinator_;
+};
+
+class NumericalParticipant final : public Participant {
+ public:
+  NumericalParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
+                       const ParticipantSurroundings& surroundings);
+
+  [[nodiscard]] Node& node() noexcept override { return *numerical_; }
+  [[nodiscard]] bool is_done() const noexcept override { return numerical_->is_done(); }
+  [[nodiscard]] StopReason stop_reason() const noexcept override { return numerical_->stop_reason(); }
+  void request_stop(StopReason reason) noexcept override { numerical_->request_stop(reason); }
+
+  [[nodiscard]] static std::vector<TableLayout> tables(const SubstructureScenario& substructure);
+
+ private:
+  std::unique_ptr<Inbox<TestAnnouncement>> announcements_;
+  std::unique_ptr<Inbox<DisplacementCommand>> commands_;
+  std::unique_ptr<Outbox<ForceMeasurement>> measurements_;
+  std::unique_ptr<NumericalNode> numerical_;
+};
+
+class SiteParticipant final : public Participant {
+ public:
+  /// Connects the rig. @throws whatever Rig::connect() throws.
+  /// @param runs_loop   node() runs the control loop as well; else it has a thread of its own,
+  ///                    which looks for requests by itself.
+  SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
+                  const ParticipantSurroundings& surroundings, bool runs_loop);
+
+  /// Link and loop on one thread, or the link alone.
+  [[nodiscard]] Node& node() noexcept override { return node_; }
+  /// For its own thread.
+  [[nodiscard]] Node& control_loop() noexcept { return *loop_; }
+  [[nodiscard]] Rig& rig() noexcept { return *rig_; }
+  [[nodiscard]] bool is_done() const noexcept override { return link_->is_done(); }
+  [[nodiscard]] StopReason stop_reason() const noexcept override { return link_->stop_reason(); }
+  void request_stop(StopReason reason) noexcept override { link_->request_stop(reason); }
+
+  [[nodiscard]] static std::vector<TableLayout> tables(const SubstructureScenario& substructure);
+
+ private:
+  /// Passes on and wakes the thread at the other end, if there is another.
+  template <class Message>
+  class WakingOutbox final : public Outbox<Message> {
+   public:
+    WakingOutbox(Outbox<Message>& target, Waker* waker) noexcept : target_{target}, waker_{waker} {}
+    bool send(const Message& message) noexcept override {
+      const bool accepted = target_.send(message);
+      if (waker_ != nullptr) waker_->signal();
+      return accepted;
+    }
+
+   private:
+    Outbox<Message>& target_;
+    Waker* waker_;
+  };
+
+  /// The loop's turn inside node(); nothing when it has a thread of its own.
+  class LinkAndLoop final : public Node {
+   public:
+    explicit LinkAndLoop(bool runs_loop) noexcept : runs_loop_{runs_loop} {}
+    void set(SiteLink& link, Node& loop) noexcept {
+      link_ = &link;
+      loop_ = &loop;
+    }
+    [[nodiscard]] Instant advance(Instant now) noexcept override {
+      return runs_loop_ ? SiteNode{*link_, *loop_}.advance(now) : link_->advance(now);
+    }
+
+   private:
+    bool runs_loop_;
+    SiteLink* link_ = nullptr;
+    Node* loop_ = nullptr;
+  };
+
+  std::unique_ptr<Inbox<TestAnnouncement>> announcements_;
+  std::unique_ptr<Inbox<DisplacementCommand>> commands_;
+  std::unique_ptr<Outbox<ForceMeasurement>> measurements_;
+  std::unique_ptr<Outbox<SignalBlock>> signal_blocks_;
+  RingPort<LoopRequest> requests_;
+  RingPort<LoopReport> reports_;
+  RingPort<SignalSample> signals_;
+  WakingOutbox<LoopReport> waking_reports_;
+  std::unique_ptr<Rig> rig_;
+  std::unique_ptr<ControlLoop> loop_;
+  std::unique_ptr<SiteLink> link_;
+  LinkAndLoop node_;
+};
+
+/// The participant that serves a substructure, whichever its role.
+[[nodiscard]] std::unique_ptr<Participant> make_substructure_participant(const Scenario& scenario,
+                                                                         const SubstructureScenario& substructure,
+                                                                         const ParticipantSurroundings& surroundings);
+[[nodiscard]] std::vector<TableLayout> substructure_tables(const SubstructureScenario& substructure);
+
+}  // namespace hybridtest

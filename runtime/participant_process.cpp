@@ -1,0 +1,263 @@
+#include "runtime/participant_process.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <iterator>
+#include <memory>
+
+#include "core/assert.hpp"
+#include "core/config_error.hpp"
+#include "recording/recorder.hpp"
+#include "recording/recorder_thread.hpp"
+#include "runtime/event_log.hpp"
+#include "runtime/executor.hpp"
+#include "runtime/incarnation.hpp"
+#include "runtime/loop_thread.hpp"
+#include "runtime/network_options.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/run_directory.hpp"
+#include "transport/fast_dds/fast_dds_transport.hpp"
+
+namespace hybridtest {
+namespace {
+
+/// Rows of control-rate tables that may wait for the disk: two minutes at 1 kHz.
+constexpr std::size_t kRingRows = 1U << 17U;
+
+/// Everything of a process but its node.
+class ProcessSurroundings {
+ public:
+  ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
+                      const std::vector<TableLayout>& tables)
+      : incarnation_{draw_incarnation()},
+        transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
+        network_events_{transport_->event_outbox()},
+        recorder_{run_file(options.run_directory, options.id),
+                  run_file_header(scenario, options.id, role, incarnation_), recorded(tables)},
+        event_log_{*network_events_, recorder_.events(), options.run_directory, true} {}
+
+  [[nodiscard]] ParticipantSurroundings surroundings() {
+    return {*transport_, event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
+            incarnation_};
+  }
+  [[nodiscard]] Transport& transport() { return *transport_; }
+  [[nodiscard]] Recorder& recorder() { return recorder_; }
+  [[nodiscard]] EventLog& event_log() { return event_log_; }
+
+ private:
+  static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
+    std::vector<RecordedTable> result;
+    for (const TableLayout& table : tables) result.push_back({table, kRingRows});
+    return result;
+  }
+
+  Incarnation incarnation_;
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<Outbox<Event>> network_events_;
+  Recorder recorder_;
+  EventLog event_log_;
+};
+
+/// Between two runs of the node: passes on stop requests, writes events, watches the recording.
+class Housekeeping {
+ public:
+  Housekeeping(Participant& participant, ProcessSurroundings& process, bool may_wait)
+      : participant_{participant}, process_{process}, may_wait_{may_wait} {}
+
+  void operator()(Instant now) {
+    if (stop_was_requested() && !stop_passed_on_) {
+      stop_passed_on_ = true;
+      participant_.request_stop(StopReason::interrupted);
+    }
+    watch_recording(now);
+    process_.event_log().write();
+    // Lockstep has no deadlines: rather than lose records it waits for the disk.
+    if (may_wait_) wait_while([&] { return process_.recorder().should_drain() && !process_.recorder().failed(); });
+  }
+
+ private:
+  void watch_recording(Instant now) {
+    if (!reported_failure_ && process_.recorder().failed()) {
+      reported_failure_ = true;
+      participant_.presence().raise(FaultFlags::recording_failed);
+      participant_.presence().report(now, Severity::fault, EventCode::recording_failed);
+    }
+    if (!reported_drop_ && process_.recorder().dropped() > 0) {
+      reported_drop_ = true;
+      participant_.presence().raise(FaultFlags::records_dropped);
+      participant_.presence().report(now, Severity::fault, EventCode::records_dropped, {},
+                                     {static_cast<double>(process_.recorder().dropped()), 0.0});
+    }
+  }
+
+  Participant& participant_;
+  ProcessSurroundings& process_;
+  bool may_wait_;
+  bool stop_passed_on_ = false;
+  bool reported_failure_ = false;
+  bool reported_drop_ = false;
+};
+
+/// Of the process, once its records are closed: a part taken to the end counts as data only with all its records.
+int exit_code_of(const Participant& participant, const Recorder& recorder) {
+  const int exit_code = exit_code_for(participant.stop_reason());
+  const bool has_holes = recorder.failed() || recorder.dropped() > 0;
+  return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
+}
+
+/// @param at_the_end   the last word to the recording, before it is closed.
+void run_to_the_end(
+    Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, CouplingMode mode,
+    const std::function<void()>& at_the_end = [] {}) {
+  RecorderThread recording{process.recorder()};
+  Housekeeping housekeeping{participant, process, mode == CouplingMode::lockstep};
+  run_until(
+      participant.node(), process.transport().waker(), clock, [&] { return participant.is_done(); },
+      [&](Instant now) { housekeeping(now); });
+  process.event_log().write();
+  at_the_end();
+}
+
+int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
+  tables.push_back(test_layout());
+  ProcessSurroundings process{scenario, options, Role::coordinator, tables};
+  CoordinatorParticipant participant{scenario, process.surroundings()};
+  stop_on_signals(process.transport().waker());
+  run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
+    const CoordinatorReport report = participant.report();
+    process.recorder().sink("test").append(test_row(scenario, report, exit_code_for(report.reason)));
+  });
+  return exit_code_of(participant, process.recorder());
+}
+
+int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
+                  const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure)};
+  NumericalParticipant participant{scenario, substructure, process.surroundings()};
+  stop_on_signals(process.transport().waker());
+  run_to_the_end(participant, process, clock, scenario.time.mode);
+  return exit_code_of(participant, process.recorder());
+}
+
+void report_grant(Presence& presence, Instant now, const RealTimeRequest& request, const RealTimeGrant& grant) {
+  const auto report = [&](const char* what, int error, double asked_for) {
+    if (error == 0) {
+      presence.report(now, Severity::information, EventCode::real_time_granted, what, {asked_for, 0.0});
+    } else {
+      presence.report(now, Severity::warning, EventCode::real_time_refused, what,
+                      {static_cast<double>(error), asked_for});
+    }
+  };
+  report("scheduling", grant.scheduling_error, request.priority);
+  if (grant.affinity_error) report("affinity", *grant.affinity_error, *request.cpu);
+  report("memory", grant.memory_error, 0.0);
+}
+
+/// The link on this thread, the control loop on its own.
+void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
+                               const Scenario& scenario, const SubstructureScenario& substructure) {
+  const RealTimeRequest& request = substructure.site.real_time;
+  LoopThread loop{participant.control_loop(), clock, request,
+                  from_seconds(scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step)};
+  report_grant(participant.presence(), clock.now(), request, loop.grant());
+  process.event_log().write();
+  if (!loop.grant().is_complete() && !request.allow_degraded) {
+    throw ConfigError{substructure.id +
+                      ": not all of real_time was granted, see the lines above; "
+                      "real_time.allow_degraded: true starts all the same"};
+  }
+  run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
+    loop.stop();
+    record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
+                       process.recorder().sink("loop_start_lateness"));
+  });
+}
+
+int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
+             const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  const bool has_loop_thread = scenario.time.mode != CouplingMode::lockstep;
+  std::vector<TableLayout> tables = substructure_tables(substructure);
+  if (has_loop_thread) std::ranges::move(loop_timing_tables(), std::back_inserter(tables));
+  ProcessSurroundings process{scenario, options, substructure.role, tables};
+  SiteParticipant participant{scenario, substructure, process.surroundings(), !has_loop_thread};
+  set_assert_action([](void* rig) noexcept { static_cast<Rig*>(rig)->stop_motion(); }, &participant.rig());
+  stop_on_signals(process.transport().waker());
+  if (has_loop_thread) {
+    run_site_with_loop_thread(participant, process, clock, scenario, substructure);
+  } else {
+    run_to_the_end(participant, process, clock, scenario.time.mode);
+  }
+  set_assert_action(nullptr, nullptr);
+  return exit_code_of(participant, process.recorder());
+}
+
+int run_role(const Scenario& scenario, const ParticipantProcessOptions& options, Role role, const ProcessClock& clock) {
+  if (role == Role::coordinator) return run_coordinator(scenario, options, clock);
+  const SubstructureScenario* substructure = scenario.find(options.id);
+  if (substructure == nullptr) {
+    std::string known;
+    for (const auto& other : scenario.substructures) known += (known.empty() ? "" : ", ") + other.id;
+    throw ConfigError{"--id " + options.id + ": the scenario has no such substructure; it has " + known};
+  }
+  if (substructure->role != role) {
+    throw ConfigError{"--id " + options.id + ": this substructure is served by the program " +
+                      std::string{name(substructure->role)}};
+  }
+  return role == Role::experimental_site ? run_site(scenario, *substructure, options, clock)
+                                         : run_numerical(scenario, *substructure, options, clock);
+}
+
+}  // namespace
+
+int run_participant_process(const ParticipantProcessOptions& options, Role role) noexcept {
+  const ProcessClock clock;
+  try {
+    const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
+    ParticipantProcessOptions effective = options;
+    if (role == Role::coordinator) effective.id = kCoordinatorId;
+    effective.network.lease = scenario.timeouts.liveliness_lease;
+    effective.network.heartbeat_deadline = scenario.timeouts.liveliness_lease;
+    if (effective.run_directory.empty()) effective.run_directory = default_run_directory(scenario.name);
+    require_new_run(effective.run_directory, effective.id);
+    prepare_run_directory(effective.run_directory, scenario);
+    return run_role(scenario, effective, role, clock);
+  } catch (const ConfigError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitConfiguration;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "could not run: %s\n", error.what());
+    return kExitInternal;
+  }
+}
+
+int participant_main(int argc, char** argv, Role role) {
+  CLI::App app{"One participant of a hybrid test: " + std::string{name(role)}, std::string{name(role)}};
+  ParticipantProcessOptions options;
+  NetworkOptions network;
+  app.add_option("--scenario", options.scenario_file, "The test's scenario file, the same for every participant")
+      ->required();
+  auto* id = app.add_option("--id", options.id, "Which substructure of the scenario this is");
+  if (role != Role::coordinator) id->required();
+  app.add_option("--set", options.overrides, "Override one value of the scenario, key.path=value; repeatable");
+  app.add_option("--out", options.run_directory, "Directory for the records of this participant")
+      ->default_str("runs/<name>_<time>");
+  network.add_to(app);
+  app.footer(
+      "Exit codes: 0 completed, 2 configuration or participant missing, 3 ended early, 4 data invalid, 70 "
+      "internal error.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : kExitConfiguration;
+  }
+  options.network = network.settings();
+  return run_participant_process(options, role);
+}
+
+}  // namespace hybridtest

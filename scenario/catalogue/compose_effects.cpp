@@ -1,0 +1,70 @@
+#include "scenario/catalogue/compose_effects.hpp"
+
+#include <cmath>
+
+#include "core/text/scalar.hpp"
+
+namespace hybridtest {
+namespace {
+
+using config::Section;
+
+std::optional<double> fallback_of(const EffectParameter& parameter) {
+  if (std::isnan(parameter.fallback)) return std::nullopt;
+  return parameter.fallback;
+}
+
+std::vector<std::string> effect_names(EffectInterface interface) {
+  std::vector<std::string> names;
+  for (const EffectType& type : effect_library()) {
+    if (type.interface == interface) names.emplace_back(type.name);
+  }
+  return names;
+}
+
+ListedEffect read_effect(Section section, const std::vector<EffectInterface>& interfaces, int dofs) {
+  std::vector<std::string> interface_names;
+  for (const EffectInterface interface : interfaces) interface_names.emplace_back(name_of(interface));
+  const EffectInterface interface = interfaces[section.choice("interface", interface_names)];
+  const std::vector<std::string> names = effect_names(interface);
+  ListedEffect effect;
+  effect.setting.type = find_effect(interface, names[section.choice("effect", names)]);
+  for (const EffectParameter& parameter : effect.setting.type->parameters) {
+    effect.setting.values.push_back(
+        section.number(parameter.name, {.low = parameter.low, .high = parameter.high}, fallback_of(parameter)));
+  }
+  if (dofs > 0 && section.has_optional("dof")) effect.dof = static_cast<int>(section.integer("dof", 1, dofs)) - 1;
+  section.finish();
+  return effect;
+}
+
+}  // namespace
+
+std::vector<ListedEffect> read_effects(Section& section, const std::vector<EffectInterface>& interfaces, int dofs) {
+  std::vector<ListedEffect> effects;
+  if (!section.has_optional("effects")) return effects;
+  for (const Section& entry : section.sections("effects", true)) {
+    effects.push_back(read_effect(entry, interfaces, dofs));
+  }
+  return effects;
+}
+
+const std::vector<EffectInterface>& site_interfaces() {
+  using enum EffectInterface;
+  static const std::vector<EffectInterface> interfaces{network,  compensator, transfer_system, displacement_sensor,
+                                                       specimen, force_sensor};
+  return interfaces;
+}
+
+std::string written_effect(const ListedEffect& effect) {
+  const EffectType& type = *effect.setting.type;
+  std::string text = "  - interface: " + std::string{name_of(type.interface)} + "\n";
+  text += "    effect: " + std::string{type.name} + "\n";
+  for (std::size_t i = 0; i < type.parameters.size(); ++i) {
+    text += "    " + std::string{type.parameters[i].name} + ": " + written_number(effect.setting.values[i]) + "\n";
+  }
+  if (effect.dof) text += "    dof: " + std::to_string(*effect.dof + 1) + "\n";
+  return text;
+}
+
+}  // namespace hybridtest

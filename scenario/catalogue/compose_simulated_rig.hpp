@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/config/section.hpp"
+#include "plant/site_model.hpp"
+#include "plant/specimens/specimen.hpp"
+#include "scenario/catalogue/compose.hpp"
+
+namespace hybridtest {
+
+/// What a section says of a simulated site: transfer systems, specimen, sensors, effects.
+struct SimulatedSiteReading {
+  std::vector<SiteModel> dofs;                                     // one per interface degree of freedom
+  std::function<std::unique_ptr<Specimen>()> make_full_stiffness;  // of a specimen that couples them; else empty
+  double transfer_delay_s = 0.0;                                   // at low frequency, of the slowest actuator
+};
+
+/// What is meant where `transfer_system` or `specimen` are left out.
+enum class AbsentPart { refused, ideal };
+
+[[nodiscard]] SimulatedSiteReading read_simulated_site(config::Section& section, int dofs, AbsentPart absent);
+
+/// The rest of a rig's section of `type: simulated`.
+/// @param first_noise_stream   two for each actuator from here on.
+[[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs, std::uint64_t first_noise_stream);
+
+}  // namespace hybridtest

@@ -1,0 +1,399 @@
+#include "scenario/scenario.hpp"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+
+#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/preflight/step_stability.hpp"
+#include "core/config/section.hpp"
+#include "core/text/nearest_name.hpp"
+#include "core/text/shown.hpp"
+#include "experimental_site/energy_error.hpp"
+#include "mechanics/structure/damping.hpp"
+#include "mechanics/structure/vibration_modes.hpp"
+#include "numerical_substructure/scaled_model.hpp"
+#include "scenario/catalogue/compose.hpp"
+#include "scenario/catalogue/compose_simulated_rig.hpp"
+#include "scenario/catalogue/numerical_effects.hpp"
+#include "scenario/scenario_digest.hpp"
+#include "scenario/sites_in_place.hpp"
+
+namespace hybridtest {
+namespace {
+using config::Section;
+
+constexpr double kStepsAtMost = 1e9;
+
+/// Names become parts of file, partition and column names.
+bool is_plain_name(std::string_view name) {
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  return !name.empty() && name.front() != '.' && name.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+std::string plain_name(Section& section, std::string_view key, std::size_t longest) {
+  std::string name = section.text(key);
+  if (name.size() > longest || (!name.empty() && !is_plain_name(name))) {
+    section.error(key, "'" + name + "' does not serve as a name: expected at most " + std::to_string(longest) +
+                           " letters, digits, '_', '-' or '.', the first not a '.'");
+  }
+  return name;
+}
+
+void read_time(Section section, TimeScenario& time) {
+  time.mode = section.choice("mode", {"lockstep", "paced"}) == 0 ? CouplingMode::lockstep : CouplingMode::paced;
+  time.step_s = section.number("step_s", {.low = 1e-6, .high = 10.0});
+  time.duration_s = section.number("duration_s", {.low = 0.0, .high = 1e6, .low_open = true});
+  if (time.mode == CouplingMode::paced) {
+    time.time_scale = section.number("time_scale", {.low = 1e-3, .high = 1e6}, 1.0);
+  }
+  const double steps = time.duration_s / time.step_s;
+  if (steps < 1.0 || steps > kStepsAtMost) {
+    section.error("duration_s", "the test would have " + std::to_string(steps) + " steps; expected 1 to 1e9");
+  } else {
+    time.last_step = static_cast<Step>(std::floor(steps * (1.0 + 1e-12) + 1e-9));
+  }
+  section.finish();
+}
+
+void read_timeouts(Section& root, TimeoutScenario& timeouts) {
+  constexpr Range kTimeout{.low = 0.1, .high = 86400.0};
+  Section section = root.section_or_empty("timeouts");
+  timeouts.discovery = from_seconds(section.number("discovery_s", kTimeout, 30.0));
+  timeouts.arm = from_seconds(section.number("arm_s", kTimeout, 10.0));
+  timeouts.stop = from_seconds(section.number("stop_s", kTimeout, 10.0));
+  timeouts.liveliness_lease = from_seconds(section.number("liveliness_lease_s", kTimeout, 2.0));
+  section.finish();
+}
+
+void read_excitation(Section section, const std::filesystem::path& directory, Scenario& scenario) {
+  scenario.ground_motion_text = section.text("ground_motion");
+  GroundMotionOptions options;
+  options.scale = section.number("scale", kAnyNumber, 1.0);
+  if (section.has("dt_s")) options.dt_s = section.number("dt_s", kPositive);
+  if (section.has("unit")) {
+    options.unit = static_cast<AccelerationUnit>(section.choice("unit", {"g", "m_per_s2", "cm_per_s2"}));
+  }
+  section.finish();
+  if (scenario.ground_motion_text.empty()) return;
+  scenario.ground_motion_file = directory / scenario.ground_motion_text;
+  try {
+    scenario.ground_acceleration_m_per_s2 =
+        read_ground_motion(scenario.ground_motion_file, options).sampled(scenario.time.step_s, scenario.time.last_step);
+  } catch (const ConfigError& error) {
+    section.error("ground_motion", error.what());
+  }
+}
+
+Eigen::SparseMatrix<double> diagonal(const Eigen::VectorXd& values) {
+  return Eigen::MatrixXd{values.asDiagonal()}.sparseView();
+}
+
+/// Masses, given per degree of freedom or as a full matrix.
+void read_mass(Section& section, Scenario& scenario) {
+  const std::size_t count = scenario.dofs.size();
+  if (section.has("mass_matrix_kg")) {
+    scenario.structure.mass_kg = section.matrix("mass_matrix_kg", count, count).sparseView();
+  } else {
+    scenario.structure.mass_kg = diagonal(section.numbers_by_name("mass_kg", scenario.dofs, kPositive));
+  }
+}
+
+/// What the damping section says; evaluated once the stiffness is known.
+using DampingRule = std::function<Eigen::SparseMatrix<double>(const LinearStructure&)>;
+
+DampingRule read_damping(Section section, std::size_t dofs) {
+  constexpr Range kRatio{.low = 0.0, .high = 1.0, .high_open = true};
+  const auto type = section.choice("type", {"none", "rayleigh", "mass_and_stiffness", "modal", "matrix"});
+  DampingRule rule = [](const LinearStructure& structure) {
+    return Eigen::SparseMatrix<double>{structure.size(), structure.size()};
+  };
+  if (type == 1) {
+    const double ratio = section.number("ratio", kRatio);
+    const auto modes = section.integers("modes", 1, static_cast<std::int64_t>(dofs));
+    if (modes.size() != 2) {
+      section.error("modes", "expected two modes, such as [1, 2]");
+    } else {
+      rule = [ratio, modes](const LinearStructure& structure) {
+        return rayleigh_damping(structure,
+                                rayleigh_coefficients(ratio, static_cast<int>(modes[0]), static_cast<int>(modes[1]),
+                                                      vibration_modes(structure)));
+      };
+    }
+  } else if (type == 2) {
+    const RayleighCoefficients coefficients{section.number("mass_per_s", kNotNegative),
+                                            section.number("stiffness_s", kNotNegative)};
+    rule = [coefficients](const LinearStructure& structure) { return rayleigh_damping(structure, coefficients); };
+  } else if (type == 3) {
+    const Eigen::VectorXd ratios = section.numbers("ratios", 0, kRatio);
+    rule = [ratios](const LinearStructure& structure) {
+      return modal_damping(structure, vibration_modes(structure), ratios);
+    };
+  } else if (type == 4) {
+    const Eigen::MatrixXd matrix = section.matrix("matrix_n_s_per_m", dofs, dofs);
+    rule = [matrix](const LinearStructure&) { return Eigen::SparseMatrix<double>{matrix.sparseView()}; };
+  }
+  section.finish();
+  return rule;
+}
+
+/// Position of a named degree of freedom; reports an unknown one.
+int dof_position(Section& section, std::string_view key, const std::vector<std::string>& dofs) {
+  const std::string name = section.text(key);
+  const auto found = std::ranges::find(dofs, name);
+  if (found != dofs.end()) return static_cast<int>(found - dofs.begin());
+  std::string what = "no degree of freedom '" + name + "'";
+  if (const auto nearest = nearest_name(name, dofs)) what += "; did you mean '" + *nearest + "'?";
+  if (!name.empty()) section.error(key, what);
+  return 0;
+}
+
+void read_interface(Section& section, const std::vector<std::string>& dofs, SubstructureScenario& substructure) {
+  for (Section& entry : section.sections("interface")) {
+    InterfaceDof interface { .dof = dof_position(entry, "dof", dofs) };
+    std::string name = dofs.empty() ? "" : dofs[static_cast<std::size_t>(interface.dof)];
+    if (entry.has("relative_to")) {
+      interface.relative_to = dof_position(entry, "relative_to", dofs);
+      if (interface.relative_to == interface.dof) entry.error("relative_to", "a degree of freedom against itself");
+      if (!dofs.empty()) name += "_relative_to_" + dofs[static_cast<std::size_t>(interface.relative_to)];
+    }
+    entry.finish();
+    if (std::ranges::find(substructure.interface_names, name) != substructure.interface_names.end()) {
+      entry.error("dof", "this interface degree of freedom is listed twice");
+    }
+    substructure.interface.push_back(interface);
+    substructure.interface_names.push_back(std::move(name));
+  }
+  if (substructure.interface.empty() || substructure.interface.size() > kMaxInterfaceDofs) {
+    section.error("interface", "expected 1 to " + std::to_string(kMaxInterfaceDofs) + " degrees of freedom");
+    substructure.interface.resize(1);
+    substructure.interface_names.resize(1);
+  }
+}
+
+/// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
+template <class Reading>
+std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
+  std::vector<Reading> readings;
+  for (Section& entry : section.sections_or_empty(key)) readings.push_back(read(entry));
+  if (readings.size() != 1 && readings.size() != dofs) {
+    section.error(key,
+                  "expected one, or one for each of the " + std::to_string(dofs) + " interface degrees of freedom");
+    if (readings.empty()) readings.push_back(read(section.section_or_empty(key)));
+    readings.resize(1, readings.front());
+  }
+  if (readings.size() == 1) readings.resize(dofs, readings.front());
+  return readings;
+}
+
+/// Of a site, beside its rig: checked before the test, used after it.
+void check_model(Section section, int dofs) {
+  if (section.has("type")) static_cast<void>(section.choice("type", {"simulated"}));
+  static_cast<void>(read_simulated_site(section, dofs, AbsentPart::ideal));
+  section.finish();
+}
+
+void read_site(Section& section, const Scenario& scenario, const std::filesystem::path& directory,
+               SubstructureScenario& substructure) {
+  const TimeScenario& time = scenario.time;
+  const auto dofs = substructure.interface.size();
+  SiteScenario& site = substructure.site;
+  substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
+  RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory,
+                            static_cast<int>(scenario.substructures.size()));
+  site.rig_type = rig.type;
+  site.rig_is_elsewhere = rig.is_elsewhere;
+  site.rig_tables = std::move(rig.tables);
+  site.transfer_delay_s = rig.transfer_delay_s;
+  if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
+    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
+  }
+  substructure.make_rig = std::move(rig.make);
+  site.has_model = section.has_optional("model");
+  if (site.has_model) check_model(section.section("model"), static_cast<int>(dofs));
+  site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
+
+  const double site_step_s = time.step_s * time.time_scale;
+  site.periods_per_step = std::max(1, static_cast<int>(std::ceil(site_step_s * site.control_rate_hz - 1e-6)));
+
+  const auto commands = read_each(section, "compensator", dofs, read_compensator);
+  const auto forces = read_each(section, "force_compensator", dofs, read_force_compensator);
+  site.compensated_delay_s = std::ranges::min(commands, {}, &CompensatorReading::delay_s).delay_s;
+  substructure.make_compensation = [commands, forces](double period_s) {
+    SiteCompensation made;
+    for (const CompensatorReading& compensator : commands) made.commands.push_back(compensator.make(period_s, 0.0));
+    for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
+    return made;
+  };
+  site.loop = read_loop(section, time.mode, site_step_s);
+  site.real_time = read_real_time(section, time.mode);
+}
+
+SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
+                                       const std::filesystem::path& directory) {
+  SubstructureScenario substructure;
+  substructure.id = plain_name(section, "id", ParticipantId::kCapacity);
+  if (substructure.id == kCoordinatorId) section.error("id", "'coordinator' is taken by the coordinator itself");
+  const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
+  substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
+  read_interface(section, scenario.dofs, substructure);
+  const auto dofs = static_cast<int>(substructure.interface.size());
+  if (is_numerical) {
+    substructure.make_model = read_model(section.section("model"), dofs, directory);
+  } else {
+    read_site(section, scenario, directory, substructure);
+  }
+  section.finish();
+  return substructure;
+}
+
+/// K = sum over substructures of B^T K_s B, B the interface's rows.
+Eigen::SparseMatrix<double> assembled_stiffness(const Scenario& scenario) {
+  const auto count = static_cast<Eigen::Index>(scenario.dofs.size());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    const auto rows = static_cast<Eigen::Index>(substructure.interface.size());
+    Eigen::MatrixXd interface = Eigen::MatrixXd::Zero(rows, count);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const InterfaceDof& dof = substructure.interface[static_cast<std::size_t>(row)];
+      interface(row, dof.dof) = 1.0;
+      if (dof.relative_to != InterfaceDof::kGround) interface(row, dof.relative_to) = -1.0;
+    }
+    stiffness += interface.transpose() * substructure.initial_stiffness_n_per_m * interface;
+  }
+  return stiffness.sparseView();
+}
+
+void check_substructures(Section& root, const Scenario& scenario) {
+  if (scenario.substructures.empty() || scenario.substructures.size() > kMaxSubstructures) {
+    root.error("substructures", "expected 1 to " + std::to_string(kMaxSubstructures) + " substructures");
+  }
+  for (std::size_t i = 0; i < scenario.substructures.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (scenario.substructures[i].id == scenario.substructures[j].id) {
+        root.error("substructures", "two substructures with the id '" + scenario.substructures[i].id + "'");
+      }
+    }
+  }
+  for (std::size_t dof = 0; dof < scenario.dofs.size(); ++dof) {
+    const bool is_coupled = std::ranges::any_of(scenario.substructures, [&](const auto& substructure) {
+      return std::ranges::any_of(substructure.interface, [&](const InterfaceDof& interface) {
+        return std::cmp_equal(interface.dof, dof) || std::cmp_equal(interface.relative_to, dof);
+      });
+    });
+    if (!is_coupled) {
+      root.error("substructures", "no substructure has the degree of freedom '" + scenario.dofs[dof] +
+                                      "' at its interface: nothing would hold it");
+    }
+  }
+}
+
+/// Makes the parts once, so that what they object to is found before anything runs.
+void try_out(const Scenario& scenario, SubstructureScenario& substructure) {
+  if (substructure.role == Role::numerical_substructure) {
+    substructure.initial_stiffness_n_per_m = substructure.make_model()->initial_stiffness_n_per_m();
+    return;
+  }
+  const double period_s = scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step;
+  static_cast<void>(substructure.make_rig(period_s));
+  static_cast<void>(substructure.make_compensation(period_s));
+  static_cast<void>(EnergyErrorMonitor{substructure.initial_stiffness_n_per_m, 1.0});
+}
+
+/// Errors of the part that is computed; the damping that comes of the stiffness is that of the right one.
+void apply(const NumericalErrors& errors, Scenario& scenario) {
+  scenario.structure.mass_kg *= errors.mass;
+  scenario.structure.damping_n_s_per_m *= errors.damping;
+  if (errors.stiffness == 1.0) return;
+  for (SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::numerical_substructure) continue;
+    substructure.make_model = [make = substructure.make_model, factor = errors.stiffness] {
+      return std::make_unique<ScaledModel>(make(), factor);
+    };
+    substructure.initial_stiffness_n_per_m *= errors.stiffness;
+  }
+  scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+}
+
+/// Reports what a part finds wrong with its parameters at the section they came from.
+template <class Work>
+void report_at(Section section, Work work) {
+  try {
+    work();
+  } catch (const ConfigError& error) {
+    section.error("", error.what());
+  }
+}
+
+}  // namespace
+
+const SubstructureScenario* Scenario::find(std::string_view id) const noexcept {
+  const auto found = std::ranges::find(substructures, id, &SubstructureScenario::id);
+  return found == substructures.end() ? nullptr : &*found;
+}
+
+SubstructureIndex Scenario::index_of(const SubstructureScenario& substructure) const noexcept {
+  return static_cast<SubstructureIndex>(&substructure - substructures.data());
+}
+
+Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  config::Document document = config::Document::load(file, with_sites_in_place(file, overrides));
+  Section root = document.root();
+  Scenario scenario;
+  scenario.file = file;
+  static_cast<void>(root.choice("schema", {"hybridtest/1"}));
+  scenario.name = plain_name(root, "name", 64);
+  if (root.has("description")) static_cast<void>(root.text("description"));
+  read_time(root.section("time"), scenario.time);
+  read_excitation(root.section("excitation"), document.directory(), scenario);
+
+  Section structure = root.section("structure");
+  scenario.dofs = structure.names("degrees_of_freedom");
+  read_mass(structure, scenario);
+  const DampingRule damping = read_damping(structure.section("damping"), scenario.dofs.size());
+  structure.finish();
+
+  Section integrator = root.section("integrator");
+  scenario.integrator_type = read_integrator_type(integrator);
+  integrator.finish();
+
+  std::vector<Section> substructures = root.sections("substructures");
+  for (Section& section : substructures) {
+    scenario.substructures.push_back(read_substructure(section, scenario, document.directory()));
+  }
+  const NumericalErrors errors = read_numerical_errors(root);
+  read_timeouts(root, scenario.timeouts);
+  Section recording = root.section_or_empty("recording");
+  scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
+  recording.finish();
+  root.finish();
+  check_substructures(root, scenario);
+  document.throw_if_errors();
+
+  for (std::size_t i = 0; i < substructures.size(); ++i) {
+    report_at(substructures[i], [&] { try_out(scenario, scenario.substructures[i]); });
+  }
+  document.throw_if_errors();
+  report_at(structure, [&] {
+    scenario.structure.degrees_of_freedom = scenario.dofs;
+    scenario.structure.influence = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scenario.dofs.size()));
+    scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+    scenario.structure.damping_n_s_per_m.resize(scenario.structure.size(), scenario.structure.size());
+    require_consistent(scenario.structure);
+    scenario.structure.damping_n_s_per_m = damping(scenario.structure);
+    apply(errors, scenario);
+  });
+  document.throw_if_errors();
+  scenario.integrator_step_s = scenario.time.step_s * errors.step;
+  report_at(root.section("time"),
+            [&] { require_stable_step(vibration_modes(scenario.structure), scenario.integrator_step_s); });
+  scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
+                              step_s = scenario.integrator_step_s] { return make_integrator(type, structure, step_s); };
+  report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
+  document.throw_if_errors();
+  scenario.effective = document.effective();
+  scenario.digest = sha256(scenario.effective);
+  return scenario;
+}
+
+}  // namespace hybridtest

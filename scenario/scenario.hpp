@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coordinator/coordinator.hpp"
+#include "coordinator/integrator.hpp"
+#include "core/messages.hpp"
+#include "core/real_time_thread.hpp"
+#include "experimental_site/control_loop.hpp"
+#include "experimental_site/interlocks.hpp"
+#include "experimental_site/rigs/rig.hpp"
+#include "mechanics/structure/linear_structure.hpp"
+#include "numerical_substructure/substructure_model.hpp"
+#include "scenario/loop_sections.hpp"
+
+namespace hybridtest {
+
+/// Model time of a test and how it relates to the wall.
+struct TimeScenario {
+  CouplingMode mode = CouplingMode::lockstep;
+  double step_s = 0.0;
+  double duration_s = 0.0;
+  double time_scale = 1.0;
+  Step last_step = 0;
+};
+
+struct TimeoutScenario {
+  Duration discovery{};
+  Duration arm{};
+  Duration stop{};
+  Duration liveliness_lease{};
+};
+
+/// What an experimental substructure adds: the site.
+struct SiteScenario {
+  double control_rate_hz = 0.0;
+  int periods_per_step = 1;  // the control rate, rounded up so that whole periods fill a step
+  LoopScenario loop;
+  RealTimeRequest real_time;  // not in lockstep
+  std::string rig_type;
+  bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
+  std::vector<TableLayout> rig_tables;  // that the rig records by itself
+  bool has_model = false;               // of the site, beside its rig: what a diagnosis of the run compares with
+  double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
+  double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
+};
+
+struct SubstructureScenario {
+  std::string id;
+  Role role = Role::numerical_substructure;
+  std::vector<InterfaceDof> interface;
+  std::vector<std::string> interface_names;  // `floor_2_floor_1` for relative ones
+  Eigen::MatrixXd initial_stiffness_n_per_m;
+  // Makers of the parts, called in the process that needs them.
+  std::function<std::unique_ptr<SubstructureModel>()> make_model;  // numerical
+  SiteScenario site;                                               // experimental, and below
+  /// @param control_period_s   in site time.
+  std::function<std::unique_ptr<Rig>(double control_period_s)> make_rig;
+  std::function<SiteCompensation(double control_period_s)> make_compensation;
+};
+
+/// A scenario file, read, checked and ready to be composed.
+struct Scenario {
+  std::filesystem::path file;
+  std::string name;
+  TimeScenario time;
+  TimeoutScenario timeouts;
+  bool stop_on_recording_failure = false;
+  std::vector<std::string> dofs;
+  LinearStructure structure;  // initial stiffness assembled from the substructures
+  std::filesystem::path ground_motion_file;
+  std::string ground_motion_text;                    // as written in the scenario
+  std::vector<double> ground_acceleration_m_per_s2;  // at each step
+  std::string integrator_type;
+  double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
+  std::function<std::unique_ptr<Integrator>()> make_integrator;
+  std::vector<SubstructureScenario> substructures;
+  std::string effective;  // with defaults filled in
+  ScenarioDigest digest{};
+
+  [[nodiscard]] double model_time_s(Step step) const noexcept { return static_cast<double>(step) * time.step_s; }
+  /// nullptr when there is none.
+  [[nodiscard]] const SubstructureScenario* find(std::string_view id) const noexcept;
+  [[nodiscard]] SubstructureIndex index_of(const SubstructureScenario& substructure) const noexcept;
+};
+
+/// @param overrides   `key.path=value`, as given to --set.
+/// @throws ConfigError with everything that is wrong.
+[[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace hybridtest

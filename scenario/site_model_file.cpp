@@ -1,0 +1,171 @@
+#include "scenario/site_model_file.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/config/section.hpp"
+#include "core/text/scalar.hpp"
+#include "scenario/catalogue/compose.hpp"
+#include "scenario/catalogue/compose_simulated_rig.hpp"
+
+namespace hybridtest {
+namespace {
+
+using config::Section;
+
+/// Where in the file the parts of a site stand.
+struct SitePlace {
+  Section rig;
+  Section beside;  // has the compensator and the control rate
+  std::optional<int> dofs;
+};
+
+std::string id_of(Section& substructure) { return substructure.has("id") ? substructure.text("id") : std::string{}; }
+
+SitePlace site_of_scenario(Section& root, std::string_view id) {
+  std::string known;
+  std::vector<Section> sites;
+  for (Section& substructure : root.sections("substructures")) {
+    if (!substructure.has("rig")) continue;
+    known += (known.empty() ? "" : ", ") + id_of(substructure);
+    if (id.empty() || id_of(substructure) == id) sites.push_back(substructure);
+  }
+  if (sites.size() != 1) {
+    root.error("substructures",
+               id.empty()
+                   ? "a model of one site is read, and this scenario has the sites: " + known + "; name one of them"
+                   : "no site '" + std::string{id} + "'; this scenario has the sites: " + known);
+    return {.rig = root.section_or_empty("rig"), .beside = root, .dofs = {}};
+  }
+  const auto dofs = static_cast<int>(sites.front().sections("interface").size());
+  const char* const rig = sites.front().has("model") ? "model" : "rig";
+  return {.rig = sites.front().section(rig), .beside = sites.front(), .dofs = std::max(1, dofs)};
+}
+
+SitePlace site_in(Section& root, std::string_view id) {
+  if (root.has("substructures")) return site_of_scenario(root, id);
+  if (root.has("rig")) return {.rig = root.section("rig"), .beside = root, .dofs = {}};
+  return {.rig = root, .beside = root, .dofs = {}};
+}
+
+/// As many degrees of freedom as the longest list has.
+int count_dofs(Section& rig) {
+  std::size_t count = 1;
+  for (const char* key : {"transfer_system", "specimen"}) {
+    if (!rig.has_optional(key)) continue;
+    count = std::max(count, rig.sections(key, true).size());
+  }
+  return static_cast<int>(count);
+}
+
+std::vector<CompensatorReading> read_compensators(Section& beside) {
+  std::vector<CompensatorReading> readings;
+  if (!beside.has_optional("compensator")) return readings;
+  for (const Section& entry : beside.sections("compensator", true)) readings.push_back(read_compensator(entry));
+  return readings;
+}
+
+void give_compensators(const std::vector<CompensatorReading>& readings, Section& beside, std::vector<SiteModel>& dofs) {
+  if (readings.empty()) return;
+  if (readings.size() != 1 && readings.size() != dofs.size()) {
+    beside.error("compensator", "expected one, or one for each degree of freedom");
+    return;
+  }
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    const CompensatorReading& reading = readings[readings.size() == 1 ? 0 : i];
+    dofs[i].make_compensator = reading.make;
+    dofs[i].compensator_delay = reading.setting;
+  }
+}
+
+/// Makes every part once, so that what they object to is found here.
+void try_out(const std::vector<SiteModel>& dofs, double period_s) {
+  for (const SiteModel& dof : dofs) {
+    static_cast<void>(dof.make_transfer_system(period_s, delay_change_s(dof)));
+    if (dof.make_law) static_cast<void>(dof.make_law());
+    if (dof.make_compensator) static_cast<void>(dof.make_compensator(period_s, setting_change_s(dof)));
+    for (const EffectInterface interface : site_interfaces()) static_cast<void>(effects_at(dof, interface, period_s));
+  }
+}
+
+/// The section with a word for everything that a scenario wants to see.
+std::string whole_rig(const Section& rig) {
+  std::string text = "type: simulated\n";
+  text += rig.has("transfer_system") ? rig.effective("transfer_system") : "transfer_system: {type: ideal}\n";
+  text += rig.has("specimen") ? rig.effective("specimen") : "specimen: {type: none}\n";
+  for (const char* key : {"sensors", "effects"}) {
+    if (rig.has(key)) text += rig.effective(key);
+  }
+  return text;
+}
+
+/// The list under `effects`, which is the text's last key if it is there, made longer.
+std::string longer_by(std::span<const ListedEffect> effects, std::string text, bool has_effects) {
+  if (!has_effects && !effects.empty()) text += "effects:\n";
+  for (const ListedEffect& effect : effects) text += written_effect(effect);
+  return text;
+}
+
+constexpr double kUsualControlRate_hz = 1024.0;
+
+}  // namespace
+
+std::string SiteModelFile::with_effects(std::span<const ListedEffect> effects) const {
+  return longer_by(effects, text, has_effects);
+}
+
+std::string SiteModelFile::rig_with_effects(std::span<const ListedEffect> effects) const {
+  return longer_by(effects, rig, has_effects);
+}
+
+SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure) {
+  config::Document document = config::Document::load(file);
+  Section root = document.root();
+  SitePlace place = site_in(root, substructure);
+  const bool is_scenario = root.has("substructures");
+  SiteModelFile model;
+  model.file = file;
+  if (is_scenario) {
+    model.name = id_of(place.beside);
+  } else if (place.beside.has_optional("name")) {
+    model.name = place.beside.text("name");
+  }
+  if (place.beside.has_optional("control_rate_hz")) {
+    model.control_rate_hz = place.beside.number("control_rate_hz", {.low = 1.0, .high = 20e3});
+  }
+  const std::vector<CompensatorReading> compensators = read_compensators(place.beside);
+  if (place.rig.has("type")) static_cast<void>(place.rig.choice("type", {"simulated"}));
+  const int dofs = place.dofs ? *place.dofs : count_dofs(place.rig);
+  const SimulatedSiteReading site = read_simulated_site(place.rig, dofs, AbsentPart::ideal);
+  if (site.make_full_stiffness) {
+    place.rig.error("specimen", "a stiffness matrix couples degrees of freedom; a model of a site has a law for each");
+  }
+  model.dofs = site.dofs;
+  give_compensators(compensators, place.beside, model.dofs);
+  for (const SiteModel& dof : model.dofs) model.has_effects = model.has_effects || !dof.effects.empty();
+  if (!is_scenario) {
+    place.rig.finish();
+    root.finish();
+  }
+  document.throw_if_errors();
+  try {
+    try_out(model.dofs, 1.0 / (model.control_rate_hz > 0.0 ? model.control_rate_hz : kUsualControlRate_hz));
+  } catch (const ConfigError& error) {
+    place.rig.error("", error.what());
+  }
+  document.throw_if_errors();
+  const bool is_flat = !is_scenario && !root.has("rig");
+  if (!is_flat) {
+    // What stands beside the rig goes in front of it.
+    if (!model.name.empty()) model.text += "name: " + written_text(model.name) + "\n";
+    if (model.control_rate_hz > 0.0) {
+      model.text += "control_rate_hz: " + written_number(model.control_rate_hz) + "\n";
+    }
+    if (place.beside.has("compensator")) model.text += place.beside.effective("compensator");
+  }
+  model.text += place.rig.effective();
+  model.rig = whole_rig(place.rig);
+  return model;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,32 @@
+# Whole tests in real processes, asserted on what they recorded.
+hybridtest_test(system FOLDER system
+  SOURCES ${support}/recorded_run.cpp ${support}/recording_checks.cpp ${support}/started_program.cpp
+    ${support}/system_fixture.cpp
+  LINK hybridtest_recording LABELS system
+  # One at a time: they start processes, kill them and watch the time.
+  PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
+add_dependencies(system programs simulate_digest simulate_digest_unoptimised)
+
+# The same simulation as this build compiles it, and without any optimisation.
+hybridtest_program(simulate_digest SOURCES system/simulate_digest/main.cpp LINK hybridtest_runtime)
+set(parts core config mechanics compensation plant coordinator numerical_substructure experimental_site transport
+  recording scenario runtime)
+foreach(part ${parts})
+  get_target_property(sources hybridtest_${part} SOURCES)
+  get_target_property(folder hybridtest_${part} SOURCE_DIR)
+  foreach(source ${sources})
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder})
+    list(APPEND part_sources ${source})
+  endforeach()
+endforeach()
+add_executable(simulate_digest_unoptimised system/simulate_digest/main.cpp ${part_sources})
+target_compile_features(simulate_digest_unoptimised PRIVATE cxx_std_20)
+target_include_directories(simulate_digest_unoptimised PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(simulate_digest_unoptimised PRIVATE Eigen3::Eigen yaml-cpp HDF5::HDF5 nlohmann_json::nlohmann_json
+  OpenSSL::Crypto Threads::Threads)
+# After the build type's own flags, so these win.
+target_compile_options(simulate_digest_unoptimised PRIVATE -O0 -UNDEBUG -g0)
+target_compile_definitions(simulate_digest_unoptimised PRIVATE HYBRIDTEST_VERSION="${PROJECT_VERSION}")
+set_target_properties(simulate_digest_unoptimised PROPERTIES
+  RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
+  UNITY_BUILD ${HYBRIDTEST_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 16 UNITY_BUILD_UNIQUE_ID hybridtest_unity_id)

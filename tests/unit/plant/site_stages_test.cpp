@@ -1,0 +1,142 @@
+#include "plant/site_stages.hpp"
+
+#include <gtest/gtest.h>
+
+#include "compensation/polynomial_displacement.hpp"
+#include "core/config_error.hpp"
+#include "core/time.hpp"
+#include "experimental_site/rigs/simulated_rig.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "plant/specimens/law_specimen.hpp"
+#include "plant/transfer_systems/delay.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+EffectSetting setting(EffectInterface interface, std::string_view name, std::vector<double> values) {
+  return {find_effect(interface, name), std::move(values)};
+}
+
+SiteModel delayed_spring() {
+  SiteModel model;
+  model.make_transfer_system = [](double period_s, double delay_change_s) {
+    return std::make_unique<Delay>(from_seconds(0.004 + delay_change_s), from_seconds(period_s));
+  };
+  model.removable_delay_s = 0.004;
+  model.make_law = [] { return std::make_unique<Elastic>(1.0e6); };
+  return model;
+}
+
+StageSample command(double displacement_m) { return {.motion = {.displacement_m = displacement_m}}; }
+
+TEST(SiteStages, ANegativeDelayShortensTheModelsOwn) {
+  SiteModel model = delayed_spring();
+  model.effects = {setting(EffectInterface::transfer_system, "delay", {-0.003})};
+  TransferStage stage{model, kPeriod_s};
+  EXPECT_EQ(stage.step(command(0.5)), 0.0);
+  EXPECT_EQ(stage.step(command(0.7)), 0.5);
+  model.effects = {setting(EffectInterface::transfer_system, "delay", {-0.005})};
+  EXPECT_THROW((TransferStage{model, kPeriod_s}), ConfigError);
+}
+
+TEST(SiteStages, TheInverseUndoesTheSensorInReverse) {
+  SiteModel model = delayed_spring();
+  model.effects = {setting(EffectInterface::displacement_sensor, "gain", {0.25}),
+                   setting(EffectInterface::displacement_sensor, "bias", {0.002})};
+  TransferStage stage{model, kPeriod_s};
+  SensorInverse inverse{model, kPeriod_s};
+  for (int i = 0; i < 20; ++i) {
+    const double read_m = stage.step(command(0.001 * i));
+    const Motion true_motion = inverse.step({.motion = {.displacement_m = read_m, .velocity_m_per_s = 1.25}});
+    EXPECT_NEAR(read_m, 1.25 * stage.displacement_m() + 0.002, 1e-15);
+    EXPECT_NEAR(true_motion.displacement_m, stage.displacement_m(), 1e-15);
+    EXPECT_NEAR(true_motion.velocity_m_per_s, 1.0, 1e-15);
+  }
+}
+
+TEST(SiteStages, WithoutALawThereIsTheForceOfTheEffectsAlone) {
+  SiteModel model = delayed_spring();
+  model.make_law = nullptr;
+  model.effects = {setting(EffectInterface::specimen, "inertia", {95.0}),
+                   setting(EffectInterface::force_sensor, "bias", {3.0})};
+  SpecimenStage stage{model, kPeriod_s};
+  EXPECT_DOUBLE_EQ(stage.step({.motion = {.acceleration_m_per_s2 = 2.0}}), 193.0);
+  EXPECT_DOUBLE_EQ(stage.force_n(), 190.0);
+}
+
+TEST(SiteStages, ThePiecesTogetherAreTheRig) {
+  SiteModel model = delayed_spring();
+  model.effects = {setting(EffectInterface::transfer_system, "bandwidth", {0.004, 0.25}),
+                   setting(EffectInterface::displacement_sensor, "gain", {0.1}),
+                   setting(EffectInterface::specimen, "viscous_damping", {2.0e3}),
+                   setting(EffectInterface::specimen, "coulomb_friction", {500.0, 0.1, 1e-4}),
+                   setting(EffectInterface::force_sensor, "gain", {-0.02})};
+  std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
+  transfer_systems.push_back(model.make_transfer_system(kPeriod_s, 0.0));
+  std::vector<std::unique_ptr<Law>> laws;
+  laws.push_back(model.make_law());
+  std::vector<SimulatedRig::Effects> effects;
+  effects.push_back(SimulatedRig::effects_of(model, kPeriod_s));
+  SimulatedRig rig{std::move(transfer_systems),
+                   std::make_unique<LawSpecimen>(std::move(laws)),
+                   {},
+                   from_seconds(kPeriod_s),
+                   std::move(effects)};
+  rig.connect();
+  rig.arm();
+  TransferStage transfer{model, kPeriod_s};
+  SpecimenStage specimen{model, kPeriod_s};
+  RigFeedback feedback{.displacement_m = InterfaceVector::Zero(1), .force_n = InterfaceVector::Zero(1)};
+  Motion motion;
+  for (int i = 0; i < 500; ++i) {
+    ActuatorCommand asked;
+    asked.time_s = kPeriod_s * i;
+    asked.displacement_m = InterfaceVector::Constant(1, 0.02 * std::sin(0.03 * i));
+    ASSERT_EQ(rig.exchange(asked, feedback), RigStatus::healthy);
+    EXPECT_EQ(feedback.displacement_m[0], transfer.step(command(asked.displacement_m[0])));
+    const Motion before = motion;
+    motion.displacement_m = transfer.displacement_m();
+    motion.velocity_m_per_s = (motion.displacement_m - before.displacement_m) / kPeriod_s;
+    motion.acceleration_m_per_s2 = (motion.velocity_m_per_s - before.velocity_m_per_s) / kPeriod_s;
+    EXPECT_EQ(feedback.force_n[0], specimen.step({.time_s = asked.time_s, .motion = motion}));
+  }
+}
+
+TEST(SiteStages, TheCompensatorIsTheModels) {
+  SiteModel model = delayed_spring();
+  model.make_compensator = [](double period_s, double delay_change_s) {
+    return std::make_unique<PolynomialDisplacement>(
+        PolynomialDisplacement::Parameters{.order = 1, .delay_s = 0.002 + delay_change_s}, period_s);
+  };
+  CompensatorStage stage{model, kPeriod_s};
+  double commanded_m = 0.0;
+  for (int i = 0; i < 10; ++i) commanded_m = stage.step(command(0.001 * i));
+  EXPECT_NEAR(commanded_m, 0.011, 1e-15);  // 2 ms ahead on a ramp of 1 mm per sample
+}
+
+/// Of a wave, on which a first-order change of the command would not be the other setting's.
+TEST(SiteStages, AnotherSettingOfACompensatorIsThatCompensator) {
+  const auto compensated = [](double delay_s, double mismatch_s) {
+    SiteModel model = delayed_spring();
+    model.make_compensator = [delay_s](double period_s, double delay_change_s) {
+      return std::make_unique<PolynomialDisplacement>(
+          PolynomialDisplacement::Parameters{.order = 2, .delay_s = delay_s + delay_change_s}, period_s);
+    };
+    model.compensator_delay = {.set_s = delay_s, .most_s = 1.0};
+    model.effects = {{find_effect(EffectInterface::compensator, "setting_mismatch"), {mismatch_s}}};
+    CompensatorStage stage{model, kPeriod_s};
+    std::vector<double> command_m;
+    for (int i = 0; i < 200; ++i) command_m.push_back(stage.step(command(0.02 * std::sin(0.3 * i))));
+    return command_m;
+  };
+  EXPECT_EQ(compensated(0.008, 0.004), compensated(0.012, 0.0));
+  EXPECT_EQ(compensated(0.008, -0.008), compensated(0.0, 0.0));
+  EXPECT_NE(compensated(0.008, 0.004), compensated(0.008, 0.0));
+  EXPECT_THROW(compensated(0.008, -0.009), ConfigError);
+  EXPECT_THROW(compensated(0.008, 0.993), ConfigError);
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/unit/plant/effect_bench.hpp"
+
+/// Effects on the specimen against their closed forms.
+namespace hybridtest {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr auto kSpecimen = EffectInterface::specimen;
+
+double time_s(std::size_t sample) { return kBenchPeriod_s * static_cast<double>(sample); }
+
+/// Work of `forces` over samples begin to end of the motion, by the trapezium.
+double work_j(const std::vector<double>& forces, const Driver& driver, std::size_t begin, std::size_t end) {
+  double work = 0.0;
+  for (std::size_t i = begin + 1; i <= end; ++i) {
+    work +=
+        0.5 * (forces[i] + forces[i - 1]) * (driver.displacement_m(time_s(i)) - driver.displacement_m(time_s(i - 1)));
+  }
+  return work;
+}
+
+struct Formula {
+  const char* name;
+  std::vector<double> values;
+  std::function<double(const Driver&, double)> force_n;
+};
+
+class AFormulaOfTheMotion : public testing::TestWithParam<Formula> {};
+
+TEST_P(AFormulaOfTheMotion, IsAddedToTheBase) {
+  const auto& [name, values, force_n] = GetParam();
+  const Driver driver = sine(0.01, 12.0);
+  const auto effect = made(kSpecimen, name, values);
+  const auto forces = response(*effect, driver, 600, [](const Motion&) { return 7.0; });
+  for (std::size_t i = 0; i < forces.size(); ++i) ASSERT_NEAR(forces[i], 7.0 + force_n(driver, time_s(i)), 1e-9) << i;
+}
+
+std::vector<Formula> formulas() {
+  return {
+      Formula{"stiffness_error", {0.0, -3.0e5}, [](const Driver& d, double t) { return -3.0e5 * d.displacement_m(t); }},
+      Formula{"viscous_damping", {2.0e4}, [](const Driver& d, double t) { return 2.0e4 * d.velocity_m_per_s(t); }},
+      Formula{"inertia", {95.0}, [](const Driver& d, double t) { return 95.0 * d.acceleration_m_per_s2(t); }},
+      Formula{
+          "quadratic_damping",
+          {3.0e5},
+          [](const Driver& d, double t) { return 3.0e5 * d.velocity_m_per_s(t) * std::abs(d.velocity_m_per_s(t)); }},
+      Formula{"cubic_stiffness",
+              {2.0e9},
+              [](const Driver& d, double t) { return 2.0e9 * std::pow(d.displacement_m(t), 3); }},
+      Formula{"contact",
+              {4.0e5, 0.004},
+              [](const Driver& d, double t) { return 4.0e5 * std::max(0.0, d.displacement_m(t) - 0.004); }},
+      Formula{"contact",
+              {4.0e5, -0.004},
+              [](const Driver& d, double t) { return 4.0e5 * std::min(0.0, d.displacement_m(t) + 0.004); }},
+      Formula{"geometric_stiffness", {5.0e4, 0.05}, [](const Driver& d, double t) {
+                return -5.0e4 * std::tan(std::asin(d.displacement_m(t) / 0.05));
+              }}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Specimen, AFormulaOfTheMotion, testing::ValuesIn(formulas()), [](const auto& instance) {
+  return std::string{instance.param.name} + "_" + std::to_string(instance.index);
+});
+
+TEST(StribeckFriction, FallsFromItsStaticToItsSlidingValue) {
+  const auto sliding_at = [](double velocity_m_per_s) {
+    const auto effect = made(kSpecimen, "stribeck_friction", {100.0, 0.5, 0.02, 1e-6});
+    const Driver ramp{[=](double t) { return velocity_m_per_s * t; }, [=](double) { return velocity_m_per_s; },
+                      [](double) { return 0.0; }};
+    return response(*effect, ramp, 50).back();
+  };
+  EXPECT_NEAR(sliding_at(1.0), 100.0, 1e-9);
+  EXPECT_NEAR(sliding_at(0.02), 100.0 + 50.0 * std::exp(-1.0), 1e-9);
+  EXPECT_NEAR(sliding_at(-0.002), -(100.0 + 50.0 * std::exp(-0.01)), 1e-9);
+}
+
+TEST(Yielding, LosesWhatABilinearSpringLosesPerCycle) {
+  constexpr double kStiffness_n_per_m = 1.0e6;
+  constexpr double kYield_n = 4.0e3;
+  constexpr double kAmplitude_m = 0.01;
+  const auto effect = made(kSpecimen, "yielding", {kYield_n, kStiffness_n_per_m, 100.0});
+  const Driver driver = sine(kAmplitude_m, 2.0 * kPi);
+  const auto forces =
+      response(*effect, driver, 3001, [](const Motion& motion) { return kStiffness_n_per_m * motion.displacement_m; });
+  // Elastoplastic loop: 4 Fy (A - xy). The second branch's R = R0 (1 - 0.925 xi / (0.15 + xi)) rounds it: the law's
+  // own difference, a tenth of the loop.
+  const double expected_j = 4.0 * kYield_n * (kAmplitude_m - kYield_n / kStiffness_n_per_m);
+  EXPECT_NEAR(work_j(forces, driver, 1000, 2000), expected_j, 0.1 * expected_j);
+  EXPECT_NEAR(forces[3], kStiffness_n_per_m * driver.displacement_m(time_s(3)), 1e-9);  // nothing lost yet
+}
+
+TEST(BoucWenHysteresis, LoadsAlongAnExponential) {
+  // n = 1: z = 1 - exp(-x / xy) from rest.
+  const auto effect = made(kSpecimen, "bouc_wen_hysteresis", {250.0, 0.002, 1.0, 0.5});
+  std::vector<double> path;
+  for (int i = 0; i <= 100; ++i) path.push_back(1e-4 * i);
+  const auto forces = along(*effect, path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    ASSERT_NEAR(forces[i], 250.0 * -std::expm1(-path[i] / 0.002), 250.0 * 6e-8);  // 0.05^4 / 100, see carried_along
+  }
+}
+
+TEST(Pinching, TakesItsShareOfTheForceAroundZero) {
+  const auto effect = made(kSpecimen, "pinching", {0.8, 0.002});
+  const Driver driver = sine(0.01, 12.0);
+  const auto forces = response(*effect, driver, 600, [](const Motion& m) { return 3.0e5 * m.displacement_m; });
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double x = driver.displacement_m(time_s(i));
+    ASSERT_NEAR(forces[i], 3.0e5 * x * (1.0 - 0.8 * std::exp(-x * x / 4.0e-6)), 1e-9) << i;
+  }
+}
+
+TEST(Gap, LetsTheSpecimenFeelWhatIsBeyondIt) {
+  const auto effect = made(kSpecimen, "gap", {0.004});
+  const Driver driver = sine(0.01, 12.0);
+  const auto forces = response(*effect, driver, 600, [](const Motion& m) { return 3.0e5 * m.displacement_m; });
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double x = driver.displacement_m(time_s(i));
+    ASSERT_NEAR(forces[i], 3.0e5 * std::copysign(std::max(0.0, std::abs(x) - 0.004), x), 1e-9) << i;
+  }
+}
+
+TEST(StiffnessDegradation, IsHalfAsStiffAfterItsHalfLife) {
+  const auto effect = made(kSpecimen, "stiffness_degradation", {4.0});
+  const auto forces =
+      along(*effect, {0.0, 1.0, -1.0, 0.0, 1.0}, [](const Motion& m) { return 10.0 * m.displacement_m; });
+  EXPECT_NEAR(forces[1], 10.0 / 1.25, 1e-12);
+  EXPECT_NEAR(forces[4], 10.0 / 2.25, 1e-12);  // 5 m travelled
+}
+
+TEST(StiffnessError, OfALawChangesItsStiffnessAndNotItsStrength) {
+  const auto effect = made(kSpecimen, "stiffness_error", {0.25, 0.0});
+  const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
+  const auto forces = along(*effect, {0.0, 0.1, 0.5, 1.0, -2.0}, plastic);
+  const std::vector<double> expected{0.0, 1.25, 6.25, 8.0, -8.0};
+  for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
+}
+
+TEST(StrengthDegradation, TakesStrengthWithThePathAndLeavesTheStiffness) {
+  const double left = std::exp(-5.0 / 4.0);
+  const auto of_strength = made(kSpecimen, "strength_degradation", {4.0});
+  const auto plastic = [](const Motion& m) { return std::clamp(100.0 * m.displacement_m, -10.0, 10.0); };
+  EXPECT_NEAR(along(*of_strength, {0.0, 1.0, -1.0, 0.0, 1.0}, plastic)[4], 10.0 * left, 1e-12);
+  const auto of_stiffness = made(kSpecimen, "strength_degradation", {4.0});
+  const auto elastic = [](const Motion& m) { return 100.0 * m.displacement_m; };
+  EXPECT_NEAR(along(*of_stiffness, {0.0, 1.0, -1.0, 0.0, 1.0}, elastic)[4], 100.0, 1e-12);
+}
+
+TEST(SpecimenBacklash, HeldByFrictionIsThePlayOperator) {
+  const auto effect = made(kSpecimen, "backlash", {0.2, 1.0});
+  const auto forces = along(*effect, {0.0, 0.05, 0.5, 0.45, 0.3, 0.2, 0.35, 0.5},
+                            [](const Motion& m) { return 10.0 * m.displacement_m; });
+  const std::vector<double> expected{0.0, 0.0, 4.0, 4.0, 4.0, 3.0, 3.0, 4.0};
+  for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
+}
+
+TEST(SpecimenBacklash, OfASpringThatNothingHoldsIsAFixedGap) {
+  const auto effect = made(kSpecimen, "backlash", {0.2, 0.0});
+  const auto force = [](const Motion& m) { return 10.0 * m.displacement_m; };
+  const Driver driver = sine(0.5, 2.0);
+  const auto forces = response(*effect, driver, 5000, force);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const double x = driver.displacement_m(time_s(i));
+    // The flank is left a sample after the force is gone.
+    ASSERT_NEAR(forces[i], std::copysign(std::max(0.0, 10.0 * (std::abs(x) - 0.1)), x), 10.0 * 1.001 * kBenchPeriod_s)
+        << i;
+  }
+}
+
+TEST(SpecimenBacklash, OfAFrictionDamperMovesWithTheReversal) {
+  const auto friction = made(kSpecimen, "coulomb_friction", {100.0, 0.0, 0.01});
+  const auto backlash = made(kSpecimen, "backlash", {0.1, 0.0});
+  std::vector<double> forces;
+  for (int i = 0; i <= 80; ++i) {
+    const double x = i <= 40 ? 0.005 * i : 0.2 - 0.005 * (i - 40);
+    const StageSample sample{.time_s = 0.0, .motion = {.displacement_m = x}};
+    Motion motion = sample.motion;
+    backlash->before(sample, motion);
+    double force_n = 0.0;
+    friction->after(sample, motion, force_n);
+    backlash->after(sample, motion, force_n);
+    forces.push_back(force_n);
+  }
+  EXPECT_NEAR(forces[40], 100.0, 1e-9);   // slides
+  EXPECT_NEAR(forces[41], 50.0, 1e-9);    // unloads over the pre-sliding displacement
+  EXPECT_NEAR(forces[50], 0.0, 1e-9);     // in the clearance
+  EXPECT_NEAR(forces[62], 0.0, 1e-9);     // 0.11 m after the reversal still
+  EXPECT_NEAR(forces[64], -100.0, 1e-9);  // 0.12 m after it slides back
+}
+
+TEST(Relaxation, FadesAtRestAndHasMaxwellsComplexStiffness) {
+  constexpr double kTime_s = 0.05;
+  const auto effect = made(kSpecimen, "relaxation", {1.0e5, kTime_s});
+  const auto at_rest = along(*effect, std::vector<double>(200, 0.01));
+  for (std::size_t i = 0; i < at_rest.size(); ++i) {
+    ASSERT_NEAR(at_rest[i], at_rest[0] * std::exp(-time_s(i) / kTime_s), 1e-9);
+  }
+  // In phase with the displacement: k (omega T)^2 / (1 + (omega T)^2); with the velocity: k T / (1 + (omega T)^2).
+  constexpr double kOmega = 20.0;  // omega T = 1
+  effect->reset();
+  const Driver driver = sine(0.01, kOmega);
+  const auto forces = response(*effect, driver, 2000);
+  for (std::size_t i = 1000; i < forces.size(); ++i) {
+    const double expected =
+        0.5 * 1.0e5 * (driver.displacement_m(time_s(i)) + driver.velocity_m_per_s(time_s(i)) / kOmega);
+    ASSERT_NEAR(forces[i], expected, 1e3 * 4e-5);  // straight lines: (omega dt)^2 / 12 of the amplitude
+  }
+}
+
+TEST(Fracture, LosesItsShareFromItsInstantOn) {
+  const auto effect = made(kSpecimen, "fracture", {0.4, 0.05});
+  const auto forces = response(*effect, sine(1.0, 1.0), 100, [](const Motion&) { return 10.0; });
+  EXPECT_EQ(forces[50], 10.0);
+  EXPECT_NEAR(forces[51], 6.0, 1e-9);
+  EXPECT_NEAR(forces[99], 6.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,91 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/plotting/axis.hpp"
+#include "report/plotting/dot_figure.hpp"
+#include "report/plotting/line_figure.hpp"
+#include "report/plotting/page.hpp"
+#include "report/plotting/svg_canvas.hpp"
+
+namespace hybridtest::plot {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Scale, MapsItsEndsOntoZeroAndOne) {
+  const Scale linear{{.label = "", .is_logarithmic = false, .low = 2.0, .high = 6.0}, 0.0, 1.0};
+  EXPECT_DOUBLE_EQ(linear.share(2.0), 0.0);
+  EXPECT_DOUBLE_EQ(linear.share(5.0), 0.75);
+  const Scale logarithmic{{.label = "", .is_logarithmic = true, .low = 0.1, .high = 10.0}, 0.0, 1.0};
+  EXPECT_NEAR(logarithmic.share(1.0), 0.5, 1e-15);
+  EXPECT_FALSE(std::isfinite(logarithmic.share(0.0)));
+}
+
+TEST(Scale, TicksAreRoundAndInside) {
+  const Scale scale{{.label = "", .is_logarithmic = false, .low = -0.7, .high = 3.3}, 0.0, 1.0};
+  std::vector<std::string> labels;
+  for (const Tick& tick : scale.ticks()) {
+    EXPECT_GE(scale.share(tick.value), -1e-12);
+    EXPECT_LE(scale.share(tick.value), 1.0 + 1e-12);
+    labels.push_back(tick.label);
+  }
+  EXPECT_THAT(labels, testing::ElementsAre("-0.5", "0", "0.5", "1", "1.5", "2", "2.5", "3"));
+}
+
+TEST(Scale, HasAPlaceForConstantAndForNoValues) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isfinite(Scale(Axis{}, 3.0, 3.0).share(3.0)));
+  EXPECT_TRUE(std::isfinite(Scale(Axis{}, kInfinity, -kInfinity).share(0.0)));
+}
+
+TEST(LineFigure, ValuesThatAreNotFiniteLeaveAGap) {
+  const Line line{.name = "broken", .x = {0, 1, 2, 3, 4}, .y = {0, 1, std::nan(""), 1, 0}};
+  const std::string svg = to_svg(LineFigure{.panels = {{.title = "", .x = {}, .y = {}, .lines = {line}}}});
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  std::size_t pieces = 0;
+  for (auto at = svg.find("<polyline"); at != std::string::npos; at = svg.find("<polyline", at + 1)) ++pieces;
+  EXPECT_EQ(pieces, 2U);
+}
+
+TEST(LineFigure, ThinningKeepsTheExtremes) {
+  Line line{.name = "spike", .x = {}, .y = {}};
+  for (int i = 0; i < 100000; ++i) {
+    line.x.push_back(i);
+    line.y.push_back(i == 51234 ? 1.0 : 0.0);
+  }
+  const std::string svg =
+      to_svg(LineFigure{.panels = {{.title = "",
+                                    .x = {},
+                                    .y = {.label = "", .is_logarithmic = false, .low = 0.0, .high = 1.0},
+                                    .lines = {line}}}});
+  EXPECT_LT(svg.size(), 60000U);
+  // The top of the panel's frame.
+  EXPECT_THAT(svg, HasSubstr(",26.0 "));
+}
+
+TEST(DotFigure, AValueOutsideTheAxisStaysOnIt) {
+  const DotFigure figure{.title = "t",
+                         .axis = {.label = "a", .is_logarithmic = true, .low = 1.0, .high = 10.0},
+                         .marks = {"m"},
+                         .rows = {{"far", {1e6}, "", false}, {"none", {std::nan("")}, "lost", false}}};
+  const std::string svg = to_svg(figure);
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  EXPECT_THAT(svg, HasSubstr("lost"));
+}
+
+TEST(Page, OpensWithoutANetworkAndEscapesText) {
+  const std::string page = html_page("a < b & c", "lead", {{"h", "t", to_svg(LineFigure{})}});
+  EXPECT_THAT(page, HasSubstr("a &lt; b &amp; c"));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("src=")));
+  EXPECT_THAT(page, Not(HasSubstr("href=")));
+}
+
+}  // namespace
+}  // namespace hybridtest::plot

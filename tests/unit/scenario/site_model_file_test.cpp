@@ -1,0 +1,134 @@
+#include "scenario/site_model_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/config_error.hpp"
+#include "plant/site_stages.hpp"
+#include "tests/unit/scenario/scenario_file.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+class SiteFile : public testing::Test {
+ protected:
+  SiteModelFile read(const std::string& text, std::string_view id = {}) {
+    std::ofstream{directory_ / "site.yaml"} << text;
+    return read_site_model(directory_ / "site.yaml", id);
+  }
+  std::string error_of(const std::string& text) {
+    try {
+      static_cast<void>(read(text));
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  TemporaryDirectory directory_;
+};
+
+double force_at(const SiteModel& model, const Motion& motion) {
+  SpecimenStage stage{model, kPeriod_s};
+  return stage.step({.motion = motion});
+}
+
+TEST_F(SiteFile, LeavesOutWhatIsIdeal) {
+  const SiteModelFile site = read("effects: [{interface: specimen, effect: inertia, mass_kg: 95.0}]\n");
+  ASSERT_EQ(site.dofs.size(), 1U);
+  TransferStage transfer{site.dofs[0], kPeriod_s};
+  EXPECT_EQ(transfer.step({.motion = {.displacement_m = 0.25}}), 0.25);
+  EXPECT_EQ(force_at(site.dofs[0], {.displacement_m = 1.0, .acceleration_m_per_s2 = 2.0}), 190.0);
+  EXPECT_FALSE(site.dofs[0].make_compensator);
+}
+
+TEST_F(SiteFile, IsTheSameAtTheTopUnderRigAndInAScenario) {
+  const std::string parts =
+      "transfer_system: {type: delay, delay_s: 0.002}\n"
+      "specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n";
+  const std::string beside = "control_rate_hz: 512\ncompensator: {type: polynomial_displacement, delay_s: 0.01}\n";
+  for (const SiteModelFile& site :
+       {read(beside + parts),
+        read(beside + "rig:\n  type: simulated\n  transfer_system: {type: delay, delay_s: 0.002}\n"
+                      "  specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n")}) {
+    EXPECT_EQ(site.control_rate_hz, 512.0);
+    EXPECT_EQ(site.dofs[0].removable_delay_s, 0.002);
+    EXPECT_TRUE(site.dofs[0].make_compensator);
+    EXPECT_EQ(force_at(site.dofs[0], {.displacement_m = 0.5}), 2.0e6);
+    EXPECT_EQ(read(site.text).text, site.text);
+  }
+  const SiteModelFile site = read(kScenarioText);
+  EXPECT_EQ(site.name, "storey_1");
+  EXPECT_EQ(site.dofs[0].noise.force_noise_n, 50.0);
+  EXPECT_EQ(read(site.text).text, site.text);
+  EXPECT_EQ(read(site.text).dofs[0].removable_delay_s, 0.004);
+}
+
+/// From none at all to far ahead, so that a search for what was set finds a compensator everywhere.
+TEST_F(SiteFile, ACompensatorCanBeMadeForEveryDelayThatItsSettingAllows) {
+  for (const char* text :
+       {"{type: polynomial_displacement, delay_s: 0.01}",
+        "{type: polynomial_displacement, delay_s: 0.01, point_spacing_s: 0.0029}",
+        "{type: newmark_kinematics, delay_s: 0.01}", "{type: linear_acceleration, delay_s: 0.01}",
+        "{type: linear_acceleration, delay_s: 0.01, point_spacing_s: 0.0029}",
+        "{type: inverse_compensation, delay_s: 0.01}", "{type: adaptive_inverse, delay_s: 0.01}", "{type: none}"}) {
+    const SiteModel model = read("compensator: " + std::string{text} + "\n").dofs[0];
+    const DelaySetting setting = model.compensator_delay;
+    EXPECT_GT(setting.most_s, 0.0) << text;
+    for (const double share : {0.0, 0.01, 0.3, 1.0}) {
+      const double delay_s = share * setting.most_s;
+      EXPECT_NO_THROW(static_cast<void>(model.make_compensator(0.002, delay_s - setting.set_s))) << text << delay_s;
+    }
+    EXPECT_NO_THROW(static_cast<void>(model.make_compensator(0.002, 0.0))) << text;
+  }
+  EXPECT_EQ(read("compensator: {type: adaptive_time_series}\n").dofs[0].compensator_delay.most_s, 0.0);
+}
+
+TEST_F(SiteFile, EffectsAreAddedBehindThoseItHas) {
+  for (const std::string& text :
+       {std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"},
+        std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"
+                    "effects:\n  - {interface: force_sensor, effect: bias, bias_n: 1.0}\n"}}) {
+    const SiteModelFile site = read(text);
+    const std::vector<ListedEffect> more{{{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, -4.0}}, 0},
+                                         {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, std::nullopt}};
+    const SiteModelFile longer = read(site.with_effects(more));
+    ASSERT_EQ(longer.dofs[0].effects.size(), site.dofs[0].effects.size() + 2);
+    const double bias_n = site.dofs[0].effects.empty() ? 0.0 : 1.0;
+    EXPECT_DOUBLE_EQ(force_at(longer.dofs[0], {.displacement_m = 1.0}), 1.5 * (6.0 + bias_n));
+    EXPECT_EQ(longer.with_effects({}), longer.text);
+  }
+}
+
+TEST_F(SiteFile, NamesWhatItKnows) {
+  EXPECT_THAT(error_of("effects: [{interface: specimen, effect: coulomb_frictoin, friction_force_n: 1.0}]\n"),
+              testing::HasSubstr("coulomb_friction"));
+  EXPECT_THAT(error_of("effects: [{interface: specimn, effect: inertia, mass_kg: 1.0}]\n"),
+              testing::HasSubstr("specimen"));
+  EXPECT_THAT(error_of("effects: [{interface: specimen, effect: inertia}]\n"), testing::HasSubstr("mass_kg"));
+  EXPECT_THAT(error_of("effects: [{interface: specimen, effect: coulomb_friction, friction_force_n: -1.0}]\n"),
+              testing::HasSubstr("friction_force_n"));
+  EXPECT_THAT(error_of("transfer_system: {type: delay, delay_s: 0.001}\n"
+                       "effects: [{interface: transfer_system, effect: delay, delay_s: -0.002}]\n"),
+              testing::HasSubstr("0.001 s of delay"));
+  EXPECT_THAT(error_of("specimen: {type: elastic, stiffness_matrix_n_per_m: [[1.0]]}\n"),
+              testing::HasSubstr("couples"));
+  EXPECT_THAT(error_of("specimens: {type: none}\n"), testing::HasSubstr("did you mean 'specimen'"));
+}
+
+TEST_F(SiteFile, AnEffectCanConcernOneDegreeOfFreedom) {
+  const SiteModelFile site = read(
+      "specimen: [{type: none}, {type: none}]\n"
+      "effects:\n"
+      "  - {interface: specimen, effect: viscous_damping, damping_n_s_per_m: 5.0, dof: 2}\n"
+      "  - {interface: specimen, effect: inertia, mass_kg: 3.0}\n");
+  ASSERT_EQ(site.dofs.size(), 2U);
+  EXPECT_EQ(force_at(site.dofs[0], {.velocity_m_per_s = 1.0, .acceleration_m_per_s2 = 1.0}), 3.0);
+  EXPECT_EQ(force_at(site.dofs[1], {.velocity_m_per_s = 1.0, .acceleration_m_per_s2 = 1.0}), 8.0);
+}
+
+}  // namespace
+}  // namespace hybridtest

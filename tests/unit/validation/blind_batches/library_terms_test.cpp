@@ -1,0 +1,58 @@
+#include "validation/blind_batches/library_terms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "plant/effects/effect_type.hpp"
+#include "validation/blind_batches/plant/effect_catalogue.hpp"
+
+namespace hybridtest::blind {
+namespace {
+
+TEST(LibraryTerms, EveryEffectAndParameterIsOneOfTheLibrary) {
+  const CaseSetting setting = draw_case_setting(1, 0);
+  for (const auto* catalogue : {&named_effects(), &wrong_numbers()}) {
+    for (const CatalogueEntry& entry : *catalogue) {
+      const EffectType* type = nullptr;
+      for (const EffectType& of_library : effect_library()) {
+        if (name_of(of_library.interface) == entry.interface && of_library.name == entry.name) type = &of_library;
+      }
+      ASSERT_NE(type, nullptr) << entry.interface << "." << entry.name;
+      RandomStream random{1, 0, "effect"};
+      const PlantEffect effect{entry.interface, entry.name, entry.draw(random, setting, 0.1)};
+      for (const auto& [name, value] : in_library_terms(setting.site, effect)) {
+        bool is_known = false;
+        for (const EffectParameter& parameter : type->parameters) is_known = is_known || parameter.name == name;
+        EXPECT_TRUE(is_known) << entry.name << "." << name;
+      }
+    }
+  }
+}
+
+TEST(LibraryTerms, TwoPolesAreADelayAndARatio) {
+  const Parameters terms =
+      in_library_terms({}, {"transfer_system", "bandwidth", {{"natural_frequency_hz", 10.0}, {"damping_ratio", 1.0}}});
+  // (1 + s / w)^2: T = 2 / w, r T^2 = 1 / w^2.
+  EXPECT_NEAR(terms.at("time_constant_s"), 2.0 / (20.0 * std::numbers::pi), 1e-15);
+  EXPECT_NEAR(terms.at("second_order_ratio"), 0.25, 1e-15);
+}
+
+TEST(LibraryTerms, FrictionOfTwoSizesIsAMeanAndAnAsymmetry) {
+  const Parameters terms = in_library_terms(
+      {}, {"specimen", "coulomb_friction", {{"friction_force_n", 30.0}, {"friction_force_backward_n", 10.0}}});
+  EXPECT_DOUBLE_EQ(terms.at("friction_force_n") * (1.0 + terms.at("asymmetry")), 30.0);
+  EXPECT_DOUBLE_EQ(terms.at("friction_force_n") * (1.0 - terms.at("asymmetry")), 10.0);
+}
+
+TEST(LibraryTerms, OnlyThePartThatYieldsCounts) {
+  Site site;
+  site.specimen.stiffness_n_per_m = 1e6;
+  const Parameters terms =
+      in_library_terms(site, {"specimen", "yielding", {{"yield_force_n", 5e3}, {"hardening_ratio", 0.1}}});
+  EXPECT_DOUBLE_EQ(terms.at("yield_force_n"), 4.5e3);
+  EXPECT_DOUBLE_EQ(terms.at("stiffness_n_per_m"), 0.9e6);
+}
+
+}  // namespace
+}  // namespace hybridtest::blind

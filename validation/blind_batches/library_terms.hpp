@@ -1,0 +1,12 @@
+#pragma once
+
+#include "validation/blind_batches/plant/site.hpp"
+
+namespace hybridtest::blind {
+
+/// An effect's parameters by the names and units of the effect library, as far as the plant's
+/// form of it has them, so that an answer can be held against them. The tables of docs/scenario.md
+/// and docs/blind_batches.md side by side; the plant itself knows nothing of the library.
+[[nodiscard]] Parameters in_library_terms(const Site& site, const PlantEffect& effect);
+
+}  // namespace hybridtest::blind

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "validation/blind_batches/plant/case_setting.hpp"
+
+namespace hybridtest::blind {
+
+/// What may be wrong at a site, and how its parameters are drawn.
+struct CatalogueEntry {
+  std::string interface;
+  std::string name;
+  bool (*fits)(const CaseSetting& setting);  // to this site, and seen by these columns
+  /// @param amount   about the share of the signal that the effect makes up.
+  Parameters (*draw)(RandomStream& random, const CaseSetting& setting, double amount);
+};
+
+/// A number of the user's model that is wrong.
+[[nodiscard]] const std::vector<CatalogueEntry>& wrong_numbers();
+/// The effects of the library, by their names there.
+[[nodiscard]] const std::vector<CatalogueEntry>& named_effects();
+/// What no library has; the names are the plant's own.
+[[nodiscard]] const std::vector<CatalogueEntry>& foreign_effects();
+
+/// Those of a catalogue that fit.
+[[nodiscard]] std::vector<CatalogueEntry> fitting(const std::vector<CatalogueEntry>& catalogue,
+                                                  const CaseSetting& setting);
+
+}  // namespace hybridtest::blind

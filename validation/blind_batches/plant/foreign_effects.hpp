@@ -1,0 +1,14 @@
+#pragma once
+
+#include "validation/blind_batches/plant/history.hpp"
+#include "validation/blind_batches/plant/site.hpp"
+
+/// Effects that are in no library: what a diagnosis must answer with `unknown`. On the fine grid;
+/// an effect of another stage changes nothing.
+namespace hybridtest::blind {
+
+void apply_foreign_to_actuator(const PlantEffect& effect, double period_s, History& displacement_m);
+void add_foreign_force(const PlantEffect& effect, const Site& site, const MotionHistory& motion, History& force_n);
+void read_with_foreign(const PlantEffect& effect, const MotionHistory& motion, History& read);
+
+}  // namespace hybridtest::blind

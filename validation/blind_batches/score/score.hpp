@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/blind_batches/score/marked_case.hpp"
+#include "validation/blind_batches/score/statistics.hpp"
+
+namespace hybridtest::blind {
+
+/// A figure of a score, and what is asked of it.
+struct Figure {
+  std::string name;                  // words_with_underscores
+  std::optional<Estimate> estimate;  // nothing where no case says anything about it
+  std::optional<double> at_least;    // targets; judged by the estimate itself
+  std::optional<double> at_most;
+
+  [[nodiscard]] std::optional<bool> is_met() const;
+};
+
+/// Truth class -> verdict -> how often.
+using ConfusionMatrix = std::map<std::string, std::map<std::string, std::size_t>>;
+
+struct Score {
+  std::size_t cases = 0;
+  std::size_t clear_cases = 0;
+  ConfusionMatrix confusion;                                  // of all; `hidden`: effects below the floor
+  ConfusionMatrix clear_confusion;                            // at twice the floor or above
+  std::vector<Figure> overall;                                // without targets
+  std::vector<Figure> clear;                                  // the figures that the targets are for
+  std::map<std::string, std::array<std::size_t, 2>> effects;  // clear ones: right, of how many
+  std::vector<MarkedCase> wrong;                              // clear ones, largest gap first
+};
+
+[[nodiscard]] Score score_of(const std::vector<MarkedCase>& cases);
+
+}  // namespace hybridtest::blind

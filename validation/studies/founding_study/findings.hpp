@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/studies/founding_study/founding_study.hpp"
+
+namespace hybridtest::founding {
+
+/// A force that changes by more than this share of the exact specimen's peak force from one control period to
+/// the next has jumped: the exact one changes by less than a hundredth of its peak.
+inline constexpr double kJumpShare = 0.05;
+
+/// A method against the exact specimen, over the time that it lasted.
+struct Distance {
+  std::string name;
+  bool is_complete = false;
+  std::string interlock;
+  double lasted_s = 0.0;
+  std::array<double, kFloors> rms_percent{};   // root mean square of the error over that of the exact displacement
+  std::array<double, kFloors> peak_percent{};  // largest error over the largest exact displacement of the whole test
+  double largest_change_percent = 0.0;         // of a force in one control period, over the exact peak force
+  int jumps = 0;                               // changes over kJumpShare
+  double energy_error_j = 0.0;                 // largest, negative: given to the structure
+};
+
+/// @param exact   of the same scenario; complete.
+[[nodiscard]] Distance distance_of(const MethodRun& run, const MethodRun& exact);
+
+/// Largest errors of the floors by quarters of the time that a method lasted [m]: growth shows in them.
+[[nodiscard]] std::array<double, 4> error_by_quarters_m(const MethodRun& run, const MethodRun& exact,
+                                                        std::size_t floor);
+
+/// What the study found, and whether these runs show it.
+struct Finding {
+  std::string what;
+  std::string shown_by;
+  bool is_shown = false;
+};
+
+/// @param runs   as from run_founding_study().
+[[nodiscard]] std::vector<Finding> find(std::span<const MethodRun> runs);
+
+}  // namespace hybridtest::founding

@@ -1,0 +1,145 @@
+#include "validation/studies/founding_study/founding_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/plotting/line_figure.hpp"
+#include "report/plotting/page.hpp"
+
+namespace hybridtest::founding {
+namespace {
+
+std::vector<double> scaled(std::span<const double> values, double factor) {
+  std::vector<double> result(values.begin(), values.end());
+  for (double& value : result) value *= factor;
+  return result;
+}
+
+std::string method_figure(const MethodRun& run, const MethodRun& exact) {
+  plot::LineFigure figure{.panels = {}, .columns = 1, .panel_width = 1200.0, .panel_height = 210.0};
+  for (std::size_t floor = kFloors; floor-- > 0;) {
+    double peak_mm = 0.0;
+    for (const double value : exact.displacement_m[floor]) peak_mm = std::max(peak_mm, 1e3 * std::abs(value));
+    plot::Panel panel{
+        .title = fmt::format("floor {}", floor + 1),
+        .x = {.label = "time [s]", .is_logarithmic = false, .low = 0.0, .high = exact.time_s.back()},
+        .y = {.label = "displacement [mm]", .is_logarithmic = false, .low = -1.5 * peak_mm, .high = 1.5 * peak_mm},
+        .lines = {}};
+    panel.lines.push_back({"exact", exact.time_s, scaled(exact.displacement_m[floor], 1e3), true});
+    panel.lines.push_back({run.name, run.time_s, scaled(run.displacement_m[floor], 1e3)});
+    figure.panels.push_back(std::move(panel));
+  }
+  return to_svg(figure);
+}
+
+const MethodRun& run_named(std::span<const MethodRun> runs, std::string_view name) {
+  return *std::ranges::find(runs, name, &MethodRun::name);
+}
+
+/// The forces of actuator 1 about the largest jump of the quadratic correction.
+std::string jump_figure(std::span<const MethodRun> runs) {
+  const MethodRun& quadratic = run_named(runs, "force_correction_quadratic");
+  const auto& force_n = quadratic.force_n[0];
+  std::size_t at = 0;
+  double largest_n = 0.0;
+  for (std::size_t i = 1; i < force_n.size(); ++i) {
+    const double change_n = std::abs(force_n[i] - force_n[i - 1]);
+    if (change_n <= largest_n) continue;
+    largest_n = change_n;
+    at = i;
+  }
+  constexpr double kAboutS = 0.5;
+  const double centre_s = quadratic.period_time_s[at];
+  plot::Panel panel{
+      .title = "force of actuator 1 about the largest jump",
+      .x = {.label = "time [s]", .is_logarithmic = false, .low = centre_s - kAboutS, .high = centre_s + kAboutS},
+      .y = {.label = "force [kN]", .is_logarithmic = false, .low = -22.2, .high = 22.2},
+      .lines = {}};
+  for (const char* name : {"exact", "force_correction_quadratic", "force_correction"}) {
+    const MethodRun& run = run_named(runs, name);
+    plot::Line line{.name = name, .x = {}, .y = {}, .is_background = run.name == "exact"};
+    for (std::size_t i = 0; i < run.period_time_s.size(); ++i) {
+      if (std::abs(run.period_time_s[i] - centre_s) > kAboutS) continue;
+      line.x.push_back(run.period_time_s[i]);
+      line.y.push_back(1e-3 * run.force_n[0][i]);
+    }
+    panel.lines.push_back(std::move(line));
+  }
+  return to_svg(
+      plot::LineFigure{.panels = {std::move(panel)}, .columns = 1, .panel_width = 1200.0, .panel_height = 280.0});
+}
+
+}  // namespace
+
+std::string table_csv(std::span<const MethodRun> runs) {
+  std::string text =
+      "method,completed,lasted_s,rms_error_floor_1_percent,rms_error_floor_2_percent,peak_error_floor_1_percent,"
+      "peak_error_floor_2_percent,largest_force_change_percent,jumps,energy_error_j,interlock\n";
+  for (const MethodRun& run : runs) {
+    const Distance d = distance_of(run, runs[0]);
+    text += fmt::format("{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{},{:.2f},\"{}\"\n", d.name,
+                        d.is_complete ? "yes" : "no", d.lasted_s, d.rms_percent[0], d.rms_percent[1], d.peak_percent[0],
+                        d.peak_percent[1], d.largest_change_percent, d.jumps, d.energy_error_j, d.interlock);
+  }
+  return text;
+}
+
+std::string summary_markdown(std::span<const MethodRun> runs) {
+  std::string findings = "| finding of the study | here | |\n| --- | --- | --- |\n";
+  for (const Finding& finding : find(runs)) {
+    findings +=
+        fmt::format("| {} | {} | {} |\n", finding.what, finding.shown_by, finding.is_shown ? "shown" : "**NOT SHOWN**");
+  }
+  std::string table =
+      "| method | | lasted [s] | rms error, floors 1 and 2 [%] | peak error, floors 1 and 2 [%] | largest change of a "
+      "force "
+      "in a control period [%] | jumps |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Distance d = distance_of(runs[i], runs[0]);
+    table += fmt::format("| {} | {} | {:.2f}{} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f} | {} |\n", d.name,
+                         kMethods[i].figure, d.lasted_s, d.interlock.empty() ? "" : " (" + d.interlock + ")",
+                         d.rms_percent[0], d.rms_percent[1], d.peak_percent[0], d.peak_percent[1],
+                         d.largest_change_percent, d.jumps);
+  }
+  return fmt::format(
+      "# The founding study: two storeys, two actuators, four methods against a delay\n\n"
+      "Actuators 10 ms late, load cells with noise, both storeys physical; simulated with the nodes of a real test.\n\n"
+      "## Findings\n\n{}\n## Methods against the exact specimen\n\n{}\n"
+      "- Errors over the time that a method lasted; rms over the exact rms of that time, peaks over the exact peak of "
+      "the "
+      "whole test. Forces over the exact peak force.\n"
+      "- A jump is a change of a force by more than {:.0f} % of the exact peak force from one control period to the "
+      "next. "
+      "Those of polynomial_force are the load cell's noise, which it multiplies by 27 (root mean square), not jumps of "
+      "the method.\n"
+      "- On an elastic specimen and without noise, extrapolating the force and extrapolating the displacement are the "
+      "same "
+      "thing: the loop does not care on which side of the actuator the polynomial stands. What makes the force the "
+      "worse "
+      "side is that load cells are noisy and targets are not.\n",
+      findings, table, 100.0 * kJumpShare);
+}
+
+std::string page_html(std::span<const MethodRun> runs) {
+  std::vector<plot::PageSection> sections;
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const Distance d = distance_of(runs[i], runs[0]);
+    sections.push_back(
+        {fmt::format("{} ({})", runs[i].name, kMethods[i].figure),
+         fmt::format("rms error {:.2f} % (floor 1), {:.2f} % (floor 2). {}", d.rms_percent[0], d.rms_percent[1],
+                     d.interlock.empty() ? "" : fmt::format("Ended after {:.2f} s: {}.", d.lasted_s, d.interlock)),
+         method_figure(runs[i], runs[0])});
+  }
+  sections.push_back(
+      {"Jumps of the quadratic force correction",
+       "Where the parabola does not reach the desired displacement the published method falls back to the "
+       "uncorrected force. What the integrator got, each control period.",
+       jump_figure(runs)});
+  return plot::html_page("The founding study's figures 9 to 13",
+                         "Displacement of each method against the exact specimen, two-storey test with two actuators.",
+                         sections);
+}
+
+}  // namespace hybridtest::founding
