@@ -10,7 +10,7 @@
 
 namespace hybridtest {
 
-/// What a maker of drives gives: one axis, reached through its library.
+/// What the library of a drive vendor offers: one axis.
 class Drive {
  public:
   virtual ~Drive() = default;
@@ -22,7 +22,7 @@ class Drive {
 
 // The text between the two marks is quoted by docs/writing_a_rig.md; a test compares them.
 // [example]
-/// One actuator behind a maker's drive, which thinks in millimetres and kilonewtons.
+/// One actuator behind a vendor's drive that works in millimetres and kilonewtons.
 class DriveRig final : public Rig {
  public:
   DriveRig(std::string name, Drive& drive) : name_{std::move(name)}, drive_{drive} {}
@@ -34,14 +34,14 @@ class DriveRig final : public Rig {
   }
 
   void arm() override {
-    // One step, so that a stop_motion() from another thread is not overrun.
+    // One atomic step, so that it cannot undo a stop_motion() from another thread.
     Phase expected = Phase::connected;
     if (!phase_.compare_exchange_strong(expected, Phase::armed)) {
       if (expected == Phase::armed) return;
-      throw std::runtime_error{"the drive " + name_ + " cannot be armed: connect it first, anew after a stop"};
+      throw std::runtime_error{"the drive " + name_ + " cannot be armed: call connect() first, also after a stop"};
     }
     drive_.enable(true);
-    if (phase_ != Phase::armed) drive_.enable(false);  // stopped meanwhile
+    if (phase_ != Phase::armed) drive_.enable(false);  // stopped in the meantime
   }
 
   RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override {
