@@ -11,9 +11,7 @@ namespace {
 /// Of inertia and damping, and of nothing else that a model has beside its law.
 bool follows_derivatives(const SiteModel& model) {
   return std::ranges::any_of(model.effects, [](const EffectSetting& effect) {
-    return effect.type->interface == EffectInterface::specimen &&
-           (effect.type->name == "inertia" || effect.type->name == "viscous_damping" ||
-            effect.type->name == "quadratic_damping");
+    return effect.type->interface == EffectInterface::specimen && effect.type->traits.follows_derivatives;
   });
 }
 

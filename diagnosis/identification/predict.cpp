@@ -102,7 +102,7 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   }
   if (segment.is_smoothed) {
     // Together with the steps of its converter.
-    const EffectType* const steps = find_effect(EffectInterface::force_sensor, "quantization");
+    const EffectType* const steps = find_effect(EffectInterface::force_sensor, DigitTrace::rounding);
     std::erase_if(extended.effects, [steps](const EffectSetting& effect) { return effect.type == steps; });
   }
   std::vector<double> predicted = segment.to == Channel::measured_force ? predict_force(extended, segment)

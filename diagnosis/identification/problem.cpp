@@ -38,8 +38,8 @@ double root_mean_square(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
 }
 
-void add_nuisance(FitSegment& fit, EffectInterface interface, std::string_view effect, const Eigen::VectorXd& column) {
-  const EffectType* const type = find_effect(interface, effect);
+void add_nuisance(FitSegment& fit, EffectInterface interface, ModelNumber number, const Eigen::VectorXd& column) {
+  const EffectType* const type = find_effect(interface, number);
   if (type == nullptr || column.squaredNorm() == 0.0) return;
   fit.nuisance.conservativeResize(fit.measured.size(), fit.nuisance.cols() + 1);
   fit.nuisance.col(fit.nuisance.cols() - 1) = column;
@@ -58,9 +58,9 @@ void add_nuisances(const SiteModel& model, bool law_is_spring, FitSegment& fit) 
   fit.nuisance.resize(fit.measured.size(), 0);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fit.measured.size());
   if (fit.segment.to == Channel::measured_force) {
-    add_nuisance(fit, specimen, "stiffness_error",
-                 stiffness_slope(model, law_is_spring, fit, *find_effect(specimen, "stiffness_error")));
-    add_nuisance(fit, force_sensor, "bias", ones);
+    add_nuisance(fit, specimen, ModelNumber::stiffness,
+                 stiffness_slope(model, law_is_spring, fit, *find_effect(specimen, ModelNumber::stiffness)));
+    add_nuisance(fit, force_sensor, ModelNumber::offset, ones);
     return;
   }
   if (fit.segment.to != Channel::measured_displacement) return;
@@ -68,9 +68,9 @@ void add_nuisances(const SiteModel& model, bool law_is_spring, FitSegment& fit) 
   const Eigen::Index last = fit.baseline.size() - 1;
   Eigen::VectorXd later = Eigen::VectorXd::Zero(fit.baseline.size());
   for (Eigen::Index i = 1; i < last; ++i) later[i] = (fit.baseline[i - 1] - fit.baseline[i + 1]) / (2.0 * period_s);
-  add_nuisance(fit, transfer_system, "gain", fit.baseline);
-  add_nuisance(fit, transfer_system, "delay", later);
-  add_nuisance(fit, displacement_sensor, "bias", ones);
+  add_nuisance(fit, transfer_system, ModelNumber::gain, fit.baseline);
+  add_nuisance(fit, transfer_system, ModelNumber::delay, later);
+  add_nuisance(fit, displacement_sensor, ModelNumber::offset, ones);
 }
 
 std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/identification/search_table.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -28,11 +30,12 @@ double damping_of_law(const IdentificationProblem& problem) {
 
 /// The least that real sites have of a linear parameter: what is searched for above zero only, none; of an amount, none
 /// together with what the model has.
-double least_of(const IdentificationProblem& problem, const EffectType& effect, std::size_t index) {
+double least_of(const IdentificationProblem& problem, const EffectType& effect, std::size_t index,
+                const SearchRange& range) {
   const EffectParameter& parameter = effect.parameters[index];
-  if (parameter.search_low >= 0.0) return std::max(0.0, parameter.low);
-  if (!parameter.is_amount) return parameter.low;
-  double has = parameter.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
+  if (range.low >= 0.0) return std::max(0.0, parameter.low);
+  if (!range.restriction.is_amount) return parameter.low;
+  double has = range.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
   for (const EffectSetting& known : problem.model.effects) {
     if (known.type == &effect) has += known.values[index];
   }
@@ -40,29 +43,33 @@ double least_of(const IdentificationProblem& problem, const EffectType& effect, 
 }
 
 SearchedParameter searched(const IdentificationProblem& problem, const EffectType& effect, std::size_t position,
-                           std::size_t index) {
+                           std::size_t index, const SearchRange& range) {
   const EffectParameter& parameter = effect.parameters[index];
-  const double scale = problem.scales.of(parameter.scale);
+  const double scale = problem.scales.of(range.scale);
   SearchedParameter result{.effect = position, .parameter = index};
-  result.low = std::clamp(parameter.search_low * scale, parameter.low, parameter.high);
-  result.high = std::clamp(parameter.search_high * scale, parameter.low, parameter.high);
-  const bool is_delay = effect.interface == EffectInterface::transfer_system && effect.name == "delay";
-  if (is_delay) result.low = std::max(result.low, -problem.model.removable_delay_s);
+  result.low = std::clamp(range.low * scale, parameter.low, parameter.high);
+  result.high = std::clamp(range.high * scale, parameter.low, parameter.high);
   const DelaySetting& setting = problem.model.compensator_delay;
-  if (effect.interface == EffectInterface::compensator && effect.name == "setting_mismatch" && setting.most_s > 0.0) {
-    result.low = std::max(result.low, -setting.set_s);
-    result.high = std::min(result.high, setting.most_s - setting.set_s);
+  switch (range.restriction.limit) {
+    case SearchLimit::none: break;
+    case SearchLimit::removable_delay: result.low = std::max(result.low, -problem.model.removable_delay_s); break;
+    case SearchLimit::compensator_setting:
+      if (setting.most_s <= 0.0) break;
+      result.low = std::max(result.low, -setting.set_s);
+      result.high = std::min(result.high, setting.most_s - setting.set_s);
+      break;
   }
-  result.is_instant = parameter.scale == ParameterScale::duration_s;
+  result.is_instant = range.scale == ParameterScale::duration_s;
   result.logarithmic = result.low > 0.0 && result.high > kDecade * result.low;
   return result;
 }
 
 }  // namespace
 
-bool is_fixed(const IdentificationProblem& problem, const EffectParameter& parameter) {
+bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
   const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
-  return parameter.search_low == parameter.search_high || parameter.needs == other;
+  const SearchRange* const range = search_range(effect, parameter);
+  return range == nullptr || range->restriction.beside == other;
 }
 
 double SearchedParameter::at(double place) const noexcept {
@@ -84,16 +91,19 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
     bool removed_by_linear = false;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
-      const double unit = 0.5 * parameter.search_high * problem.scales.of(parameter.scale);
-      if (is_fixed(problem, parameter)) {
+      if (is_fixed(problem, effect, parameter)) {
         neutral.values.push_back(parameter.fallback);
-      } else if (parameter.is_linear && !all_searched) {
+        continue;
+      }
+      const SearchRange& range = *search_range(effect, parameter);
+      if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        const double low = least_of(problem, effect, j);
+        const double unit = 0.5 * range.high * problem.scales.of(range.scale);
+        const double low = least_of(problem, effect, j, range);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
         removed_by_linear = true;
       } else {
-        plan.searched.push_back(searched(problem, effect, i, j));
+        plan.searched.push_back(searched(problem, effect, i, j, range));
         neutral.values.push_back(plan.searched.back().at(0.5));
       }
     }

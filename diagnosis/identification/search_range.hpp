@@ -42,6 +42,7 @@ struct SearchPlan {
                                      const std::vector<const EffectType*>& effects);
 
 /// Nothing to search for in a parameter: its fallback is used.
-[[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectParameter& parameter);
+[[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,
+                            const EffectParameter& parameter);
 
 }  // namespace hybridtest

@@ -26,8 +26,7 @@ double SignalScales::of(ParameterScale scale) const noexcept {
     case ParameterScale::mass_kg: return ratio_or_one(force_n, acceleration_m_per_s2);
     case ParameterScale::duration_s: return ratio_or_one(duration_s, 1.0);
     case ParameterScale::one:
-    case ParameterScale::time_s:
-    case ParameterScale::frequency_hz: break;
+    case ParameterScale::time_s: break;
   }
   return 1.0;
 }

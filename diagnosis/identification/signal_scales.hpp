@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/identification/segment.hpp"
 
 namespace hybridtest {

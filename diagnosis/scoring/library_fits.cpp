@@ -9,6 +9,7 @@
 
 #include "core/config_error.hpp"
 #include "diagnosis/identification/search_range.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/scoring/score.hpp"
 #include "diagnosis/traces/trace.hpp"
 #include "diagnosis/tuning.hpp"
@@ -28,7 +29,7 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
 /// A stiffness that is far from the model's is no slightly wrong number any more: with it a hysteretic element beside
 /// the specimen turns into a specimen that yields, which is another effect.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
-  const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
+  const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
   // A spring beside another one, else the ratio of a law's stiffness.
   const double unit = problem.law_is_spring ? problem.scales.of(ParameterScale::stiffness_n_per_m) : 1.0;
   std::size_t column = 0;
@@ -50,12 +51,11 @@ bool is_of_sensor(const EffectType& effect) {
 constexpr double kUnresolved = 1e-3;
 
 /// A scenario may leave it out, and this fit may as well.
-bool is_dispensable(const EffectParameter& parameter, const ParameterEstimate& estimate) {
+bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, const ParameterEstimate& estimate) {
   constexpr double kTwoSided95 = 1.96;
   const double off = std::abs(estimate.value - parameter.fallback);  // NaN where it has to be given
-  const double resolved = (parameter.search_high - parameter.search_low) * kUnresolved;
-  return off <=
-         std::max(kTwoSided95 * estimate.standard_error, parameter.scale == ParameterScale::one ? resolved : 0.0);
+  const double resolved = (range.high - range.low) * kUnresolved;
+  return off <= std::max(kTwoSided95 * estimate.standard_error, range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
 /// Of two fits that a recording cannot tell apart the one without an effect of a sensor comes first, and the one of
@@ -67,7 +67,8 @@ double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
     double free = 0.0;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
-      if (!is_fixed(problem, parameter) && !is_dispensable(parameter, fit.parameters[i][j])) free += 1.0;
+      if (is_fixed(problem, effect, parameter)) continue;
+      if (!is_dispensable(parameter, *search_range(effect, parameter), fit.parameters[i][j])) free += 1.0;
     }
     sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
   }

@@ -4,10 +4,10 @@
 #include <array>
 #include <functional>
 #include <memory>
-#include <string_view>
 
 #include "coordinator/integrator.hpp"
 #include "mechanics/structure/linear_structure.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 
@@ -42,15 +42,19 @@ struct StructureErrors {
   double step = 0.0;  // of the integrator
 };
 
-/// A ratio and the effect that has it as its only parameter.
+/// A ratio and the number of the model that it corrects: that of an effect with one parameter.
 struct StructureEffect {
   double StructureErrors::*ratio;
-  std::string_view name;
+  ModelNumber number;
+
+  [[nodiscard]] const EffectType& type() const noexcept {
+    return *find_effect(EffectInterface::numerical_substructure, number);
+  }
 };
-inline constexpr std::array kStructureEffects{StructureEffect{&StructureErrors::mass, "mass_error"},
-                                              StructureEffect{&StructureErrors::stiffness, "stiffness_error"},
-                                              StructureEffect{&StructureErrors::damping, "damping_error"},
-                                              StructureEffect{&StructureErrors::step, "step_mismatch"}};
+inline constexpr std::array kStructureEffects{StructureEffect{&StructureErrors::mass, ModelNumber::mass},
+                                              StructureEffect{&StructureErrors::stiffness, ModelNumber::stiffness},
+                                              StructureEffect{&StructureErrors::damping, ModelNumber::damping},
+                                              StructureEffect{&StructureErrors::step, ModelNumber::step}};
 
 /// The displacements that the structure would have commanded: the same integrator, driven over the whole record by
 /// the forces that were received, not by those that its own displacements would have met. With the structure that

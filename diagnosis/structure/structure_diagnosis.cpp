@@ -103,9 +103,7 @@ double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& r
   return share;
 }
 
-EffectSetting setting_of(const FittedRatio& ratio) {
-  return {find_effect(EffectInterface::numerical_substructure, ratio.effect->name), {ratio.value}};
-}
+EffectSetting setting_of(const FittedRatio& ratio) { return {&ratio.effect->type(), {ratio.value}}; }
 
 void add_causes(const StructureDiagnosis& structure, double share_of_gap, std::vector<report::RankedCause>& ranking) {
   for (std::size_t i = 0; i < structure.fit.ratios.size(); ++i) {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/assert.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/tuning.hpp"
-#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 namespace {
@@ -17,10 +17,12 @@ constexpr double kDifference = 1e-6;
 /// Ratios that change by less are found.
 constexpr double kSettled = 1e-12;
 
-const EffectParameter& parameter_of(const FittedRatio& ratio) {
-  const EffectType* const type = find_effect(EffectInterface::numerical_substructure, ratio.effect->name);
-  HYBRIDTEST_ASSERT(type != nullptr && type->parameters.size() == 1);
-  return type->parameters.front();
+const SearchRange& range_of(const FittedRatio& ratio) {
+  const EffectType& type = ratio.effect->type();
+  HYBRIDTEST_ASSERT(type.parameters.size() == 1);
+  const SearchRange* const range = search_range(type, type.parameters.front());
+  HYBRIDTEST_ASSERT(range != nullptr);
+  return *range;
 }
 
 /// The record and what the ratios make of it.
@@ -60,9 +62,9 @@ class RatioProblem {
 StructureFit moved(const StructureFit& from, const Eigen::VectorXd& change) {
   StructureFit fit = from;
   for (std::size_t i = 0; i < fit.ratios.size(); ++i) {
-    const EffectParameter& parameter = parameter_of(fit.ratios[i]);
+    const SearchRange& range = range_of(fit.ratios[i]);
     const double wanted = fit.ratios[i].value + change[static_cast<Eigen::Index>(i)];
-    fit.ratios[i].value = std::clamp(wanted, parameter.search_low, parameter.search_high);
+    fit.ratios[i].value = std::clamp(wanted, range.low, range.high);
     fit.ratios[i].at_bound = fit.ratios[i].value != wanted;
   }
   return fit;

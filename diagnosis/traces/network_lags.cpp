@@ -82,13 +82,14 @@ std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<
   const NetworkLags lags = lags_between(sent_m, received_m, period_s);
   if (!lags.fluctuate()) return {};
   const bool is_loss = lags.fresh_at_usual > kEquallyLate;
-  const EffectType* const type = find_effect(EffectInterface::network, is_loss ? "loss" : "jitter");
+  const EffectType* const type =
+      find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
   if (type == nullptr) return {};
   // Even lateness up to J is J / 2 on average.
   const double value = is_loss ? lags.held : 2.0 * lags.mean * period_s;
   Trace trace{.effect = {.type = type, .values = {}}, .in = Channel::target_displacement};
   for (const EffectParameter& parameter : type->parameters) {
-    trace.effect.values.push_back(parameter.name == "seed" ? parameter.fallback : value);
+    trace.effect.values.push_back(std::isnan(parameter.fallback) ? value : parameter.fallback);
   }
   trace.gap_share = gap_share(sent_m, received_m);
   return trace;

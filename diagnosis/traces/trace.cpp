@@ -19,7 +19,7 @@ bool has(const SiteModel& model, const EffectType* type) {
 /// Coarse steps of one sensor, unless they are finer than what no model is expected to reproduce.
 std::optional<Trace> trace_of_sensor(EffectInterface sensor, Channel channel, const std::vector<double>& values) {
   const double step = steps_of_readings(values).step;
-  const EffectType* const type = find_effect(sensor, "quantization");
+  const EffectType* const type = find_effect(sensor, DigitTrace::rounding);
   const double variance =
       step * step / 12.0;  // Widrow and Kollar (2008): of an even error between half a step each way
   const double all = mean_square(values);
@@ -43,11 +43,7 @@ std::vector<Trace> traces_of(const DofRecording& dof, double period_s) {
 
 }  // namespace
 
-bool shows_in_digits(const EffectType& effect) noexcept {
-  const bool is_random =
-      std::ranges::any_of(effect.parameters, [](const EffectParameter& parameter) { return parameter.name == "seed"; });
-  return is_random || effect.name == "quantization";
-}
+bool shows_in_digits(const EffectType& effect) noexcept { return effect.traits.digits != DigitTrace::none; }
 
 std::vector<Trace> find_traces(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof) {
   std::vector<Trace> found;

@@ -1,81 +1,50 @@
 #include "diagnosis/verdict/next_experiment.hpp"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 namespace hybridtest {
-namespace {
-
 using enum EffectInterface;
-
-/// What an effect follows, and with it which experiment moves it apart from others.
-enum class Family { rate, amplitude, position, sensor_scale, sensor_offset, degradation, mass };
-
-Family family_of(const EffectType& effect) {
-  struct Member {
-    std::string_view part;
-    Family family;
-  };
-  constexpr std::array kMembers{Member{"degradation", Family::degradation},
-                                Member{"fracture", Family::degradation},
-                                Member{"drift", Family::degradation},
-                                Member{"relaxation", Family::rate},
-                                Member{"inertia", Family::mass},
-                                Member{"damping", Family::rate},
-                                Member{"delay", Family::rate},
-                                Member{"lag", Family::rate},
-                                Member{"latency", Family::rate},
-                                Member{"bandwidth", Family::rate},
-                                Member{"time_skew", Family::rate},
-                                Member{"velocity", Family::rate},
-                                Member{"setting", Family::rate},
-                                Member{"bias", Family::sensor_offset},
-                                Member{"gain", Family::sensor_scale},
-                                Member{"stiffness_error", Family::sensor_scale},
-                                Member{"gap", Family::position},
-                                Member{"contact", Family::position},
-                                Member{"deadband", Family::position},
-                                Member{"saturation", Family::position},
-                                Member{"limit", Family::position}};
-  const auto found = std::ranges::find_if(
-      kMembers, [&](const Member& member) { return effect.name.find(member.part) != std::string_view::npos; });
-  return found == kMembers.end() ? Family::amplitude : found->family;
-}
-
-}  // namespace
 
 std::string experiment_that_splits(const std::vector<const EffectType*>& effects) {
   if (effects.size() < 2) return {};
   const auto any_at = [&](EffectInterface interface) {
     return std::ranges::any_of(effects, [&](const EffectType* effect) { return effect->interface == interface; });
   };
-  const auto any_of = [&](Family family) {
-    return std::ranges::any_of(effects, [&](const EffectType* effect) { return family_of(*effect) == family; });
+  const auto is_of = [](EffectFamily family) {
+    return [family](const EffectType* effect) { return effect->traits.family == family; };
   };
-  if (any_of(Family::mass)) {
-    return "Air run: the same motion without the specimen; what stays is mass and load cell, what goes is the "
-           "specimen.";
+  const auto any_of = [&](EffectFamily family) { return std::ranges::any_of(effects, is_of(family)); };
+  if (any_of(EffectFamily::mass)) {
+    return "Air run: the same motion without the specimen. Forces of mass and load cell stay; those of the specimen "
+           "vanish.";
   }
   if (any_at(force_sensor) && any_at(specimen)) {
-    return any_of(Family::rate)
-               ? "Repeat the test at half the rate: what comes from a sensor's lag shrinks with the "
-                 "rate, what the specimen does of itself stays."
-               : "Put a dead weight of known size on the load cell: it reads wrong by itself or not at all.";
+    return any_of(EffectFamily::rate) ? "Repeat the test at half the rate: a sensor's lag shrinks with the rate; what "
+                                        "the specimen does does not."
+                                      : "Put a dead weight of known size on the load cell and compare its reading.";
   }
   if (any_at(displacement_sensor)) {
     return "Put a second displacement transducer beside the first, or step the actuator through gauge blocks.";
   }
-  if (any_of(Family::rate)) {
+  if (std::ranges::all_of(effects, is_of(EffectFamily::arrival))) {
+    return "Compare the clocks of coordinator and site before and after a longer test: an offset stays the same, a "
+           "drift grows with time, and a latency changes neither.";
+  }
+  if (any_of(EffectFamily::rate) || any_of(EffectFamily::arrival)) {
     return "Repeat the test at half the rate: a delay stays the same time, a lag changes its phase with frequency, "
-           "a force of velocity halves, and one of displacement does not change.";
+           "a damping force halves, and a force of displacement does not change.";
   }
-  if (any_of(Family::sensor_offset))
+  if (any_of(EffectFamily::offset)) {
     return "Record a stretch of rest before and after the test, and tare at zero force.";
-  if (any_of(Family::degradation)) {
-    return "Repeat the same cycle many times at constant amplitude: what wears changes from cycle to cycle.";
   }
-  if (any_of(Family::position)) {
+  if (any_of(EffectFamily::degradation)) {
+    return "Repeat the same cycle many times at constant amplitude: degradation changes the force from cycle to cycle.";
+  }
+  if (any_of(EffectFamily::load)) {
+    return "Air run: the same motion without the specimen. The error of a compliance vanishes with the force; that of "
+           "a gain, a play or a dead band stays.";
+  }
+  if (any_of(EffectFamily::position)) {
     return "Slow ramp through both stops from different starting positions: a fixed gap stays in place, play moves "
            "with the last reversal.";
   }

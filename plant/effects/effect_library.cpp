@@ -62,6 +62,7 @@ EffectType entry(EffectInterface interface, std::string_view name) {
           .name = name,
           .equation = Part::kEquation,
           .source = Part::kSource,
+          .traits = Part::kTraits,
           .parameters = Part::kParameters,
           .make = make<Part>};
 }
@@ -73,6 +74,7 @@ EffectType described(std::string_view name) {
           .name = name,
           .equation = Part::kEquation,
           .source = Part::kSource,
+          .traits = Part::kTraits,
           .parameters = Part::kParameters};
 }
 
@@ -82,6 +84,14 @@ EffectType entry(EffectInterface interface, std::string_view name) {
   EffectType type = entry<Part>(interface, name);
   type.make_inverse = make<Inverse>;
   return type;
+}
+
+template <class Property>
+const EffectType* first_at(EffectInterface interface, Property&& has_it) noexcept {
+  const auto library = effect_library();
+  const auto found = std::ranges::find_if(
+      library, [&](const EffectType& type) { return type.interface == interface && has_it(type); });
+  return found == library.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -150,10 +160,17 @@ std::span<const EffectType> effect_library() noexcept {
 }
 
 const EffectType* find_effect(EffectInterface interface, std::string_view name) noexcept {
-  const auto library = effect_library();
-  const auto found = std::ranges::find_if(
-      library, [&](const EffectType& type) { return type.interface == interface && type.name == name; });
-  return found == library.end() ? nullptr : &*found;
+  return first_at(interface, [name](const EffectType& type) { return type.name == name; });
+}
+
+const EffectType* find_effect(EffectInterface interface, ModelNumber number) noexcept {
+  if (number == ModelNumber::none) return nullptr;
+  return first_at(interface, [number](const EffectType& type) { return type.traits.number == number; });
+}
+
+const EffectType* find_effect(EffectInterface interface, DigitTrace digits) noexcept {
+  if (digits == DigitTrace::none) return nullptr;
+  return first_at(interface, [digits](const EffectType& type) { return type.traits.digits == digits; });
 }
 
 }  // namespace hybridtest

@@ -24,26 +24,32 @@ enum class EffectInterface : std::uint8_t {
 /// As written in scenarios and diagnoses: `transfer_system`.
 [[nodiscard]] std::string_view name_of(EffectInterface interface) noexcept;
 
-/// What one unit of a parameter is measured in, so that a search can scale it by a recording: a
-/// friction force by the measured force, a clearance by the measured displacement.
-enum class ParameterScale : std::uint8_t {
-  one,             // a ratio or exponent: no scale
-  displacement_m,  // peak displacement
-  velocity_m_per_s,
-  force_n,            // peak force
-  stiffness_n_per_m,  // peak force over peak displacement
-  damping_n_s_per_m,  // peak force over peak velocity
-  mass_kg,            // peak force over peak acceleration
-  time_s,             // a second
-  duration_s,         // length of the recording
-  frequency_hz,
-  damping_n_s2_per_m2,  // peak force over the square of the peak velocity
-  stiffness_n_per_m3,   // peak force over the cube of the peak displacement
-  compliance_m_per_n,   // peak displacement over peak force
+/// What an effect follows, and with it which experiment separates it from others.
+enum class EffectFamily : std::uint8_t {
+  amplitude,    // how far the motion goes, and back
+  rate,         // how fast it goes
+  arrival,      // when targets reach the site
+  position,     // where along the stroke it is
+  scale,        // proportional to what it changes
+  offset,       // a zero that is wrong or wanders
+  load,         // the force of the specimen
+  mass,         // acceleration
+  degradation,  // what the specimen went through before
 };
 
-/// Beside which law of a specimen a search looks for a parameter; beside another one it has its fallback.
-enum class LawUse : std::uint8_t { any, spring_or_none, with_strength };
+/// A number of the user's model that an effect corrects; every model has such numbers slightly wrong.
+enum class ModelNumber : std::uint8_t { none, mass, stiffness, damping, step, gain, delay, offset };
+
+/// What of an effect shows in the digits of a recording, where no prediction follows it sample by sample.
+enum class DigitTrace : std::uint8_t { none, rounding, lateness, loss };
+
+/// What a diagnosis has to know of an effect beside its parameters.
+struct EffectTraits {
+  EffectFamily family = EffectFamily::amplitude;
+  ModelNumber number = ModelNumber::none;
+  DigitTrace digits = DigitTrace::none;
+  bool follows_derivatives = false;  // its force follows velocity or acceleration
+};
 
 struct EffectParameter {
   std::string_view name;  // its unit last: `friction_force_n`
@@ -52,20 +58,12 @@ struct EffectParameter {
   // What is accepted in a scenario, both ends included.
   double low = 0.0;
   double high = 0.0;
-  // Where a search looks, in units of `scale` of the recording; within low and high. Both the
-  // same: nothing to search, the fallback is used.
-  ParameterScale scale = ParameterScale::one;
-  double search_low = 0.0;
-  double search_high = 0.0;
   // The value at which the effect is absent; NaN when no value of this parameter alone removes it.
   double neutral = 0.0;
   // The change of the stage's output is proportional to it, the others held (variable projection).
   bool is_linear = false;
   // What a scenario that leaves it out gets; NaN when it has to be given.
   double fallback = std::numeric_limits<double>::quiet_NaN();
-  LawUse needs = LawUse::any;
-  // A real site has no less than none of it: a search takes off at most what the model has.
-  bool is_amount = false;
 };
 
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
@@ -75,6 +73,7 @@ struct EffectType {
   std::string_view name;      // `coulomb_friction`
   std::string_view equation;  // one line
   std::string_view source;    // paper or textbook
+  EffectTraits traits;
   std::span<const EffectParameter> parameters;
   /// @param values   one per parameter, in their order, within [low, high].
   /// null for what changes the coordinator's own model.
@@ -89,5 +88,8 @@ struct EffectType {
 
 /// nullptr when there is none of that name.
 [[nodiscard]] const EffectType* find_effect(EffectInterface interface, std::string_view name) noexcept;
+/// The effect that corrects that number of the model, or leaves that trace; nullptr when there is none.
+[[nodiscard]] const EffectType* find_effect(EffectInterface interface, ModelNumber number) noexcept;
+[[nodiscard]] const EffectType* find_effect(EffectInterface interface, DigitTrace digits) noexcept;
 
 }  // namespace hybridtest

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/identification/search_table.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "plant/specimens/law_specimen.hpp"
@@ -21,8 +22,9 @@ constexpr double kPeriod_s = 1e-3;
 EffectSetting some_setting(const EffectType& type) {
   EffectSetting setting{.type = &type, .values = {}};
   for (const EffectParameter& parameter : type.parameters) {
-    setting.values.push_back(std::isnan(parameter.fallback) ? 0.5 * (parameter.search_low + parameter.search_high)
-                                                            : parameter.fallback);
+    const bool has_to_be_given = std::isnan(parameter.fallback);
+    const SearchRange* const range = search_range(type, parameter);
+    setting.values.push_back(has_to_be_given ? 0.5 * (range->low + range->high) : parameter.fallback);
   }
   return setting;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/text/scalar.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 
@@ -30,8 +31,8 @@ const KeptSimulation& without() {
 }
 
 /// In units of this building: peak displacement some 0.05 m, force 1e5 N, 4 s long.
-double scale_of(const EffectParameter& parameter) {
-  switch (parameter.scale) {
+double scale_of(const SearchRange& range) {
+  switch (range.scale) {
     case ParameterScale::displacement_m: return 0.02;
     case ParameterScale::velocity_m_per_s: return 0.1;
     case ParameterScale::force_n: return 2.0e4;
@@ -43,8 +44,7 @@ double scale_of(const EffectParameter& parameter) {
     case ParameterScale::stiffness_n_per_m3: return 1.0e9;
     case ParameterScale::compliance_m_per_n: return 1.0e-7;
     case ParameterScale::one:
-    case ParameterScale::time_s:
-    case ParameterScale::frequency_hz: return 1.0;
+    case ParameterScale::time_s: return 1.0;
   }
   return 1.0;
 }
@@ -56,8 +56,10 @@ std::string written(const EffectType& type) {
       std::ranges::any_of(type.parameters, [](const EffectParameter& p) { return std::isnan(p.fallback); });
   for (const EffectParameter& parameter : type.parameters) {
     if (has_to_be_given && !std::isnan(parameter.fallback)) continue;
-    const double share = parameter.search_low + 0.55 * (parameter.search_high - parameter.search_low);
-    const double value = std::clamp(scale_of(parameter) * share, parameter.low, parameter.high);
+    const SearchRange* const range = search_range(type, parameter);
+    if (range == nullptr) continue;
+    const double share = range->low + 0.55 * (range->high - range->low);
+    const double value = std::clamp(scale_of(*range) * share, parameter.low, parameter.high);
     text += ", " + std::string{parameter.name} + ": " + written_number(value);
   }
   return text + "}]";

@@ -12,15 +12,9 @@ class CompensatorBias final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = u0 + b";
   static constexpr std::string_view kSource = "an offset in the chain of commands";
-  static constexpr std::array kParameters{EffectParameter{.name = "bias_m",
-                                                          .unit = "m",
-                                                          .what = "b",
-                                                          .low = -kUnbounded,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = -0.5,
-                                                          .search_high = 0.5,
-                                                          .is_linear = true}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::offset};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "bias_m", .unit = "m", .what = "b", .low = -kUnbounded, .high = kUnbounded, .is_linear = true}};
 
   CompensatorBias(std::span<const double> values, double /*sample_period_s*/) : bias_m_{values[0]} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& command_m) noexcept override {

@@ -16,14 +16,9 @@ class SettingMismatch final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = u0 + e u0'";
   static constexpr std::string_view kSource = "Wallace et al. (2005)";
-  static constexpr std::array kParameters{EffectParameter{.name = "delay_error_s",
-                                                          .unit = "s",
-                                                          .what = "e, made up for beyond its setting",
-                                                          .low = -10.0,
-                                                          .high = 10.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = -0.1,
-                                                          .search_high = 0.1}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "delay_error_s", .unit = "s", .what = "e, made up for beyond its setting", .low = -10.0, .high = 10.0}};
 
   SettingMismatch(std::span<const double> values, double sample_period_s)
       : error_samples_{values[0] / sample_period_s} {}

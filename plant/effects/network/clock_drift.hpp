@@ -15,13 +15,9 @@ class ClockDrift final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = u0((1 - r) t), at most 1 s behind";
   static constexpr std::string_view kSource = "Mills (2010)";
-  static constexpr std::array kParameters{EffectParameter{.name = "drift_ratio",
-                                                          .unit = "",
-                                                          .what = "r, seconds lost per second",
-                                                          .low = 0.0,
-                                                          .high = 0.1,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.01}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "drift_ratio", .unit = "", .what = "r, seconds lost per second", .low = 0.0, .high = 0.1}};
 
   ClockDrift(std::span<const double> values, double sample_period_s);
   void before(const StageSample& sample, Motion& target) noexcept override;

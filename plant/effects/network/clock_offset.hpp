@@ -14,14 +14,9 @@ class ClockOffset final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = u0(t - d)";
   static constexpr std::string_view kSource = "Mills (2010)";
-  static constexpr std::array kParameters{EffectParameter{.name = "offset_s",
-                                                          .unit = "s",
-                                                          .what = "d, by which its clock is behind",
-                                                          .low = 0.0,
-                                                          .high = 10.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.2}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "offset_s", .unit = "s", .what = "d, by which its clock is behind", .low = 0.0, .high = 10.0}};
 
   ClockOffset(std::span<const double> values, double sample_period_s) : line_{values[0], sample_period_s} {}
   void before(const StageSample& /*sample*/, Motion& target) noexcept override {

@@ -16,23 +16,16 @@ class NetworkJitter final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = newest u0(ti) with ti + J ui <= t, ui even in 0 to 1";
   static constexpr std::string_view kSource = "Mosqueda et al. (2005)";
-  static constexpr std::array kParameters{EffectParameter{.name = "jitter_s",
-                                                          .unit = "s",
-                                                          .what = "J, greatest lateness",
-                                                          .low = 0.0,
-                                                          .high = 1.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.1},
-                                          EffectParameter{.name = "seed",
-                                                          .unit = "",
-                                                          .what = "of the draw",
-                                                          .low = 0.0,
-                                                          .high = 9007199254740992.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 0.0}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .digits = DigitTrace::lateness};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "jitter_s", .unit = "s", .what = "J, greatest lateness", .low = 0.0, .high = 1.0},
+      EffectParameter{.name = "seed",
+                      .unit = "",
+                      .what = "of the draw",
+                      .low = 0.0,
+                      .high = 9007199254740992.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 0.0}};
 
   NetworkJitter(std::span<const double> values, double sample_period_s);
   void before(const StageSample& sample, Motion& target) noexcept override;

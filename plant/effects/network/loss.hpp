@@ -15,22 +15,16 @@ class NetworkLoss final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = newest target that was not lost, each lost with probability p";
   static constexpr std::string_view kSource = "Mosqueda et al. (2005)";
-  static constexpr std::array kParameters{EffectParameter{.name = "loss_ratio",
-                                                          .unit = "",
-                                                          .what = "p, share of lost targets",
-                                                          .low = 0.0,
-                                                          .high = 1.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.5},
-                                          EffectParameter{.name = "seed",
-                                                          .unit = "",
-                                                          .what = "of the draw",
-                                                          .low = 0.0,
-                                                          .high = 9007199254740992.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 0.0}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .digits = DigitTrace::loss};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "loss_ratio", .unit = "", .what = "p, share of lost targets", .low = 0.0, .high = 1.0},
+      EffectParameter{.name = "seed",
+                      .unit = "",
+                      .what = "of the draw",
+                      .low = 0.0,
+                      .high = 9007199254740992.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 0.0}};
 
   NetworkLoss(std::span<const double> values, double /*sample_period_s*/)
       : loss_ratio_{values[0]},

@@ -13,6 +13,7 @@ class SensorBias : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = y + b";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 1.4";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::offset, .number = ModelNumber::offset};
 
   SensorBias(std::span<const double> values, double /*sample_period_s*/) : bias_{values[0]} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& output) noexcept override {
@@ -32,9 +33,6 @@ class DisplacementBias final : public SensorBias {
                                                           .what = "b, reading at zero displacement",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = -0.5,
-                                                          .search_high = 0.5,
                                                           .is_linear = true}};
 };
 
@@ -56,9 +54,6 @@ class ForceBias final : public SensorBias {
                                                           .what = "b, reading at zero force",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = -0.5,
-                                                          .search_high = 0.5,
                                                           .is_linear = true}};
 };
 

@@ -13,6 +13,7 @@ class SensorDrift : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = y + d t";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 1.4";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::offset};
 
   SensorDrift(std::span<const double> values, double /*sample_period_s*/) : drift_per_s_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& output) noexcept override {
@@ -27,15 +28,8 @@ class SensorDrift : public Effect {
 class DisplacementDrift final : public SensorDrift {
  public:
   using SensorDrift::SensorDrift;
-  static constexpr std::array kParameters{EffectParameter{.name = "drift_m_per_s",
-                                                          .unit = "m/s",
-                                                          .what = "d",
-                                                          .low = -kUnbounded,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = -0.2,
-                                                          .search_high = 0.2,
-                                                          .is_linear = true}};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "drift_m_per_s", .unit = "m/s", .what = "d", .low = -kUnbounded, .high = kUnbounded, .is_linear = true}};
 };
 
 class InverseDisplacementDrift final : public Effect {
@@ -54,15 +48,8 @@ class InverseDisplacementDrift final : public Effect {
 class ForceDrift final : public SensorDrift {
  public:
   using SensorDrift::SensorDrift;
-  static constexpr std::array kParameters{EffectParameter{.name = "drift_n_per_s",
-                                                          .unit = "N/s",
-                                                          .what = "d",
-                                                          .low = -kUnbounded,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = -0.2,
-                                                          .search_high = 0.2,
-                                                          .is_linear = true}};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "drift_n_per_s", .unit = "N/s", .what = "d", .low = -kUnbounded, .high = kUnbounded, .is_linear = true}};
 };
 
 }  // namespace hybridtest

@@ -12,13 +12,12 @@ class SensorGain final : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = (1 + e) y";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 1.4";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::scale};
   static constexpr std::array kParameters{EffectParameter{.name = "gain_error",
                                                           .unit = "",
                                                           .what = "e, share by which readings are too large",
                                                           .low = -2.0,
                                                           .high = 10.0,
-                                                          .search_low = -0.5,
-                                                          .search_high = 0.5,
                                                           .is_linear = true}};
 
   SensorGain(std::span<const double> values, double /*sample_period_s*/) : factor_{1.0 + values[0]} {}

@@ -13,14 +13,9 @@ class SensorLag final : public Effect {
  public:
   static constexpr std::string_view kEquation = "T r' + r = y";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 3.3";
-  static constexpr std::array kParameters{EffectParameter{.name = "time_constant_s",
-                                                          .unit = "s",
-                                                          .what = "T",
-                                                          .low = 0.0,
-                                                          .high = 1e3,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.1}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "time_constant_s", .unit = "s", .what = "T", .low = 0.0, .high = 1e3}};
 
   SensorLag(std::span<const double> values, double sample_period_s) : lag_{values[0], sample_period_s} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& output) noexcept override {

@@ -14,6 +14,7 @@ class SensorQuantization : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = q round(y / q)";
   static constexpr std::string_view kSource = "Widrow and Kollar (2008)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .digits = DigitTrace::rounding};
 
   SensorQuantization(std::span<const double> values, double /*sample_period_s*/) : step_{values[0]} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& output) noexcept override {
@@ -28,27 +29,15 @@ class SensorQuantization : public Effect {
 class DisplacementQuantization final : public SensorQuantization {
  public:
   using SensorQuantization::SensorQuantization;
-  static constexpr std::array kParameters{EffectParameter{.name = "step_m",
-                                                          .unit = "m",
-                                                          .what = "q, of the readings",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 1e-4,
-                                                          .search_high = 0.3}};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "step_m", .unit = "m", .what = "q, of the readings", .low = 0.0, .high = kUnbounded}};
 };
 
 class ForceQuantization final : public SensorQuantization {
  public:
   using SensorQuantization::SensorQuantization;
-  static constexpr std::array kParameters{EffectParameter{.name = "step_n",
-                                                          .unit = "N",
-                                                          .what = "q, of the readings",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = 1e-4,
-                                                          .search_high = 0.3}};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "step_n", .unit = "N", .what = "q, of the readings", .low = 0.0, .high = kUnbounded}};
 };
 
 }  // namespace hybridtest

@@ -14,14 +14,12 @@ class ForceSaturation final : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = clamp(y, -m, m)";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 1.4";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
   static constexpr std::array kParameters{EffectParameter{.name = "limit_n",
                                                           .unit = "N",
                                                           .what = "m, greatest reading",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = 0.3,
-                                                          .search_high = 1.1,
                                                           .neutral = kUnbounded}};
 
   ForceSaturation(std::span<const double> values, double /*sample_period_s*/) : limit_n_{values[0]} {}

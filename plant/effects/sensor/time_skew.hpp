@@ -14,14 +14,9 @@ class TimeSkew final : public Effect {
  public:
   static constexpr std::string_view kEquation = "r(t) = y(t - s)";
   static constexpr std::string_view kSource = "channels sampled one after the other";
-  static constexpr std::array kParameters{EffectParameter{.name = "skew_s",
-                                                          .unit = "s",
-                                                          .what = "s, by which the force is late",
-                                                          .low = 0.0,
-                                                          .high = 10.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.05}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "skew_s", .unit = "s", .what = "s, by which the force is late", .low = 0.0, .high = 10.0}};
 
   TimeSkew(std::span<const double> values, double sample_period_s) : line_{values[0], sample_period_s} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& force_n) noexcept override {

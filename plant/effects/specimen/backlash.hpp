@@ -21,23 +21,17 @@ class SpecimenBacklash final : public Effect {
   static constexpr std::string_view kEquation =
       "F = F0(y), y = x -+ c/2 on a flank, still between; leaves it at F0 = h Fr";
   static constexpr std::string_view kSource = "Tao and Kokotovic (1996), chapter 2";
-  static constexpr std::array kParameters{EffectParameter{.name = "clearance_m",
-                                                          .unit = "m",
-                                                          .what = "c, from one side to the other",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.005,
-                                                          .search_high = 1.0},
-                                          EffectParameter{.name = "holding_ratio",
-                                                          .unit = "",
-                                                          .what = "h, 1: play operator, 0: gap once unloaded",
-                                                          .low = 0.0,
-                                                          .high = 1.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 1.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 1.0}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr std::array kParameters{
+      EffectParameter{
+          .name = "clearance_m", .unit = "m", .what = "c, from one side to the other", .low = 0.0, .high = kUnbounded},
+      EffectParameter{.name = "holding_ratio",
+                      .unit = "",
+                      .what = "h, 1: play operator, 0: gap once unloaded",
+                      .low = 0.0,
+                      .high = 1.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 1.0}};
 
   SpecimenBacklash(std::span<const double> values, double /*sample_period_s*/)
       : half_clearance_m_{0.5 * values[0]}, holding_ratio_{values[1]} {}

@@ -15,43 +15,31 @@ class BoucWenHysteresis final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fy z, dz = (1 - (s sign(z dx) + 1 - s) |z|^n) dx / xy";
   static constexpr std::string_view kSource = "Wen (1976)";
-  static constexpr std::array kParameters{EffectParameter{.name = "yield_force_n",
-                                                          .unit = "N",
-                                                          .what = "Fy",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = 0.0,
-                                                          .search_high = 2.0,
-                                                          .is_linear = true},
-                                          EffectParameter{.name = "yield_displacement_m",
-                                                          .unit = "m",
-                                                          .what = "xy",
-                                                          .low = 1e-9,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          // What yields before, slides: dry friction.
-                                                          .search_low = 0.03,
-                                                          .search_high = 1.0,
-                                                          .neutral = kNoNeutral},
-                                          EffectParameter{.name = "exponent",
-                                                          .unit = "",
-                                                          .what = "n, the larger the sharper the corner",
-                                                          .low = 1.0,
-                                                          .high = 20.0,
-                                                          .search_low = 1.0,
-                                                          .search_high = 1.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 1.0},
-                                          EffectParameter{.name = "dissipation_share",
-                                                          .unit = "",
-                                                          .what = "s, 0.5: unloads along a straight line",
-                                                          .low = 0.05,
-                                                          .high = 1.0,
-                                                          .search_low = 0.2,
-                                                          .search_high = 1.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 0.5}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr std::array kParameters{
+      EffectParameter{
+          .name = "yield_force_n", .unit = "N", .what = "Fy", .low = 0.0, .high = kUnbounded, .is_linear = true},
+      EffectParameter{.name = "yield_displacement_m",
+                      .unit = "m",
+                      .what = "xy",
+                      .low = 1e-9,
+                      .high = kUnbounded,
+                      // What yields before, slides: dry friction.
+                      .neutral = kNoNeutral},
+      EffectParameter{.name = "exponent",
+                      .unit = "",
+                      .what = "n, the larger the sharper the corner",
+                      .low = 1.0,
+                      .high = 20.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 1.0},
+      EffectParameter{.name = "dissipation_share",
+                      .unit = "",
+                      .what = "s, 0.5: unloads along a straight line",
+                      .low = 0.05,
+                      .high = 1.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 0.5}};
 
   BoucWenHysteresis(std::span<const double> values, double /*sample_period_s*/)
       : yield_force_n_{values[0]},

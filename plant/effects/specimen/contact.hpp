@@ -14,23 +14,18 @@ class Contact final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + k max(0, x - p) for p >= 0, F0 + k min(0, x - p) for p < 0";
   static constexpr std::string_view kSource = "Chopra (2012), section 22.1";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "k, of the stop",
                                                           .low = 0.0,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::stiffness_n_per_m,
-                                                          .search_low = 0.0,
-                                                          .search_high = 50.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "position_m",
                                                           .unit = "m",
                                                           .what = "p, where it is met",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = -0.95,
-                                                          .search_high = 0.95,
                                                           .neutral = kNoNeutral}};
 
   Contact(std::span<const double> values, double /*sample_period_s*/)

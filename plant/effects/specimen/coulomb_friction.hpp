@@ -15,22 +15,18 @@ class CoulombFriction final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fc (z + a |z|), dz = dx / d, |z| <= 1";
   static constexpr std::string_view kSource = "Coulomb (1785); Dahl (1968)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
   static constexpr std::array kParameters{EffectParameter{.name = "friction_force_n",
                                                           .unit = "N",
                                                           .what = "Fc, while sliding",
                                                           .low = 0.0,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = 0.0,
-                                                          .search_high = 1.5,
                                                           .is_linear = true},
                                           EffectParameter{.name = "asymmetry",
                                                           .unit = "",
                                                           .what = "a, more one way than back",
                                                           .low = -1.0,
                                                           .high = 1.0,
-                                                          .search_low = -0.9,
-                                                          .search_high = 0.9,
                                                           .neutral = kNoNeutral,
                                                           .fallback = 0.0},
                                           EffectParameter{.name = "presliding_displacement_m",
@@ -38,9 +34,6 @@ class CoulombFriction final : public Effect {
                                                           .what = "d, until it slides",
                                                           .low = 1e-12,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 1e-4,
-                                                          .search_high = 0.5,
                                                           .neutral = kNoNeutral,
                                                           .fallback = 1e-5}};
 

@@ -13,15 +13,9 @@ class CubicStiffness final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + k3 x^3";
   static constexpr std::string_view kSource = "Duffing (1918)";
-  static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m3",
-                                                          .unit = "N/m3",
-                                                          .what = "k3",
-                                                          .low = -1e18,
-                                                          .high = 1e18,
-                                                          .scale = ParameterScale::stiffness_n_per_m3,
-                                                          .search_low = -2.0,
-                                                          .search_high = 2.0,
-                                                          .is_linear = true}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "stiffness_n_per_m3", .unit = "N/m3", .what = "k3", .low = -1e18, .high = 1e18, .is_linear = true}};
 
   CubicStiffness(std::span<const double> values, double /*sample_period_s*/) : stiffness_n_per_m3_{values[0]} {}
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {

@@ -15,22 +15,18 @@ class Fracture final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = (1 - r) F0 from t = tf on";
   static constexpr std::string_view kSource = "a member lost";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::degradation};
   static constexpr std::array kParameters{EffectParameter{.name = "lost_ratio",
                                                           .unit = "",
                                                           .what = "r, of the force that is lost",
                                                           .low = 0.0,
                                                           .high = 1.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 1.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "instant_s",
                                                           .unit = "s",
                                                           .what = "tf, since the beginning",
                                                           .low = 0.0,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::duration_s,
-                                                          .search_low = 0.02,
-                                                          .search_high = 0.98,
                                                           .neutral = kNoNeutral}};
 
   Fracture(std::span<const double> values, double sample_period_s)

@@ -14,14 +14,9 @@ class Gap final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0(x - clamp(x, -g, g))";
   static constexpr std::string_view kSource = "Chopra (2012), section 22.1";
-  static constexpr std::array kParameters{EffectParameter{.name = "gap_m",
-                                                          .unit = "m",
-                                                          .what = "g, on either side",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.001,
-                                                          .search_high = 0.95}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
+  static constexpr std::array kParameters{
+      EffectParameter{.name = "gap_m", .unit = "m", .what = "g, on either side", .low = 0.0, .high = kUnbounded}};
 
   Gap(std::span<const double> values, double /*sample_period_s*/) : gap_m_{values[0]} {}
   void before(const StageSample& /*sample*/, Motion& motion) noexcept override {

@@ -15,23 +15,18 @@ class GeometricStiffness final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 - P x / sqrt(h^2 - x^2)";
   static constexpr std::string_view kSource = "Chopra (2012), section 9.7";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::scale};
   static constexpr std::array kParameters{EffectParameter{.name = "axial_force_n",
                                                           .unit = "N",
                                                           .what = "P, compression",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = -30.0,
-                                                          .search_high = 30.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "height_m",
                                                           .unit = "m",
                                                           .what = "h, of the column",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 1.1,
-                                                          .search_high = 30.0,
                                                           .neutral = kNoNeutral}};
 
   GeometricStiffness(std::span<const double> values, double /*sample_period_s*/)

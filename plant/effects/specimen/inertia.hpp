@@ -13,16 +13,13 @@ class Inertia final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + m a";
   static constexpr std::string_view kSource = "Newton's second law";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::mass, .follows_derivatives = true};
   static constexpr std::array kParameters{EffectParameter{.name = "mass_kg",
                                                           .unit = "kg",
                                                           .what = "m, real less model mass",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::mass_kg,
-                                                          .search_low = -2.0,
-                                                          .search_high = 2.0,
-                                                          .is_linear = true,
-                                                          .is_amount = true}};
+                                                          .is_linear = true}};
 
   Inertia(std::span<const double> values, double /*sample_period_s*/) : mass_kg_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

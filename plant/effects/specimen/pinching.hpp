@@ -14,22 +14,18 @@ class Pinching final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 (1 - p exp(-(x / w)^2))";
   static constexpr std::string_view kSource = "after Baber and Noori (1986)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
   static constexpr std::array kParameters{EffectParameter{.name = "pinching_ratio",
                                                           .unit = "",
                                                           .what = "p, of the force that is missing at zero",
                                                           .low = 0.0,
                                                           .high = 1.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 1.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "pinching_width_m",
                                                           .unit = "m",
                                                           .what = "w, where 37 % of that are missing",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.02,
-                                                          .search_high = 2.0,
                                                           .neutral = kNoNeutral}};
 
   Pinching(std::span<const double> values, double /*sample_period_s*/)

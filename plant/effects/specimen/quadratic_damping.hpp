@@ -14,16 +14,13 @@ class QuadraticDamping final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + c v |v|";
   static constexpr std::string_view kSource = "Chopra (2012), section 3.9";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .follows_derivatives = true};
   static constexpr std::array kParameters{EffectParameter{.name = "damping_n_s2_per_m2",
                                                           .unit = "N s2/m2",
                                                           .what = "c",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::damping_n_s2_per_m2,
-                                                          .search_low = -2.0,
-                                                          .search_high = 2.0,
-                                                          .is_linear = true,
-                                                          .is_amount = true}};
+                                                          .is_linear = true}};
 
   QuadraticDamping(std::span<const double> values, double /*sample_period_s*/) : damping_n_s2_per_m2_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

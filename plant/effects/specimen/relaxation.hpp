@@ -14,23 +14,18 @@ class Relaxation final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + f, f' + f / T = k v";
   static constexpr std::string_view kSource = "Maxwell (1867)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "k, of a sudden motion",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::stiffness_n_per_m,
-                                                          .search_low = 0.0,
-                                                          .search_high = 3.0,
                                                           .is_linear = true},
                                           EffectParameter{.name = "time_constant_s",
                                                           .unit = "s",
                                                           .what = "T, of the fading",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.005,
-                                                          .search_high = 100.0,
                                                           .neutral = kNoNeutral}};
 
   Relaxation(std::span<const double> values, double sample_period_s)

@@ -16,14 +16,12 @@ class StiffnessDegradation final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0(x / (1 + S / L)), S = travelled path";
   static constexpr std::string_view kSource = "after Baber and Wen (1981)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::degradation};
   static constexpr std::array kParameters{EffectParameter{.name = "half_life_m",
                                                           .unit = "m",
                                                           .what = "L, path after which it is half as stiff",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 3.0,
-                                                          .search_high = 3000.0,
                                                           .neutral = kUnbounded}};
 
   StiffnessDegradation(std::span<const double> values, double /*sample_period_s*/) : half_life_m_{values[0]} {}

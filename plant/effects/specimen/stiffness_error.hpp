@@ -13,26 +13,20 @@ class StiffnessError final : public Effect {
  public:
   static constexpr std::string_view kEquation = "y = (1 + e) x, F = F0(y) + dk y";
   static constexpr std::string_view kSource = "Hooke's law; a wrong number of the user's model";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::scale, .number = ModelNumber::stiffness};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_error_ratio",
                                                           .unit = "",
                                                           .what = "e, real over the law's stiffness less 1",
                                                           .low = -1.0,
                                                           .high = kUnbounded,
-                                                          .search_low = -1.0,
-                                                          .search_high = 2.0,
-                                                          .fallback = 0.0,
-                                                          .needs = LawUse::with_strength},
+                                                          .fallback = 0.0},
                                           EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "dk, real less model stiffness",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::stiffness_n_per_m,
-                                                          .search_low = -2.0,
-                                                          .search_high = 2.0,
                                                           .is_linear = true,
-                                                          .fallback = 0.0,
-                                                          .needs = LawUse::spring_or_none}};
+                                                          .fallback = 0.0}};
 
   StiffnessError(std::span<const double> values, double /*sample_period_s*/)
       : ratio_{1.0 + values[0]}, stiffness_n_per_m_{values[1]} {}

@@ -15,14 +15,12 @@ class StrengthDegradation final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = s F0(x / s), s = exp(-S / L), S = travelled path";
   static constexpr std::string_view kSource = "after Baber and Wen (1981)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::degradation};
   static constexpr std::array kParameters{EffectParameter{.name = "path_m",
                                                           .unit = "m",
                                                           .what = "L, path after which 37 % of the strength are left",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 3.0,
-                                                          .search_high = 3000.0,
                                                           .neutral = kUnbounded}};
 
   StrengthDegradation(std::span<const double> values, double /*sample_period_s*/) : decay_path_m_{values[0]} {}

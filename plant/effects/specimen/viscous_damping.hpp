@@ -13,16 +13,13 @@ class ViscousDamping final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + c v";
   static constexpr std::string_view kSource = "Chopra (2012), section 1.4";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .follows_derivatives = true};
   static constexpr std::array kParameters{EffectParameter{.name = "damping_n_s_per_m",
                                                           .unit = "N s/m",
                                                           .what = "c, real less model damping",
                                                           .low = -kUnbounded,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::damping_n_s_per_m,
-                                                          .search_low = -2.0,
-                                                          .search_high = 2.0,
-                                                          .is_linear = true,
-                                                          .is_amount = true}};
+                                                          .is_linear = true}};
 
   ViscousDamping(std::span<const double> values, double /*sample_period_s*/) : damping_n_s_per_m_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& force_n) noexcept override {

@@ -16,31 +16,24 @@ class Yielding final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + G(x) - k x, G: spring of k, Fy, R0 without hardening";
   static constexpr std::string_view kSource = "Menegotto and Pinto (1973)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
   static constexpr std::array kParameters{EffectParameter{.name = "yield_force_n",
                                                           .unit = "N",
                                                           .what = "Fy, of the part that yields",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::force_n,
-                                                          .search_low = 0.02,
-                                                          .search_high = 1.5,
                                                           .neutral = kUnbounded},
                                           EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "k, of the part that yields",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::stiffness_n_per_m,
-                                                          .search_low = 0.05,
-                                                          .search_high = 5.0,
                                                           .neutral = kNoNeutral},
                                           EffectParameter{.name = "r0",
                                                           .unit = "",
                                                           .what = "R0, the larger the sharper the corner",
                                                           .low = 1.0,
                                                           .high = 100.0,
-                                                          .search_low = 1.5,
-                                                          .search_high = 25.0,
                                                           .neutral = kNoNeutral,
                                                           .fallback = 20.0}};
 

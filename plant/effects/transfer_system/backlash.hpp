@@ -14,14 +14,9 @@ class TransferBacklash final : public Effect {
  public:
   static constexpr std::string_view kEquation = "y = clamp(y, x0 - c/2, x0 + c/2)";
   static constexpr std::string_view kSource = "Tao and Kokotovic (1996), chapter 2";
-  static constexpr std::array kParameters{EffectParameter{.name = "clearance_m",
-                                                          .unit = "m",
-                                                          .what = "c, from one side to the other",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.001,
-                                                          .search_high = 1.0}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "clearance_m", .unit = "m", .what = "c, from one side to the other", .low = 0.0, .high = kUnbounded}};
 
   TransferBacklash(std::span<const double> values, double /*sample_period_s*/) : half_clearance_m_{0.5 * values[0]} {}
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& displacement_m) noexcept override {

@@ -22,23 +22,17 @@ class Bandwidth final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x0 + T x0' + r T^2 x0'' = u";
   static constexpr std::string_view kSource = "Zhao et al. (2003)";
-  static constexpr std::array kParameters{EffectParameter{.name = "time_constant_s",
-                                                          .unit = "s",
-                                                          .what = "T, delay of slow motion",
-                                                          .low = 0.0,
-                                                          .high = 1e3,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.1},
-                                          EffectParameter{.name = "second_order_ratio",
-                                                          .unit = "",
-                                                          .what = "r, 0: one pole, 0.25: two equal ones",
-                                                          .low = 0.0,
-                                                          .high = 100.0,
-                                                          .search_low = 0.0,
-                                                          .search_high = 2.0,
-                                                          .neutral = kNoNeutral,
-                                                          .fallback = 0.0}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr std::array kParameters{
+      EffectParameter{
+          .name = "time_constant_s", .unit = "s", .what = "T, delay of slow motion", .low = 0.0, .high = 1e3},
+      EffectParameter{.name = "second_order_ratio",
+                      .unit = "",
+                      .what = "r, 0: one pole, 0.25: two equal ones",
+                      .low = 0.0,
+                      .high = 100.0,
+                      .neutral = kNoNeutral,
+                      .fallback = 0.0}};
 
   Bandwidth(std::span<const double> values, double sample_period_s);
   void before(const StageSample& sample, Motion& command) noexcept override;

@@ -14,14 +14,12 @@ class Compliance final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x = x0 - F / kf";
   static constexpr std::string_view kSource = "Dyke et al. (1995)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::load};
   static constexpr std::array kParameters{EffectParameter{.name = "compliance_m_per_n",
                                                           .unit = "m/N",
                                                           .what = "1 / kf, of frame and clevis",
                                                           .low = 0.0,
                                                           .high = 1.0,
-                                                          .scale = ParameterScale::compliance_m_per_n,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.5,
                                                           .is_linear = true}};
 
   Compliance(std::span<const double> values, double /*sample_period_s*/) : compliance_m_per_n_{values[0]} {}

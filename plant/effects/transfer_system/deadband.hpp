@@ -14,14 +14,9 @@ class Deadband final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x = x0(u - clamp(u, -d, d))";
   static constexpr std::string_view kSource = "Tao and Kokotovic (1996), chapter 2";
-  static constexpr std::array kParameters{EffectParameter{.name = "deadband_m",
-                                                          .unit = "m",
-                                                          .what = "d, on either side of zero",
-                                                          .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.001,
-                                                          .search_high = 0.5}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "deadband_m", .unit = "m", .what = "d, on either side of zero", .low = 0.0, .high = kUnbounded}};
 
   Deadband(std::span<const double> values, double /*sample_period_s*/) : deadband_m_{values[0]} {}
   void before(const StageSample& /*sample*/, Motion& command) noexcept override {

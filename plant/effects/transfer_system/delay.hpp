@@ -15,14 +15,9 @@ class TransferDelay final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x(t) = x0(t - tau)";
   static constexpr std::string_view kSource = "Horiuchi et al. (1999)";
-  static constexpr std::array kParameters{EffectParameter{.name = "delay_s",
-                                                          .unit = "s",
-                                                          .what = "tau, real less model delay",
-                                                          .low = -10.0,
-                                                          .high = 10.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = -0.1,
-                                                          .search_high = 0.1}};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .number = ModelNumber::delay};
+  static constexpr std::array kParameters{EffectParameter{
+      .name = "delay_s", .unit = "s", .what = "tau, real less model delay", .low = -10.0, .high = 10.0}};
 
   TransferDelay(std::span<const double> values, double sample_period_s)
       : line_{std::max(0.0, values[0]), sample_period_s} {}

@@ -12,13 +12,12 @@ class TransferGain final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x = (1 + e) x0";
   static constexpr std::string_view kSource = "Carrion and Spencer (2007), section 4.2";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::scale, .number = ModelNumber::gain};
   static constexpr std::array kParameters{EffectParameter{.name = "gain_error",
                                                           .unit = "",
                                                           .what = "e, share by which it goes too far",
                                                           .low = -2.0,
                                                           .high = 10.0,
-                                                          .search_low = -0.5,
-                                                          .search_high = 0.5,
                                                           .is_linear = true}};
 
   TransferGain(std::span<const double> values, double /*sample_period_s*/) : factor_{1.0 + values[0]} {}

@@ -15,22 +15,17 @@ class Stiction final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x holds after a reversal of x0 until |x0 - x| > s, then T x' = x0 - x";
   static constexpr std::string_view kSource = "after Karnopp (1985)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
   static constexpr std::array kParameters{EffectParameter{.name = "stick_displacement_m",
                                                           .unit = "m",
                                                           .what = "s, asked for before it slips",
                                                           .low = 0.0,
-                                                          .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 1e-4,
-                                                          .search_high = 0.5},
+                                                          .high = kUnbounded},
                                           EffectParameter{.name = "slip_time_s",
                                                           .unit = "s",
                                                           .what = "T, to catch up in; 0: at once",
                                                           .low = 0.0,
                                                           .high = 1.0,
-                                                          .scale = ParameterScale::time_s,
-                                                          .search_low = 0.0,
-                                                          .search_high = 0.005,
                                                           .fallback = 0.0}};
 
   Stiction(std::span<const double> values, double sample_period_s)

@@ -13,14 +13,12 @@ class StrokeLimit final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x = clamp(x0, -s, s)";
   static constexpr std::string_view kSource = "Merritt (1967)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
   static constexpr std::array kParameters{EffectParameter{.name = "stroke_limit_m",
                                                           .unit = "m",
                                                           .what = "s, to either side",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::displacement_m,
-                                                          .search_low = 0.2,
-                                                          .search_high = 1.1,
                                                           .neutral = kUnbounded}};
 
   StrokeLimit(std::span<const double> values, double /*sample_period_s*/) : stroke_limit_m_{values[0]} {}

@@ -14,14 +14,12 @@ class VelocityLimit final : public Effect {
  public:
   static constexpr std::string_view kEquation = "|x'| <= vmax, else x = x0";
   static constexpr std::string_view kSource = "Merritt (1967)";
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
   static constexpr std::array kParameters{EffectParameter{.name = "velocity_limit_m_per_s",
                                                           .unit = "m/s",
                                                           .what = "vmax",
                                                           .low = 1e-9,
                                                           .high = kUnbounded,
-                                                          .scale = ParameterScale::velocity_m_per_s,
-                                                          .search_low = 0.1,
-                                                          .search_high = 1.2,
                                                           .neutral = kUnbounded}};
 
   VelocityLimit(std::span<const double> values, double sample_period_s) : travel_m_max_{values[0] * sample_period_s} {}

@@ -73,7 +73,7 @@ constexpr double kRatioError = 1e-9;
 
 double value_of(const StructureDiagnosis& diagnosis, std::string_view effect) {
   for (const FittedRatio& ratio : diagnosis.fit.ratios) {
-    if (ratio.effect->name == effect) return ratio.value;
+    if (ratio.effect->type().name == effect) return ratio.value;
   }
   return std::nan("");
 }
@@ -95,9 +95,9 @@ TEST_P(WrongNumber, IsNamedAloneWithItsValue) {
     StructureErrors errors;
     errors.*(effect.ratio) = ratio;
     const StructureDiagnosis diagnosis = diagnose_structure(two_storeys(), tested(errors));
-    EXPECT_EQ(diagnosis.verdict, Verdict::named) << effect.name;
-    ASSERT_EQ(diagnosis.fit.ratios.size(), 1U) << effect.name;
-    EXPECT_NEAR(value_of(diagnosis, effect.name), ratio, kRatioError);
+    EXPECT_EQ(diagnosis.verdict, Verdict::named) << effect.type().name;
+    ASSERT_EQ(diagnosis.fit.ratios.size(), 1U) << effect.type().name;
+    EXPECT_NEAR(value_of(diagnosis, effect.type().name), ratio, kRatioError);
     EXPECT_LT(diagnosis.fit.nrmse, 1.15 * diagnosis.floor_nrmse);
   }
 }

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "diagnosis/identification/search_table.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/stage.hpp"
 
@@ -27,7 +28,8 @@ std::vector<double> some_values(const EffectType& type) {
   for (const EffectParameter& parameter : type.parameters) {
     const bool is_last = values.size() + 1 == type.parameters.size();
     const bool is_left_out = !std::isnan(parameter.fallback) && (has_to_be_given || !is_last);
-    values.push_back(is_left_out ? parameter.fallback : 0.25 * parameter.search_low + 0.75 * parameter.search_high);
+    const SearchRange* const range = search_range(type, parameter);
+    values.push_back(is_left_out || range == nullptr ? parameter.fallback : 0.25 * range->low + 0.75 * range->high);
   }
   return values;
 }
@@ -82,6 +84,46 @@ TEST(EffectLibrary, DescribesEveryEffectOnce) {
   EXPECT_EQ(find_effect(EffectInterface::network, "coulomb_friction"), nullptr);
 }
 
+struct InFamily {
+  EffectInterface interface;
+  std::string_view effect;
+  EffectFamily family;
+};
+
+TEST(EffectLibrary, FamiliesFollowPhysicsAndNotTheName) {
+  using enum EffectInterface;
+  for (const InFamily& expected : {
+           InFamily{network, "clock_drift", EffectFamily::arrival},       // wears nothing
+           InFamily{network, "clock_offset", EffectFamily::arrival},      // follows no amplitude
+           InFamily{network, "jitter", EffectFamily::arrival},            // likewise
+           InFamily{network, "loss", EffectFamily::arrival},              // likewise
+           InFamily{displacement_sensor, "drift", EffectFamily::offset},  // a zero that wanders
+           InFamily{force_sensor, "drift", EffectFamily::offset},         // likewise
+           InFamily{transfer_system, "compliance", EffectFamily::load},   // absent without a specimen
+           InFamily{specimen, "stribeck_friction", EffectFamily::rate},   // falls with velocity
+           InFamily{specimen, "geometric_stiffness", EffectFamily::scale},
+           InFamily{specimen, "stiffness_degradation", EffectFamily::degradation},
+           InFamily{specimen, "viscous_damping", EffectFamily::rate},
+           InFamily{specimen, "coulomb_friction", EffectFamily::amplitude},
+       }) {
+    const EffectType* const type = find_effect(expected.interface, expected.effect);
+    ASSERT_NE(type, nullptr) << expected.effect;
+    EXPECT_EQ(type->traits.family, expected.family) << label(*type);
+  }
+}
+
+TEST(EffectLibrary, FindsEffectsByWhatTheyCorrectOrLeave) {
+  using enum EffectInterface;
+  EXPECT_EQ(find_effect(specimen, ModelNumber::stiffness)->name, "stiffness_error");
+  EXPECT_EQ(find_effect(force_sensor, ModelNumber::offset)->name, "bias");
+  EXPECT_EQ(find_effect(network, DigitTrace::loss)->name, "loss");
+  EXPECT_EQ(find_effect(network, DigitTrace::lateness)->name, "jitter");
+  EXPECT_EQ(find_effect(displacement_sensor, DigitTrace::rounding)->name, "quantization");
+  EXPECT_EQ(find_effect(specimen, ModelNumber::none), nullptr);
+  EXPECT_EQ(find_effect(specimen, DigitTrace::none), nullptr);
+  EXPECT_EQ(find_effect(compensator, ModelNumber::offset), nullptr);
+}
+
 TEST(EffectLibrary, ParametersHaveSoundRanges) {
   for (const EffectType& type : effect_library()) {
     std::set<std::string_view> names;
@@ -89,13 +131,11 @@ TEST(EffectLibrary, ParametersHaveSoundRanges) {
       SCOPED_TRACE(label(type) + "." + std::string{parameter.name});
       EXPECT_TRUE(names.insert(parameter.name).second);
       EXPECT_LT(parameter.low, parameter.high);
-      EXPECT_LE(parameter.search_low, parameter.search_high);
       EXPECT_FALSE(parameter.what.empty());
       if (!std::isnan(parameter.neutral)) {
         EXPECT_GE(parameter.neutral, parameter.low);
         EXPECT_LE(parameter.neutral, parameter.high);
       }
-      EXPECT_FALSE(parameter.search_low == parameter.search_high && std::isnan(parameter.fallback));
       if (!std::isnan(parameter.fallback)) {
         EXPECT_GE(parameter.fallback, parameter.low);
         EXPECT_LE(parameter.fallback, parameter.high);
