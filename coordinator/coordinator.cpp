@@ -239,11 +239,11 @@ void Coordinator::open_step(Instant now) noexcept {
   step_is_sent_ = false;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
-    const auto& substructure = settings_.substructures[i];
+    const InterfaceMap& interface = settings_.substructures[i].interface;
     // The points before are final now: velocity and acceleration in equilibrium.
-    if (step > 0) fill_point(substructure, step - 1, integrator_->completed(), command.points[0]);
+    if (step > 0) fill_point(interface, step - 1, integrator_->completed(), command.points[0]);
     std::move_backward(command.points.begin(), command.points.end() - 1, command.points.end());
-    fill_point(substructure, step, current, command.points[0]);
+    fill_point(interface, step, current, command.points[0]);
     command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
     command.substructure = static_cast<SubstructureIndex>(i);
     command.coordinator = presence_.identity().incarnation;
@@ -275,19 +275,15 @@ void Coordinator::complete_step(Instant now) noexcept {
   record_exchanges();
   restoring_force_n_.setZero();
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    const auto& interface = settings_.substructures[i].interface;
+    const InterfaceMap& interface = settings_.substructures[i].interface;
     const InterfaceVector& force_n = ledger_.answer(static_cast<SubstructureIndex>(i)).force_n;
-    if (std::cmp_not_equal(force_n.size(), interface.size()) || !force_n.allFinite()) {
+    if (force_n.size() != interface.size() || !force_n.allFinite()) {
       report(now, Severity::fault, EventCode::measurement_not_finite, settings_.substructures[i].id);
       presence_.raise(FaultFlags::not_finite);
       begin_stop(now, StopReason::not_finite);
       return;
     }
-    for (std::size_t k = 0; k < interface.size(); ++k) {
-      const double force = force_n[static_cast<Eigen::Index>(k)];
-      restoring_force_n_[interface[k].dof] += force;
-      if (interface[k].relative_to != InterfaceDof::kGround) restoring_force_n_[interface[k].relative_to] -= force;
-    }
+    interface.add_to_structure(force_n, restoring_force_n_);
   }
   const Step step = ledger_.step();
   const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
@@ -424,22 +420,13 @@ void Coordinator::control(ControlVerb verb, StopReason reason) noexcept {
   ports_.control_out.send(message);
 }
 
-void Coordinator::fill_point(const CoupledSubstructure& substructure, Step step, const MotionState& motion,
+void Coordinator::fill_point(const InterfaceMap& interface, Step step, const MotionState& motion,
                              CommandPoint& point) const noexcept {
-  const auto size = static_cast<Eigen::Index>(substructure.interface.size());
   point.step = step;
   point.model_time_s = static_cast<double>(step) * settings_.step_s;
-  const auto interface_values = [&](const Eigen::VectorXd& structure, InterfaceVector& values) {
-    values.resize(size);
-    for (Eigen::Index k = 0; k < size; ++k) {
-      const InterfaceDof& dof = substructure.interface[static_cast<std::size_t>(k)];
-      values[k] = structure[dof.dof];
-      if (dof.relative_to != InterfaceDof::kGround) values[k] -= structure[dof.relative_to];
-    }
-  };
-  interface_values(motion.displacement_m, point.displacement_m);
-  interface_values(motion.velocity_m_per_s, point.velocity_m_per_s);
-  interface_values(motion.acceleration_m_per_s2, point.acceleration_m_per_s2);
+  interface.to_interface(motion.displacement_m, point.displacement_m);
+  interface.to_interface(motion.velocity_m_per_s, point.velocity_m_per_s);
+  interface.to_interface(motion.acceleration_m_per_s2, point.acceleration_m_per_s2);
 }
 
 TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs) {

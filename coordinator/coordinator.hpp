@@ -11,22 +11,15 @@
 #include "core/ports.hpp"
 #include "core/presence.hpp"
 #include "core/records.hpp"
+#include "mechanics/structure/interface_map.hpp"
 
 namespace hybridtest {
-
-/// One interface degree of freedom: a structure degree of freedom, absolute (against the
-/// ground) or against another one.
-struct InterfaceDof {
-  static constexpr int kGround = -1;
-  int dof = 0;
-  int relative_to = kGround;
-};
 
 /// A substructure as the coordinator sees it.
 struct CoupledSubstructure {
   ParticipantId id;
   Role role = Role::numerical_substructure;
-  std::vector<InterfaceDof> interface;
+  InterfaceMap interface;
 };
 
 struct CoordinatorSettings {
@@ -116,7 +109,7 @@ class Coordinator final : public Node {
   void report(Instant now, Severity severity, EventCode code, const ParticipantId& subject = {},
               std::array<double, 2> values = {}) noexcept;
   void control(ControlVerb verb, StopReason reason = StopReason::none) noexcept;
-  void fill_point(const CoupledSubstructure& substructure, Step step, const MotionState& motion,
+  void fill_point(const InterfaceMap& interface, Step step, const MotionState& motion,
                   CommandPoint& point) const noexcept;
 
   CoordinatorSettings settings_;

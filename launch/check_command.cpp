@@ -14,16 +14,10 @@
 namespace hybridtest {
 namespace {
 
-CoupledSite coupled_site(const Scenario& scenario, const SubstructureScenario& substructure) {
-  std::vector<int> dofs;
-  std::vector<int> relative_to;
-  for (const InterfaceDof& interface : substructure.interface) {
-    dofs.push_back(interface.dof);
-    relative_to.push_back(interface.relative_to);
-  }
+CoupledSite coupled_site(const SubstructureScenario& substructure) {
   CoupledSite site;
   site.id = substructure.id;
-  site.interface = interface_matrix(scenario.structure.size(), dofs, relative_to);
+  site.interface = substructure.interface;
   site.stiffness_n_per_m = substructure.initial_stiffness_n_per_m;
   return site;
 }
@@ -78,7 +72,7 @@ int check(const std::filesystem::path& file, const std::vector<std::string>& ove
   std::vector<const SubstructureScenario*> experimental;
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (substructure.role != Role::experimental_site) continue;
-    sites.push_back(coupled_site(scenario, substructure));
+    sites.push_back(coupled_site(substructure));
     experimental.push_back(&substructure);
   }
   for (std::size_t i = 0; i < sites.size(); ++i) print_site(scenario, modes, sites, i, *experimental[i]);

@@ -149,26 +149,33 @@ int dof_position(Section& section, std::string_view key, const std::vector<std::
 }
 
 void read_interface(Section& section, const std::vector<std::string>& dofs, SubstructureScenario& substructure) {
+  std::vector<InterfaceDof> interface_dofs;
   for (Section& entry : section.sections("interface")) {
     InterfaceDof interface { .dof = dof_position(entry, "dof", dofs) };
     std::string name = dofs.empty() ? "" : dofs[static_cast<std::size_t>(interface.dof)];
     if (entry.has("relative_to")) {
       interface.relative_to = dof_position(entry, "relative_to", dofs);
-      if (interface.relative_to == interface.dof) entry.error("relative_to", "a degree of freedom against itself");
       if (!dofs.empty()) name += "_relative_to_" + dofs[static_cast<std::size_t>(interface.relative_to)];
+      if (interface.relative_to == interface.dof) {
+        entry.error("relative_to", "a degree of freedom relative to itself, expected another one");
+        interface.relative_to = InterfaceDof::kGround;
+      }
     }
     entry.finish();
     if (std::ranges::find(substructure.interface_names, name) != substructure.interface_names.end()) {
       entry.error("dof", "this interface degree of freedom is listed twice");
     }
-    substructure.interface.push_back(interface);
+    interface_dofs.push_back(interface);
     substructure.interface_names.push_back(std::move(name));
   }
-  if (substructure.interface.empty() || substructure.interface.size() > kMaxInterfaceDofs) {
+  if (interface_dofs.empty() || interface_dofs.size() > kMaxInterfaceDofs) {
     section.error("interface", "expected 1 to " + std::to_string(kMaxInterfaceDofs) + " degrees of freedom");
-    substructure.interface.resize(1);
+    interface_dofs.resize(1);
     substructure.interface_names.resize(1);
   }
+  // Without the names of the structure, which is an error by now, there is at least the first one.
+  const auto structure_size = std::max<Eigen::Index>(1, std::ssize(dofs));
+  substructure.interface = InterfaceMap{structure_size, std::move(interface_dofs)};
 }
 
 /// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
@@ -196,7 +203,7 @@ void check_model(Section section, int dofs) {
 void read_site(Section& section, const Scenario& scenario, const std::filesystem::path& directory,
                SubstructureScenario& substructure) {
   const TimeScenario& time = scenario.time;
-  const auto dofs = substructure.interface.size();
+  const auto dofs = static_cast<std::size_t>(substructure.interface.size());
   SiteScenario& site = substructure.site;
   substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
   RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory,
@@ -247,18 +254,12 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   return substructure;
 }
 
-/// K = sum over substructures of B^T K_s B, B the interface's rows.
+/// K = sum over substructures of B^T K_s B.
 Eigen::SparseMatrix<double> assembled_stiffness(const Scenario& scenario) {
   const auto count = static_cast<Eigen::Index>(scenario.dofs.size());
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
   for (const SubstructureScenario& substructure : scenario.substructures) {
-    const auto rows = static_cast<Eigen::Index>(substructure.interface.size());
-    Eigen::MatrixXd interface = Eigen::MatrixXd::Zero(rows, count);
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const InterfaceDof& dof = substructure.interface[static_cast<std::size_t>(row)];
-      interface(row, dof.dof) = 1.0;
-      if (dof.relative_to != InterfaceDof::kGround) interface(row, dof.relative_to) = -1.0;
-    }
+    const Eigen::MatrixXd interface = substructure.interface.matrix();
     stiffness += interface.transpose() * substructure.initial_stiffness_n_per_m * interface;
   }
   return stiffness.sparseView();
@@ -276,10 +277,8 @@ void check_substructures(Section& root, const Scenario& scenario) {
     }
   }
   for (std::size_t dof = 0; dof < scenario.dofs.size(); ++dof) {
-    const bool is_coupled = std::ranges::any_of(scenario.substructures, [&](const auto& substructure) {
-      return std::ranges::any_of(substructure.interface, [&](const InterfaceDof& interface) {
-        return std::cmp_equal(interface.dof, dof) || std::cmp_equal(interface.relative_to, dof);
-      });
+    const bool is_coupled = std::ranges::any_of(scenario.substructures, [&](const SubstructureScenario& substructure) {
+      return substructure.interface.uses(static_cast<Eigen::Index>(dof));
     });
     if (!is_coupled) {
       root.error("substructures", "no substructure has the degree of freedom '" + scenario.dofs[dof] +

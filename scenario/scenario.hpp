@@ -15,6 +15,7 @@
 #include "experimental_site/control_loop.hpp"
 #include "experimental_site/interlocks.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "mechanics/structure/interface_map.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/loop_sections.hpp"
@@ -54,7 +55,7 @@ struct SiteScenario {
 struct SubstructureScenario {
   std::string id;
   Role role = Role::numerical_substructure;
-  std::vector<InterfaceDof> interface;
+  InterfaceMap interface;
   std::vector<std::string> interface_names;  // `floor_2_floor_1` for relative ones
   Eigen::MatrixXd initial_stiffness_n_per_m;
   // Makers of the parts, called in the process that needs them.

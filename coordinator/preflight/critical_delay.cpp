@@ -28,7 +28,7 @@ Eigen::MatrixXd given_or_zero(const Eigen::MatrixXd& given, Eigen::Index size) {
 }
 
 DenseSystem specimen(const CoupledSite& site) {
-  const Eigen::Index size = site.interface.cols();
+  const Eigen::Index size = site.interface.size();
   return {.mass_kg = given_or_zero(site.mass_kg, size),
           .damping_n_s_per_m = given_or_zero(site.damping_n_s_per_m, size),
           .stiffness_n_per_m = site.stiffness_n_per_m};
@@ -36,10 +36,10 @@ DenseSystem specimen(const CoupledSite& site) {
 
 void add(DenseSystem& system, const CoupledSite& site, bool with_stiffness) {
   const DenseSystem part = specimen(site);
-  const Eigen::MatrixXd& interface = site.interface;
-  system.mass_kg += interface * part.mass_kg * interface.transpose();
-  system.damping_n_s_per_m += interface * part.damping_n_s_per_m * interface.transpose();
-  if (with_stiffness) system.stiffness_n_per_m += interface * part.stiffness_n_per_m * interface.transpose();
+  const Eigen::MatrixXd to_structure = site.interface.matrix().transpose();
+  system.mass_kg += to_structure * part.mass_kg * to_structure.transpose();
+  system.damping_n_s_per_m += to_structure * part.damping_n_s_per_m * to_structure.transpose();
+  if (with_stiffness) system.stiffness_n_per_m += to_structure * part.stiffness_n_per_m * to_structure.transpose();
 }
 
 /// The structure without the late site; of the others the stiffness is in the structure already.
@@ -52,7 +52,8 @@ DenseSystem without_late_site(const LinearStructure& structure, const std::vecto
     if (i != late) add(rest, sites[i], false);
   }
   const CoupledSite& site = sites[late];
-  rest.stiffness_n_per_m -= site.interface * site.stiffness_n_per_m * site.interface.transpose();
+  const Eigen::MatrixXd to_structure = site.interface.matrix().transpose();
+  rest.stiffness_n_per_m -= to_structure * site.stiffness_n_per_m * to_structure.transpose();
   return rest;
 }
 

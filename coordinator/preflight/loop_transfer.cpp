@@ -35,17 +35,18 @@ Eigen::VectorXcd poles_rad_per_s(const DenseSystem& system) {
       .eigenvalues();
 }
 
-LoopTransfer::LoopTransfer(const DenseSystem& structure, DenseSystem substructure, const Eigen::MatrixXd& interface)
+LoopTransfer::LoopTransfer(const DenseSystem& structure, DenseSystem substructure, const InterfaceMap& interface)
     : substructure_{std::move(substructure)}, reference_rad_per_s_{reference_frequency(structure)} {
   const Eigen::Index size = structure.mass_kg.rows();
   const Eigen::LLT<Eigen::MatrixXd> mass{structure.mass_kg};
   const Eigen::ComplexSchur<Eigen::MatrixXd> schur{state_matrix(structure, mass, reference_rad_per_s_)};
   triangular_ = schur.matrixT();
   poles_ = triangular_.diagonal();
-  const Eigen::MatrixXd accelerance = mass.solve(interface);
+  const Eigen::MatrixXd to_structure = interface.matrix().transpose();
+  const Eigen::MatrixXd accelerance = mass.solve(to_structure);
   input_ = schur.matrixU().bottomRows(size).adjoint() * accelerance.cast<Complex>();
-  output_ = interface.transpose().cast<Complex>() * schur.matrixU().topRows(size) / reference_rad_per_s_;
-  flexibility_at_infinity_ = interface.transpose() * accelerance;
+  output_ = to_structure.transpose().cast<Complex>() * schur.matrixU().topRows(size) / reference_rad_per_s_;
+  flexibility_at_infinity_ = to_structure.transpose() * accelerance;
 }
 
 Eigen::VectorXcd LoopTransfer::eigenvalues(double frequency_rad_per_s) const {

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <complex>
 
+#include "mechanics/structure/interface_map.hpp"
+
 namespace hybridtest {
 
 /// M a + C v + K u = f, dense.
@@ -16,15 +18,15 @@ struct DenseSystem {
 [[nodiscard]] Eigen::VectorXcd poles_rad_per_s(const DenseSystem& system);
 
 /// Frequency response of a closed loop of a structure and one substructure, opened at the force:
-/// S(iw) B^T (K - w^2 M + iw C)^-1 B, p x p, with S of the substructure and the rest of the
+/// S(iw) B (K - w^2 M + iw C)^-1 B^T, p x p, with S of the substructure and the rest of the
 /// structure. One Schur decomposition at construction; each frequency then costs a triangular
 /// solve instead of a factorisation.
 class LoopTransfer {
  public:
   /// @param structure      without the substructure; positive definite mass.
   /// @param substructure   p x p matrices.
-  /// @param interface      B, n x p.
-  LoopTransfer(const DenseSystem& structure, DenseSystem substructure, const Eigen::MatrixXd& interface);
+  /// @param interface      B, p x n.
+  LoopTransfer(const DenseSystem& structure, DenseSystem substructure, const InterfaceMap& interface);
 
   /// Of the structure without the substructure.
   [[nodiscard]] const Eigen::VectorXcd& structure_poles_rad_per_s() const noexcept { return poles_; }
@@ -32,7 +34,7 @@ class LoopTransfer {
   /// Eigenvalues of the transfer matrix, largest modulus first.
   [[nodiscard]] Eigen::VectorXcd eigenvalues(double frequency_rad_per_s) const;
 
-  /// The same in the limit of infinite frequency: of M_e B^T M^-1 B.
+  /// The same in the limit of infinite frequency: of M_e B M^-1 B^T.
   [[nodiscard]] double largest_modulus_at_infinity() const;
 
  private:
@@ -42,7 +44,7 @@ class LoopTransfer {
   Eigen::MatrixXcd input_;            // 2n x p, in Schur coordinates
   Eigen::MatrixXcd output_;           // p x 2n, in Schur coordinates
   Eigen::VectorXcd poles_;
-  Eigen::MatrixXd flexibility_at_infinity_;  // B^T M^-1 B
+  Eigen::MatrixXd flexibility_at_infinity_;  // B M^-1 B^T
 };
 
 }  // namespace hybridtest

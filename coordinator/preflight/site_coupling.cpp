@@ -1,10 +1,7 @@
 #include "coordinator/preflight/site_coupling.hpp"
 
-#include <cstddef>
 #include <limits>
-#include <utility>
 
-#include "core/assert.hpp"
 #include "core/config_error.hpp"
 
 namespace hybridtest {
@@ -12,7 +9,7 @@ namespace {
 
 void check_square(const CoupledSite& site, const Eigen::MatrixXd& matrix, const std::string& name, bool may_be_empty) {
   if (may_be_empty && matrix.size() == 0) return;
-  const Eigen::Index size = site.interface.cols();
+  const Eigen::Index size = site.interface.size();
   if (matrix.rows() != size || matrix.cols() != size) {
     throw ConfigError{"site '" + site.id + "': the " + name + " of the specimen is " + std::to_string(matrix.rows()) +
                       " by " + std::to_string(matrix.cols()) + ", expected " + std::to_string(size) + " by " +
@@ -23,38 +20,20 @@ void check_square(const CoupledSite& site, const Eigen::MatrixXd& matrix, const 
   }
 }
 
-/// Of one mode: phi^T B K_e B^T phi.
+/// Of one mode: phi^T B^T K_e B phi.
 double specimen_stiffness(const CoupledSite& site, const Eigen::Ref<const Eigen::VectorXd>& shape) {
-  const Eigen::VectorXd deformation = site.interface.transpose() * shape;
+  InterfaceVector deformation;
+  site.interface.to_interface(shape, deformation);
   return deformation.dot(site.stiffness_n_per_m * deformation);
 }
 
 }  // namespace
 
-Eigen::MatrixXd interface_matrix(Eigen::Index structure_size, const std::vector<int>& degrees_of_freedom,
-                                 const std::vector<int>& relative_to) {
-  HYBRIDTEST_ASSERT(degrees_of_freedom.size() == relative_to.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(structure_size, static_cast<Eigen::Index>(degrees_of_freedom.size()));
-  for (std::size_t k = 0; k < degrees_of_freedom.size(); ++k) {
-    const int dof = degrees_of_freedom[k];
-    const int base = relative_to[k];
-    if (dof < 0 || dof >= structure_size || base >= structure_size || base == dof) {
-      throw ConfigError{"interface degree of freedom " + std::to_string(k + 1) + " is " + std::to_string(dof) +
-                        " relative to " + std::to_string(base) + ", expected two different ones of 0 to " +
-                        std::to_string(structure_size - 1)};
-    }
-    matrix(dof, static_cast<Eigen::Index>(k)) = 1.0;
-    if (base >= 0) matrix(base, static_cast<Eigen::Index>(k)) = -1.0;
-  }
-  return matrix;
-}
-
 void require_consistent(const LinearStructure& structure, const CoupledSite& site) {
-  if (site.interface.rows() != structure.size() || site.interface.cols() == 0 || !site.interface.allFinite()) {
-    throw ConfigError{"site '" + site.id + "': the interface matrix is " + std::to_string(site.interface.rows()) +
-                      " by " + std::to_string(site.interface.cols()) + ", expected " +
-                      std::to_string(structure.size()) +
-                      " rows, one per degree of freedom, and one column per interface degree of freedom"};
+  if (site.interface.structure_size() != structure.size() || site.interface.size() == 0) {
+    throw ConfigError{"site '" + site.id + "': the interface has " + std::to_string(site.interface.size()) +
+                      " degrees of freedom in a structure of " + std::to_string(site.interface.structure_size()) +
+                      ", expected at least one in a structure of " + std::to_string(structure.size())};
   }
   check_square(site, site.stiffness_n_per_m, "stiffness", false);
   check_square(site, site.damping_n_s_per_m, "damping", true);

@@ -58,23 +58,39 @@ struct SentMotion {
   }
 };
 
-std::vector<double> at_interface(const RunFileReader& coordinator, const Scenario& scenario, const InterfaceDof& dof,
-                                 const std::string& quantity, const std::string& unit) {
-  const auto of_dof = [&](Eigen::Index index) {
-    return coordinator.column("steps", quantity + scenario.dofs[static_cast<std::size_t>(index)] + unit);
-  };
-  std::vector<double> values = of_dof(dof.dof);
-  if (dof.relative_to == InterfaceDof::kGround) return values;
-  const std::vector<double> base = of_dof(dof.relative_to);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= base[i];
-  return values;
+/// A recorded quantity of the structure at one interface: a row per interface degree of freedom, a
+/// column per step.
+Eigen::MatrixXd at_interface(const RunFileReader& coordinator, const Scenario& scenario, const InterfaceMap& interface,
+                             const std::string& quantity, const std::string& unit) {
+  Eigen::MatrixXd structure =
+      Eigen::MatrixXd::Zero(interface.structure_size(), static_cast<Eigen::Index>(coordinator.row_count("steps")));
+  for (Eigen::Index dof = 0; dof < structure.rows(); ++dof) {
+    if (!interface.uses(dof)) continue;
+    const std::vector<double> values =
+        coordinator.column("steps", quantity + scenario.dofs[static_cast<std::size_t>(dof)] + unit);
+    structure.row(dof) = Eigen::Map<const Eigen::RowVectorXd>{values.data(), structure.cols()};
+  }
+  Eigen::MatrixXd at_interface{interface.size(), structure.cols()};
+  InterfaceVector values;
+  for (Eigen::Index step = 0; step < structure.cols(); ++step) {
+    interface.to_interface(structure.col(step), values);
+    at_interface.col(step) = values;
+  }
+  return at_interface;
 }
 
-SentMotion sent_motion(const RunFileReader& coordinator, const Scenario& scenario, const InterfaceDof& dof) {
-  SentMotion sent;
-  sent.model_time_s = coordinator.column("steps", "model_time_s");
-  sent.displacement_m = at_interface(coordinator, scenario, dof, "displacement_", "_m");
-  sent.velocity_m_per_s = at_interface(coordinator, scenario, dof, "velocity_", "_m_per_s");
+/// One motion per interface degree of freedom.
+std::vector<SentMotion> sent_motions(const RunFileReader& coordinator, const Scenario& scenario,
+                                     const InterfaceMap& interface) {
+  const Eigen::MatrixXd displacement_m = at_interface(coordinator, scenario, interface, "displacement_", "_m");
+  const Eigen::MatrixXd velocity_m_per_s = at_interface(coordinator, scenario, interface, "velocity_", "_m_per_s");
+  std::vector<SentMotion> sent(static_cast<std::size_t>(interface.size()));
+  for (Eigen::Index k = 0; k < interface.size(); ++k) {
+    SentMotion& motion = sent[static_cast<std::size_t>(k)];
+    motion.model_time_s = coordinator.column("steps", "model_time_s");
+    motion.displacement_m.assign(displacement_m.row(k).begin(), displacement_m.row(k).end());
+    motion.velocity_m_per_s.assign(velocity_m_per_s.row(k).begin(), velocity_m_per_s.row(k).end());
+  }
   return sent;
 }
 
@@ -96,10 +112,10 @@ void add_sent(RawRecording& raw, const RunFileReader& site, const Scenario& scen
   const RunFileReader coordinator{coordinator_file};
   if (coordinator.row_count("steps") == 0) return;
   const std::vector<double> model_time_s = planned_model_time_s(site, scenario.time.time_scale);
-  for (std::size_t dof = 0; dof < substructure.interface.size(); ++dof) {
-    const SentMotion sent = sent_motion(coordinator, scenario, substructure.interface[dof]);
+  const std::vector<SentMotion> motions = sent_motions(coordinator, scenario, substructure.interface);
+  for (std::size_t dof = 0; dof < motions.size(); ++dof) {
     RawColumn column{std::string{column_name(Channel::sent_displacement)}, Channel::sent_displacement, dof, {}};
-    for (const double time : model_time_s) column.values.push_back(sent.at(time));
+    for (const double time : model_time_s) column.values.push_back(motions[dof].at(time));
     raw.columns.push_back(std::move(column));
   }
 }

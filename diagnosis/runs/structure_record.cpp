@@ -29,28 +29,6 @@ void require_same_test(const Scenario& scenario, const Scenario& ran) {
   if (!same) throw ConfigError{what + "the substructures or their interfaces differ"};
 }
 
-/// Into the structure's degrees of freedom.
-void add_interface(const SubstructureScenario& substructure, const InterfaceVector& interface_n,
-                   Eigen::Ref<Eigen::VectorXd> structure_n) {
-  for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
-    const double force_n = interface_n[static_cast<Eigen::Index>(k)];
-    structure_n[substructure.interface[k].dof] += force_n;
-    if (substructure.interface[k].relative_to != InterfaceDof::kGround) {
-      structure_n[substructure.interface[k].relative_to] -= force_n;
-    }
-  }
-}
-
-InterfaceVector at_interface(const SubstructureScenario& substructure, const Eigen::VectorXd& structure) {
-  InterfaceVector values{std::ssize(substructure.interface)};
-  for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
-    const InterfaceDof& dof = substructure.interface[k];
-    values[static_cast<Eigen::Index>(k)] =
-        structure[dof.dof] - (dof.relative_to == InterfaceDof::kGround ? 0.0 : structure[dof.relative_to]);
-  }
-  return values;
-}
-
 /// Velocity that a command carries: from the step before, with its acceleration kept. One column per step.
 Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, const Scenario& scenario,
                                            const TestResponse& response, double step_s) {
@@ -68,7 +46,7 @@ Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, con
 /// What a numerical substructure answered, one column per step; nothing where a step is missing.
 std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const SubstructureScenario& substructure,
                                                Eigen::Index steps) {
-  Eigen::MatrixXd forces_n(std::ssize(substructure.interface), steps);
+  Eigen::MatrixXd forces_n(substructure.interface.size(), steps);
   const std::vector<double> numbers = file.column("steps", "step");
   if (std::ssize(numbers) < steps) return {};
   for (Eigen::Index i = 0; i < steps; ++i) {
@@ -101,13 +79,17 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
     }
     const auto model = substructure.make_model();
     model->reset();
-    InterfaceVector force_n = InterfaceVector::Zero(std::ssize(substructure.interface));
+    const InterfaceMap& interface = substructure.interface;
+    InterfaceVector displacement_m;
+    InterfaceVector velocity_m_per_s;
+    InterfaceVector force_n = InterfaceVector::Zero(interface.size());
     for (Eigen::Index i = 0; i < recording.steps(); ++i) {
-      model->trial(at_interface(substructure, recording.displacement_m.col(i)),
-                   at_interface(substructure, velocity.col(i)), force_n);
+      interface.to_interface(recording.displacement_m.col(i), displacement_m);
+      interface.to_interface(velocity.col(i), velocity_m_per_s);
+      model->trial(displacement_m, velocity_m_per_s, force_n);
       model->commit();
-      add_interface(substructure, force_n, modelled_n.col(i));
-      add_interface(substructure, forces_n->col(i), recorded_n.col(i));
+      interface.add_to_structure(force_n, modelled_n.col(i));
+      interface.add_to_structure(forces_n->col(i), recorded_n.col(i));
     }
   }
   recording.numerical_force_n = std::move(recorded_n);

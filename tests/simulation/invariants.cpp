@@ -52,7 +52,7 @@ struct SubstructureColumns {
 SubstructureColumns columns_of(const KeptSimulation& run, const SubstructureScenario& substructure) {
   const KeptRows& rows = run.table(substructure.id, "steps");
   SubstructureColumns columns;
-  for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
+  for (std::size_t k = 0; k < substructure.interface.dofs().size(); ++k) {
     const bool is_site = substructure.role == Role::experimental_site;
     const std::string suffix = substructure.interface.size() == 1 ? "" : "_" + std::to_string(k + 1);
     const std::string& name = substructure.interface_names[k];
@@ -94,8 +94,9 @@ void expect_followed(const KeptSimulation& run, const Scenario& scenario, std::s
                       std::to_string(steps));
       return;
     }
-    for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
-      const InterfaceDof& dof = substructure.interface[k];
+    const std::vector<InterfaceDof>& interface = substructure.interface.dofs();
+    for (std::size_t k = 0; k < interface.size(); ++k) {
+      const InterfaceDof& dof = interface[k];
       for (std::size_t step = 0; step < steps; ++step) {
         double expected = displacement_m[static_cast<std::size_t>(dof.dof)][step];
         if (dof.relative_to != InterfaceDof::kGround) {
@@ -115,8 +116,9 @@ void expect_their_forces(const KeptSimulation& run, const Scenario& scenario, st
   std::vector<std::vector<double>> assembled_n(scenario.dofs.size(), std::vector<double>(steps, 0.0));
   for (const SubstructureScenario& substructure : scenario.substructures) {
     const SubstructureColumns columns = columns_of(run, substructure);
-    for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
-      const InterfaceDof& dof = substructure.interface[k];
+    const std::vector<InterfaceDof>& interface = substructure.interface.dofs();
+    for (std::size_t k = 0; k < interface.size(); ++k) {
+      const InterfaceDof& dof = interface[k];
       for (std::size_t step = 0; step < std::min(steps, columns.force_n[k].size()); ++step) {
         assembled_n[static_cast<std::size_t>(dof.dof)][step] += columns.force_n[k][step];
         if (dof.relative_to != InterfaceDof::kGround) {
@@ -240,7 +242,7 @@ Violations limits_violated(const KeptSimulation& run, const Scenario& scenario) 
     const double period_s = scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step;
     // A command is made by adding the largest change to the one before: rounded once.
     const double reach_m = limits.velocity_m_per_s * period_s + kEpsilon * limits.displacement_m;
-    for (std::size_t k = 0; k < substructure.interface.size(); ++k) {
+    for (std::size_t k = 0; k < substructure.interface.dofs().size(); ++k) {
       const std::string suffix = substructure.interface.size() == 1 ? "" : "_" + std::to_string(k + 1);
       double before_m = 0.0;
       for (const double command_m : rows.column_values("command_displacement_m" + suffix)) {

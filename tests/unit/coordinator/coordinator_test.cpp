@@ -62,8 +62,8 @@ class CoordinatorTest : public testing::Test {
     settings.duration_s = kStep_s * static_cast<double>(last_step);
     settings.time_scale = time_scale;
     settings.last_step = last_step;
-    settings.substructures = {{"a", Role::experimental_site, {{0, InterfaceDof::kGround}}},
-                              {"b", Role::numerical_substructure, {{0, InterfaceDof::kGround}}}};
+    settings.substructures = {{"a", Role::experimental_site, InterfaceMap{1, {{0}}}},
+                              {"b", Role::numerical_substructure, InterfaceMap{1, {{0}}}}};
     settings.load_per_ground_acceleration_kg = Eigen::VectorXd::Constant(1, -3.0);
     settings.ground_acceleration_m_per_s2.assign(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2);
     settings.stop_on_recording_failure = stop_on_recording_failure;

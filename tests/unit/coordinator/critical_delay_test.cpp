@@ -23,7 +23,7 @@ using Complex = std::complex<double>;
 
 Eigen::MatrixXd one_by_one(double value) { return Eigen::MatrixXd::Constant(1, 1, value); }
 
-CoupledSite spring(const Eigen::MatrixXd& interface, double stiffness_n_per_m) {
+CoupledSite spring(const InterfaceMap& interface, double stiffness_n_per_m) {
   CoupledSite site;
   site.id = "site";
   site.interface = interface;
@@ -56,8 +56,8 @@ TEST(CriticalDelay, OfOneDegreeOfFreedomIsKnown) {
   for (const double ratio : {0.001, 0.02, 0.2, 0.9}) {
     for (const double share : {0.05, 0.3, 0.5, 0.7, 1.0}) {
       const double damping = 2.0 * ratio * std::sqrt(kMass * kTotal);
-      const auto critical = critical_delay(test::oscillator(kMass, damping, kTotal),
-                                           {spring(interface_matrix(1, {0}, {-1}), share * kTotal)}, 0);
+      const auto critical =
+          critical_delay(test::oscillator(kMass, damping, kTotal), {spring(InterfaceMap{1, {{0}}}, share * kTotal)}, 0);
       const double expected = one_dof_critical_delay_s(kMass, damping, (1.0 - share) * kTotal, share * kTotal);
       if (std::isinf(expected)) {
         EXPECT_TRUE(std::isinf(critical.delay_s)) << ratio << " " << share;
@@ -72,7 +72,7 @@ TEST(CriticalDelay, OfALightlyDampedStructureIsItsDampingOverTheStiffness) {
   // First order in tau: c_eq = -k tau uses up c.
   const double damping = 2.0 * 1e-4 * std::sqrt(3.0 * 1200.0);
   const auto critical =
-      critical_delay(test::oscillator(3.0, damping, 1200.0), {spring(interface_matrix(1, {0}, {-1}), 600.0)}, 0);
+      critical_delay(test::oscillator(3.0, damping, 1200.0), {spring(InterfaceMap{1, {{0}}}, 600.0)}, 0);
   EXPECT_NEAR(critical.delay_s, damping / 600.0, 1e-6 * critical.delay_s);
   EXPECT_NEAR(critical.frequency_rad_per_s, 20.0, 1e-3);
 }
@@ -114,7 +114,7 @@ const Eigen::MatrixXd kBenchmarkStiffness = symmetric({26054883.879603837, -2313
                                                        32560774.186380334, -14419970.777236985, 9267275.506224312});
 
 CoupledSite benchmark_specimen() {
-  CoupledSite site = spring(interface_matrix(3, {0}, {-1}), 1.190e6);
+  CoupledSite site = spring(InterfaceMap{3, {{0}}}, 1.190e6);
   site.damping_n_s_per_m = one_by_one(114.22);
   site.mass_kg = one_by_one(29.13);
   return site;
@@ -138,12 +138,13 @@ double characteristic_residual(const LinearStructure& structure, const std::vect
   const double scale = dynamic.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const CoupledSite& site = sites[i];
-    Eigen::MatrixXcd rest = Eigen::MatrixXcd::Zero(site.interface.cols(), site.interface.cols());
+    Eigen::MatrixXcd rest = Eigen::MatrixXcd::Zero(site.interface.size(), site.interface.size());
     if (site.mass_kg.size() > 0) rest += root * root * site.mass_kg;
     if (site.damping_n_s_per_m.size() > 0) rest += root * site.damping_n_s_per_m;
     const Complex late_by = i == late ? std::exp(-root * critical.delay_s) : Complex{1.0};
     const Eigen::MatrixXcd answer = late_by * (rest + site.stiffness_n_per_m) - site.stiffness_n_per_m;
-    dynamic += site.interface * answer * site.interface.transpose();
+    const Eigen::MatrixXd to_structure = site.interface.matrix().transpose();
+    dynamic += to_structure * answer * to_structure.transpose();
   }
   const Eigen::JacobiSVD<Eigen::MatrixXcd> decomposition{dynamic};
   return decomposition.singularValues().minCoeff() / scale;
@@ -163,7 +164,8 @@ TEST(CriticalDelay, OfTheBenchmarkCasesIsAsPublished) {
 /// site's force delayed by a whole number of steps.
 double growth(const LinearStructure& structure, const CoupledSite& site, const Eigen::VectorXd& blow_m_per_s,
               int delay_steps, double step_s, int steps) {
-  const Eigen::MatrixXd delayed = site.interface * site.stiffness_n_per_m * site.interface.transpose();
+  const Eigen::MatrixXd to_structure = site.interface.matrix().transpose();
+  const Eigen::MatrixXd delayed = to_structure * site.stiffness_n_per_m * to_structure.transpose();
   const Eigen::MatrixXd prompt = Eigen::MatrixXd{structure.initial_stiffness_n_per_m} - delayed;
   const Eigen::Index size = structure.size();
   CentralDifference integrator{structure, step_s, {Eigen::VectorXd::Zero(size), blow_m_per_s}};
@@ -186,7 +188,7 @@ TEST(CriticalDelay, PartsDecayFromGrowthInTheTimeDomain) {
   const VibrationModes modes = vibration_modes(structure);
   structure.damping_n_s_per_m = rayleigh_damping(structure, rayleigh_coefficients(0.02, 1, 2, modes));
   constexpr double kStep_s = 2e-5;
-  for (const auto& interface : {interface_matrix(2, {0}, {-1}), interface_matrix(2, {1}, {0})}) {
+  for (const InterfaceMap& interface : {InterfaceMap{2, {{0}}}, InterfaceMap{2, {{1, 0}}}}) {
     const CoupledSite site = spring(interface, 2.5e6);
     const CriticalDelay critical = critical_delay(structure, {site}, 0);
     const double steps = critical.delay_s / kStep_s;
@@ -205,11 +207,11 @@ TEST(CriticalDelay, HoldsForSitesOfSeveralDegreesOfFreedomAndBesideOthers) {
       rayleigh_damping(structure, rayleigh_coefficients(0.03, 1, 3, vibration_modes(structure)));
   CoupledSite both;
   both.id = "two_actuators";
-  both.interface = interface_matrix(4, {0, 1}, {-1, -1});
+  both.interface = InterfaceMap{4, {{0}, {1}}};
   both.stiffness_n_per_m.resize(2, 2);
   both.stiffness_n_per_m << 6.0e6, -3.0e6, -3.0e6, 3.5e6;
   both.damping_n_s_per_m = 1e-3 * both.stiffness_n_per_m;
-  CoupledSite other = spring(interface_matrix(4, {3}, {2}), 2.0e6);
+  CoupledSite other = spring(InterfaceMap{4, {{3, 2}}}, 2.0e6);
   other.mass_kg = one_by_one(500.0);
   const std::vector<CoupledSite> sites{both, other};
   for (const std::size_t late : {std::size_t{0}, std::size_t{1}}) {
@@ -230,7 +232,7 @@ TEST(CriticalDelay, FindsANarrowResonance) {
   Eigen::MatrixXd damping(2, 2);
   damping << 5.0e4 + 1e-4, -1e-4, -1e-4, 1e-4;
   const LinearStructure structure = test::structure_of(mass, damping, stiffness);
-  const CoupledSite site = spring(interface_matrix(2, {1}, {-1}), 40.0);
+  const CoupledSite site = spring(InterfaceMap{2, {{1}}}, 40.0);
   LinearStructure with_site = structure;
   with_site.initial_stiffness_n_per_m.coeffRef(1, 1) += 40.0;
   const CriticalDelay critical = critical_delay(with_site, {site}, 0);
@@ -241,13 +243,13 @@ TEST(CriticalDelay, FindsANarrowResonance) {
 }
 
 TEST(CriticalDelay, IsZeroWithoutDampingAndWhenUnstableAnyway) {
-  const std::vector<CoupledSite> sites{spring(interface_matrix(1, {0}, {-1}), 600.0)};
+  const std::vector<CoupledSite> sites{spring(InterfaceMap{1, {{0}}}, 600.0)};
   EXPECT_NEAR(critical_delay(test::oscillator(3.0, 0.0, 1200.0), sites, 0).delay_s, 0.0, 1e-10);
   EXPECT_EQ(critical_delay(test::oscillator(3.0, -1.0, 1200.0), sites, 0).delay_s, 0.0);
 }
 
 TEST(CriticalDelay, IsZeroWhenTheMeasuredInertiaOutweighsTheStructure) {
-  CoupledSite site = spring(interface_matrix(1, {0}, {-1}), 600.0);
+  CoupledSite site = spring(InterfaceMap{1, {{0}}}, 600.0);
   site.mass_kg = one_by_one(2.9);
   EXPECT_GT(critical_delay(test::oscillator(3.0, 20.0, 1200.0), {site}, 0).delay_s, 0.0);
   site.mass_kg = one_by_one(3.1);
@@ -255,15 +257,14 @@ TEST(CriticalDelay, IsZeroWhenTheMeasuredInertiaOutweighsTheStructure) {
 }
 
 TEST(CriticalDelay, IsInfiniteForASoftSpecimenOnADampedStructure) {
-  const auto critical =
-      critical_delay(test::oscillator(3.0, 60.0, 1200.0), {spring(interface_matrix(1, {0}, {-1}), 60.0)}, 0);
+  const auto critical = critical_delay(test::oscillator(3.0, 60.0, 1200.0), {spring(InterfaceMap{1, {{0}}}, 60.0)}, 0);
   EXPECT_TRUE(std::isinf(critical.delay_s));
 }
 
 TEST(LoopTransfer, IsTheFrequencyResponseOfTheLoop) {
   const DenseSystem structure{one_by_one(2.0), one_by_one(0.7), one_by_one(50.0)};
   const DenseSystem substructure{one_by_one(0.3), one_by_one(0.2), one_by_one(20.0)};
-  const LoopTransfer transfer{structure, substructure, one_by_one(1.0)};
+  const LoopTransfer transfer{structure, substructure, InterfaceMap{1, {{0}}}};
   for (const double omega : {0.01, 4.9, 5.0, 200.0}) {
     const Complex root{0.0, omega};
     const Complex expected = (20.0 + root * 0.2 + root * root * 0.3) / (50.0 + root * 0.7 + root * root * 2.0);

@@ -10,7 +10,7 @@
 namespace hybridtest {
 namespace {
 
-CoupledSite spring(const Eigen::MatrixXd& interface, double stiffness_n_per_m) {
+CoupledSite spring(const InterfaceMap& interface, double stiffness_n_per_m) {
   CoupledSite site;
   site.id = "storey";
   site.interface = interface;
@@ -18,20 +18,11 @@ CoupledSite spring(const Eigen::MatrixXd& interface, double stiffness_n_per_m) {
   return site;
 }
 
-TEST(SiteCoupling, InterfaceTakesDriftsAndAbsoluteDisplacements) {
-  const Eigen::MatrixXd interface = interface_matrix(3, {0, 2}, {-1, 1});
-  Eigen::MatrixXd expected(3, 2);
-  expected << 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
-  EXPECT_EQ(interface, expected);
-  EXPECT_THROW(static_cast<void>(interface_matrix(3, {3}, {-1})), ConfigError);
-  EXPECT_THROW(static_cast<void>(interface_matrix(3, {1}, {1})), ConfigError);
-}
-
 TEST(SiteCoupling, SharesOfAllStoreysAddUpToOneInEachMode) {
   const LinearStructure structure = test::two_storeys();
   const VibrationModes modes = vibration_modes(structure);
-  const auto lower = stiffness_share_by_mode(structure, modes, spring(interface_matrix(2, {0}, {-1}), 4.0e6));
-  const auto upper = stiffness_share_by_mode(structure, modes, spring(interface_matrix(2, {1}, {0}), 3.0e6));
+  const auto lower = stiffness_share_by_mode(structure, modes, spring(InterfaceMap{2, {{0}}}, 4.0e6));
+  const auto upper = stiffness_share_by_mode(structure, modes, spring(InterfaceMap{2, {{1, 0}}}, 3.0e6));
   EXPECT_NEAR(lower[0] + upper[0], 1.0, 1e-14);
   EXPECT_NEAR(lower[1] + upper[1], 1.0, 1e-14);
   // Shape (1, x) with x = 3/(3 - 0.02 omega^2): strain energies 4 and 3 (x - 1)^2.
@@ -42,7 +33,7 @@ TEST(SiteCoupling, SharesOfAllStoreysAddUpToOneInEachMode) {
 TEST(SiteCoupling, ADelayIsNegativeDamping) {
   const LinearStructure structure = test::oscillator(2.0, 0.0, 50.0);  // 5 rad/s
   const VibrationModes modes = vibration_modes(structure);
-  const CoupledSite site = spring(interface_matrix(1, {0}, {-1}), 30.0);
+  const CoupledSite site = spring(InterfaceMap{1, {{0}}}, 30.0);
   EXPECT_DOUBLE_EQ(equivalent_damping_n_s_per_m(site, 0.02)(0, 0), -0.6);
   EXPECT_NEAR(equivalent_damping_ratios(modes, site, 0.02)[0], -0.6 / (2.0 * 2.0 * 5.0), 1e-16);
 }
@@ -50,18 +41,18 @@ TEST(SiteCoupling, ADelayIsNegativeDamping) {
 TEST(SiteCoupling, AMotionWithoutStiffnessHasNoShare) {
   const LinearStructure structure = test::oscillator(2.0, 0.0, 0.0);
   const VibrationModes modes = vibration_modes(structure);
-  EXPECT_TRUE(std::isnan(stiffness_share_by_mode(structure, modes, spring(interface_matrix(1, {0}, {-1}), 0.0))[0]));
+  EXPECT_TRUE(std::isnan(stiffness_share_by_mode(structure, modes, spring(InterfaceMap{1, {{0}}}, 0.0))[0]));
 }
 
 TEST(SiteCoupling, RefusesMatricesThatDoNotFit) {
   const LinearStructure structure = test::two_storeys();
-  CoupledSite site = spring(interface_matrix(2, {0}, {-1}), 1.0);
+  CoupledSite site = spring(InterfaceMap{2, {{0}}}, 1.0);
   EXPECT_NO_THROW(require_consistent(structure, site));
   site.damping_n_s_per_m = Eigen::MatrixXd::Zero(2, 2);
   EXPECT_THROW(require_consistent(structure, site), ConfigError);
-  site = spring(interface_matrix(3, {0}, {-1}), 1.0);
+  site = spring(InterfaceMap{3, {{0}}}, 1.0);
   EXPECT_THROW(require_consistent(structure, site), ConfigError);
-  site = spring(interface_matrix(2, {0}, {-1}), std::nan(""));
+  site = spring(InterfaceMap{2, {{0}}}, std::nan(""));
   EXPECT_THROW(require_consistent(structure, site), ConfigError);
 }
 

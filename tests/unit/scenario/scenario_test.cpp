@@ -34,10 +34,10 @@ TEST_F(ScenarioTest, ReadsWhatTheFileSays) {
   EXPECT_EQ(site.role, Role::experimental_site);
   EXPECT_EQ(site.site.loop.limits.displacement_m, 0.2);
   EXPECT_EQ(site.site.periods_per_step, 2) << "1024 Hz rounded up to whole periods in a step";
-  EXPECT_EQ(site.interface[0].relative_to, InterfaceDof::kGround);
+  EXPECT_EQ(site.interface.dofs()[0].relative_to, InterfaceDof::kGround);
   const SubstructureScenario& model = scenario.substructures[1];
   EXPECT_EQ(model.role, Role::numerical_substructure);
-  EXPECT_EQ(model.interface[0].relative_to, 0);
+  EXPECT_EQ(model.interface.dofs()[0].relative_to, 0);
   EXPECT_EQ(scenario.find("storey_2"), &model);
   EXPECT_EQ(scenario.find("storey_3"), nullptr);
   EXPECT_EQ(scenario.index_of(model), 1);
@@ -117,7 +117,7 @@ TEST_F(ScenarioTest, RefusesInterfacesThatAreListedTwiceOrAgainstThemselves) {
   EXPECT_THAT(file_.errors(with("[{dof: floor_2, relative_to: floor_1}]", "[{dof: floor_2}, {dof: floor_2}]")),
               Contains(HasSubstr("listed twice")));
   EXPECT_THAT(file_.errors(with("relative_to: floor_1", "relative_to: floor_2")),
-              Contains(HasSubstr("against itself")));
+              Contains(HasSubstr("relative to itself, expected another one")));
 }
 
 TEST_F(ScenarioTest, RefusesMatricesOfTheWrongSize) {

@@ -1,0 +1,67 @@
+#include "mechanics/structure/interface_map.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "core/config_error.hpp"
+
+namespace hybridtest {
+
+InterfaceMap::InterfaceMap(Eigen::Index structure_size, std::vector<InterfaceDof> dofs)
+    : structure_size_{structure_size}, dofs_{std::move(dofs)} {
+  if (std::cmp_greater(dofs_.size(), kMaxInterfaceDofs)) {
+    throw ConfigError{"the interface has " + std::to_string(dofs_.size()) + " degrees of freedom, expected at most " +
+                      std::to_string(kMaxInterfaceDofs)};
+  }
+  for (std::size_t k = 0; k < dofs_.size(); ++k) {
+    const auto [dof, base] = dofs_[k];
+    const bool base_exists = base == InterfaceDof::kGround || (base >= 0 && base < structure_size);
+    if (dof >= 0 && dof < structure_size && base_exists && base != dof) continue;
+    throw ConfigError{"interface degree of freedom " + std::to_string(k + 1) + " is " + std::to_string(dof) +
+                      " relative to " + std::to_string(base) + ", expected two different ones of 0 to " +
+                      std::to_string(structure_size - 1) + ", or the ground (-1) as the second"};
+  }
+}
+
+bool InterfaceMap::uses(Eigen::Index structure_dof) const noexcept {
+  return std::ranges::any_of(dofs_, [structure_dof](const InterfaceDof& interface) {
+    return interface.dof == structure_dof || interface.relative_to == structure_dof;
+  });
+}
+
+void InterfaceMap::to_interface(const Eigen::Ref<const Eigen::VectorXd>& structure,
+                                InterfaceVector& interface) const noexcept {
+  HYBRIDTEST_ASSERT(structure.size() == structure_size_);
+  interface.resize(size());
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    const auto [dof, base] = dofs_[static_cast<std::size_t>(k)];
+    interface[k] = structure[dof];
+    if (base != InterfaceDof::kGround) interface[k] -= structure[base];
+  }
+}
+
+void InterfaceMap::add_to_structure(const Eigen::Ref<const Eigen::VectorXd>& interface_n,
+                                    Eigen::Ref<Eigen::VectorXd> structure_n) const noexcept {
+  HYBRIDTEST_ASSERT(interface_n.size() == size());
+  HYBRIDTEST_ASSERT(structure_n.size() == structure_size_);
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    const auto [dof, base] = dofs_[static_cast<std::size_t>(k)];
+    structure_n[dof] += interface_n[k];
+    if (base != InterfaceDof::kGround) structure_n[base] -= interface_n[k];
+  }
+}
+
+Eigen::MatrixXd InterfaceMap::matrix() const {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size(), structure_size_);
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    const auto [dof, base] = dofs_[static_cast<std::size_t>(k)];
+    matrix(k, dof) = 1.0;
+    if (base != InterfaceDof::kGround) matrix(k, base) = -1.0;
+  }
+  return matrix;
+}
+
+}  // namespace hybridtest
