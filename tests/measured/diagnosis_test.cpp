@@ -14,21 +14,21 @@
 #include "mechanics/laws/elastic.hpp"
 #include "plant/transfer_systems/delay.hpp"
 #include "plant/transfer_systems/ideal.hpp"
+#include "tests/support/shared_data.hpp"
 
 /// What the diagnosis says of recordings that laboratories made. The figures asserted are findings about
 /// the data (shared/data/README.md, and fits by other means), not answers of an earlier version.
 namespace hybridtest {
 namespace {
 
-std::optional<Recording> measured(const std::string& name, RecordingRole role = RecordingRole::fit) {
-  const auto file = std::filesystem::path{HYBRIDTEST_SHARED_DATA} / "measured" / (name + ".csv");
-  std::ifstream in{file, std::ios::binary};
-  if (!in) return {};
+std::filesystem::path measured_file(const std::string& name) { return shared_data("measured/" + name + ".csv"); }
+
+/// @throws std::bad_optional_access for a recording that the intake refuses: that is a failure, not absent data.
+Recording measured(const std::string& name) {
+  std::ifstream in{measured_file(name), std::ios::binary};
   std::ostringstream text;
   text << in.rdbuf();
-  std::optional<Recording> recording = read_csv_recording(text.str(), name).recording;
-  if (recording) recording->role = role;
-  return recording;
+  return read_csv_recording(text.str(), name).recording.value();
 }
 
 /// The stretch of a recording from one share of its length to another.
@@ -79,11 +79,11 @@ SiteModel delayed_actuator(double delay_s) {
 class ServoHydraulicActuator : public testing::Test {
  protected:
   void SetUp() override {
-    const auto whole = measured("servo_hydraulic_mr_damper_0A");
-    if (!whole) GTEST_SKIP() << "no measured data at " HYBRIDTEST_SHARED_DATA;
+    HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_0A"));
+    const Recording whole = measured("servo_hydraulic_mr_damper_0A");
     // A chirp: every third of it has frequencies of its own, so the middle is held out between two that are fitted.
-    recordings_ = {stretch(*whole, 0.0, 0.4, RecordingRole::fit), stretch(*whole, 0.6, 1.0, RecordingRole::fit),
-                   stretch(*whole, 0.4, 0.6, RecordingRole::held_out)};
+    recordings_ = {stretch(whole, 0.0, 0.4, RecordingRole::fit), stretch(whole, 0.6, 1.0, RecordingRole::fit),
+                   stretch(whole, 0.4, 0.6, RecordingRole::held_out)};
   }
 
   std::vector<Recording> recordings_;
@@ -117,9 +117,8 @@ SiteModel unpowered_damper() {
 }
 
 TEST(MagnetorheologicalDamper, DiffersAtTheSpecimenOnceItHasCurrent) {
-  const auto powered = measured("servo_hydraulic_mr_damper_1A");
-  if (!powered) GTEST_SKIP() << "no measured data at " HYBRIDTEST_SHARED_DATA;
-  const Diagnosis diagnosis = answer(unpowered_damper(), {*powered});
+  HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_1A"));
+  const Diagnosis diagnosis = answer(unpowered_damper(), {measured("servo_hydraulic_mr_damper_1A")});
   EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
   ASSERT_EQ(std::ranges::count_if(diagnosis.report.where, &report::InterfaceGap::is_judged), 2);
   EXPECT_EQ(diagnosis.report.where[0].interface, "specimen");
@@ -136,9 +135,10 @@ TEST(MagnetorheologicalDamper, DiffersAtTheSpecimenOnceItHasCurrent) {
 class ServoAxis : public testing::Test {
  protected:
   void SetUp() override {
+    HYBRIDTEST_NEEDS_DATA(measured_file("servo_axis_excitation"));
+    HYBRIDTEST_NEEDS_DATA(measured_file("servo_axis_validation"));
     excitation_ = measured("servo_axis_excitation");
     validation_ = measured("servo_axis_validation");
-    if (!excitation_ || !validation_) GTEST_SKIP() << "no measured data at " HYBRIDTEST_SHARED_DATA;
     // Displacement in, force out: the specimen's interface. The position loop is another question.
     for (Recording* recording : {&*excitation_, &*validation_}) {
       recording->dofs[0].of(Channel::target_displacement).clear();
@@ -194,9 +194,8 @@ TEST_F(ServoAxis, IsCleanOnTheRecordThatWasDisturbedUpstream) {
 TEST(FrictionDamper, HasFrictionAndPlay) {
   std::vector<Recording> recordings;
   for (const char* name : {"friction_damper_1Hz36lb_1in", "friction_damper_0.5Hz36lb_1in"}) {
-    const auto recording = measured(name);
-    if (!recording) GTEST_SKIP() << "no measured data at " HYBRIDTEST_SHARED_DATA;
-    recordings.push_back(*recording);
+    HYBRIDTEST_NEEDS_DATA(measured_file(name));
+    recordings.push_back(measured(name));
   }
   SiteModel linear = ideal_actuator();
   linear.make_law = [] { return std::make_unique<Elastic>(4.6e5); };
@@ -213,7 +212,8 @@ TEST(FrictionDamper, HasFrictionAndPlay) {
   EXPECT_GT(diagnosis.report.interface_shrink->unknown_share, 0.01);
   // Two histories that were not fitted, a fifth as large: the model is better than the linear one on both.
   for (const char* name : {"friction_damper_ImperialValleyDBE", "friction_damper_KocaeliDBE"}) {
-    EXPECT_GT(removed_on(linear, diagnosis, *measured(name)), 0.0) << name;
+    HYBRIDTEST_NEEDS_DATA(measured_file(name));
+    EXPECT_GT(removed_on(linear, diagnosis, measured(name)), 0.0) << name;
   }
 }
 

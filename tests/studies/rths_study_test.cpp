@@ -14,7 +14,7 @@ namespace hybridtest::rths {
 namespace {
 
 TEST(RthsStudy, TheHarnessIsConfirmed) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const HarnessCheck check = check_harness(BenchmarkInputs{benchmark_motions()}, usable_threads());
   std::printf("%s", to_markdown(check).c_str());
   EXPECT_LE(check.largest_deviation_share, 0.03);
@@ -22,7 +22,7 @@ TEST(RthsStudy, TheHarnessIsConfirmed) {
 }
 
 TEST(RthsStudy, DoesNotDependOnTheNumberOfThreads) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   const auto candidates = chosen_candidates({"adaptive_time_series", "newmark_kinematics+pi"});
   const auto table = [&](unsigned threads) {
@@ -37,7 +37,7 @@ TEST(RthsStudy, DoesNotDependOnTheNumberOfThreads) {
 
 /// The targets that are set for our best compensator, over all runs.
 TEST(RthsStudy, OursMeetsItsTargets) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   const auto candidates = chosen_candidates({std::string{kOurs}});
   const StudySettings settings{.plants = 20, .seed = 1, .threads = usable_threads()};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "tests/support/shared_data.hpp"
 #include "tests/support/system_fixture.hpp"
 #include "tests/system/reference_building.hpp"
 
@@ -16,10 +17,9 @@ namespace {
 class LateActuator : public SystemTest {
  protected:
   void SetUp() override {
-    reference_ = read_reference("linear");
-    if (reference_.floor_1_m.empty() || !std::filesystem::exists(reference_motion())) {
-      GTEST_SKIP() << "no reference histories in " << HYBRIDTEST_SHARED_DATA;
-    }
+    HYBRIDTEST_NEEDS_DATA(recorded_reference("linear"));
+    HYBRIDTEST_NEEDS_DATA(reference_motion());
+    reference_ = read_reference(recorded_reference("linear"));
   }
 
   [[nodiscard]] StartedProgram start_with(const std::string& compensator) const {

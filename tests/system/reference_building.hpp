@@ -2,21 +2,14 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "tests/support/recorded_run.hpp"
+#include "tests/support/reference_history.hpp"
 
 namespace hybridtest {
 
-/// Displacements of both floors as OpenSees computed them, at 0.01 s, 0.02 s …
-struct ReferenceHistory {
-  std::vector<double> floor_1_m;
-  std::vector<double> floor_2_m;
-};
-
-/// @return nothing in it where the recorded data are absent.
-[[nodiscard]] ReferenceHistory read_reference(const std::string& law);
-/// The record that the reference building was shaken with; may be absent.
+/// Recorded data, which may be absent: the two-storey building under El Centro, and that motion.
+[[nodiscard]] std::filesystem::path recorded_reference(const std::string& law);
 [[nodiscard]] std::filesystem::path reference_motion();
 
 /// Largest distance of a run from the reference, of each floor, as a share of that floor's peak.

@@ -1,6 +1,6 @@
 # Whole tests in real processes, asserted on what they recorded.
 hybridtest_test(system FOLDER system
-  SOURCES ${support}/recorded_run.cpp ${support}/recording_checks.cpp ${support}/started_program.cpp
+  SOURCES ${support}/recorded_run.cpp ${support}/recording_checks.cpp ${support}/reference_history.cpp ${support}/started_program.cpp
     ${support}/system_fixture.cpp
   LINK hybridtest_recording LABELS system
   # One at a time: they start processes, kill them and watch the time.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/config_error.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace hybridtest {
 namespace {
@@ -223,8 +224,8 @@ void PrintTo(const Recorded& recorded, std::ostream* stream) { *stream << record
 class RecordedMotion : public ::testing::TestWithParam<Recorded> {};
 
 TEST_P(RecordedMotion, IsReadWhole) {
-  const auto file = std::filesystem::path{HYBRIDTEST_SHARED_DATA} / "ground_motions" / GetParam().file;
-  if (!exists(file)) GTEST_SKIP() << "no recorded motion at " << file;
+  const auto file = shared_data("ground_motions") / GetParam().file;
+  HYBRIDTEST_NEEDS_DATA(file);
   const GroundMotion motion = read_ground_motion(file);
   EXPECT_EQ(motion.acceleration_m_per_s2.size(), GetParam().points);
   EXPECT_NEAR(motion.dt_s, GetParam().dt_s, 1e-12);

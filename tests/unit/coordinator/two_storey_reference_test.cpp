@@ -12,6 +12,7 @@
 #include "coordinator/explicit_newmark.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
 #include "mechanics/structure/damping.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/support/structures.hpp"
 
 /// The integrators against time histories of an established program (OpenSees 3.8, Newmark's
@@ -96,10 +97,10 @@ std::array<double, 2> error_percent(Column first_storey, const Reference& refere
 
 template <typename Method>
 void expect_reference(const std::string& name, Column first_storey) {
-  const std::filesystem::path shared{HYBRIDTEST_SHARED_DATA};
-  const auto record = shared / "ground_motions" / "elcentro_1940_ns.AT2";
-  const auto history = shared / "reference" / ("two_storey_" + name + ".csv");
-  if (!exists(record) || !exists(history)) GTEST_SKIP() << "no recorded data at " << shared;
+  const auto record = shared_data("ground_motions/elcentro_1940_ns.AT2");
+  const auto history = shared_data("reference/two_storey_" + name + ".csv");
+  HYBRIDTEST_NEEDS_DATA(record);
+  HYBRIDTEST_NEEDS_DATA(history);
   const Reference reference = read_reference(history);
   ASSERT_EQ(reference.displacement_m.size(), 3100U);
   const auto error = error_percent<Method>(first_storey, reference, read_ground_motion(record));

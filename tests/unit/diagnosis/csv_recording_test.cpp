@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/intake/intake.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace hybridtest {
 namespace {
@@ -233,8 +234,8 @@ TEST(CsvRecording, ARestingChannelBesideAMovingOneIsNoWrongUnit) {
 }
 
 TEST(CsvRecording, TakesMeasuredRecordingsThatHaveATime) {
-  const std::filesystem::path folder = std::filesystem::path{HYBRIDTEST_SHARED_DATA} / "measured";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const std::filesystem::path folder = shared_data("measured");
+  HYBRIDTEST_NEEDS_DATA(folder);
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator{folder}) {
     if (entry.path().extension() != ".csv") continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/config_error.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {
@@ -75,8 +76,9 @@ TEST(Bilinear, DissipatesTheAreaOfItsLoop) {
 }
 
 TEST(Bilinear, AgreesWithOpenSees) {
-  const ReferenceHistory reference = read_reference("two_storey_bilinear.csv");
-  if (reference.force_n.empty()) GTEST_SKIP() << "no recorded reference at " HYBRIDTEST_SHARED_DATA;
+  const auto file = shared_data("reference/two_storey_bilinear.csv");
+  HYBRIDTEST_NEEDS_DATA(file);
+  const ReferenceHistory reference = read_reference(file);
   Bilinear spring{kColumn};
   // The recorded run had 20 steps per sample; what remains is the interpolation of its
   // displacement, some 1e-7 m where the recorded acceleration has a corner.

@@ -6,6 +6,7 @@
 
 #include "core/config_error.hpp"
 #include "core/random.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {
@@ -130,8 +131,9 @@ class BackwardEuler {
 };
 
 TEST(BoucWen, AgreesWithOpenSeesButForTheErrorOfItsStep) {
-  const ReferenceHistory reference = read_reference("two_storey_boucwen.csv");
-  if (reference.force_n.empty()) GTEST_SKIP() << "no recorded reference at " HYBRIDTEST_SHARED_DATA;
+  const auto file = shared_data("reference/two_storey_boucwen.csv");
+  HYBRIDTEST_NEEDS_DATA(file);
+  const ReferenceHistory reference = read_reference(file);
   BoucWen law{{.stiffness_n_per_m = kStiffness, .alpha = 0.1, .n = 1.0, .gamma_per_m = 50.0, .beta_per_m = 50.0}};
   BackwardEuler as_recorded;
   BackwardEuler half_step;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/config_error.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {
@@ -18,8 +19,9 @@ TEST(Elastic, ForceIsStiffnessTimesDisplacement) {
 }
 
 TEST(Elastic, AgreesWithOpenSees) {
-  const ReferenceHistory reference = read_reference("two_storey_linear.csv");
-  if (reference.force_n.empty()) GTEST_SKIP() << "no recorded reference at " HYBRIDTEST_SHARED_DATA;
+  const auto file = shared_data("reference/two_storey_linear.csv");
+  HYBRIDTEST_NEEDS_DATA(file);
+  const ReferenceHistory reference = read_reference(file);
   Elastic spring{4.0e6};
   // Displacement and force are written with six digits each, and half a unit of the last is lost.
   for (std::size_t i = 0; i < reference.force_n.size(); ++i) {

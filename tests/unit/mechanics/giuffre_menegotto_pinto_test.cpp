@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/config_error.hpp"
+#include "tests/support/shared_data.hpp"
 #include "tests/unit/mechanics/reference_history.hpp"
 
 namespace hybridtest {
@@ -58,8 +59,9 @@ TEST(GiuffreMenegottoPinto, ReversalOnTheAsymptoteItselfStaysFinite) {
 }
 
 TEST(GiuffreMenegottoPinto, AgreesWithOpenSees) {
-  const ReferenceHistory reference = read_reference("two_storey_steel02.csv");
-  if (reference.force_n.empty()) GTEST_SKIP() << "no recorded reference at " HYBRIDTEST_SHARED_DATA;
+  const auto file = shared_data("reference/two_storey_steel02.csv");
+  HYBRIDTEST_NEEDS_DATA(file);
+  const ReferenceHistory reference = read_reference(file);
   GiuffreMenegottoPinto spring{kColumn};
   // As for the bilinear law. The number of steps matters to this one: a reversal between
   // samples that is missed puts it on another curve.

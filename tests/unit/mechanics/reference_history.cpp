@@ -1,10 +1,10 @@
 #include "tests/unit/mechanics/reference_history.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 namespace hybridtest {
 
@@ -30,20 +30,22 @@ double ReferenceHistory::displacement_between(std::size_t i, double fraction) co
   return sum;
 }
 
-ReferenceHistory read_reference(const std::string& name) {
-  ReferenceHistory history;
-  std::ifstream file{std::string{HYBRIDTEST_SHARED_DATA} + "/reference/" + name};
+ReferenceHistory read_reference(const std::filesystem::path& file) {
+  std::ifstream stream{file};
   std::string line;
-  if (!std::getline(file, line)) return history;
+  if (!std::getline(stream, line)) throw std::runtime_error{"no reference history in " + file.string()};
+  const auto force_column =
+      std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(line.find("storey_force_1")), ',');
+  ReferenceHistory history;
   history.displacement_m.push_back(0.0);
   history.force_n.push_back(0.0);
-  while (std::getline(file, line)) {
+  while (std::getline(stream, line)) {
     std::istringstream columns{line};
-    std::array<double, 5> value{};
+    std::vector<double> value(static_cast<std::size_t>(force_column) + 1);
     char comma = ',';
     for (double& number : value) columns >> number >> comma;
     history.displacement_m.push_back(value[1]);
-    history.force_n.push_back(value[3]);
+    history.force_n.push_back(value.back());
   }
   return history;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <filesystem>
 #include <vector>
 
 namespace hybridtest {
@@ -19,7 +19,8 @@ struct ReferenceHistory {
   [[nodiscard]] double displacement_between(std::size_t i, double fraction) const;
 };
 
-/// @return empty histories where the recorded data are absent.
-[[nodiscard]] ReferenceHistory read_reference(const std::string& name);
+/// @param file   columns time_s, displacement_1_m … and storey_force_1_n or _N.
+/// @throws std::runtime_error for a file that cannot be read.
+[[nodiscard]] ReferenceHistory read_reference(const std::filesystem::path& file);
 
 }  // namespace hybridtest

@@ -23,7 +23,7 @@ VirtualTest first_case_under_el_centro(const BenchmarkInputs& inputs) {
 }
 
 TEST(HarnessCheck, TheReleasedControllerGivesTheFirstPublishedRow) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   ReleasedController controller;
   NoForceCompensation forces;
@@ -36,7 +36,7 @@ TEST(HarnessCheck, TheReleasedControllerGivesTheFirstPublishedRow) {
 }
 
 TEST(HarnessCheck, AForceWithoutItsSampleOfDelayWouldNotPass) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   // The control: a harness that is wrong by one sample of force fails the three percent in J6. What makes up for the
   // sample is a straight line through the last two forces.
   class OneSampleAhead final : public ForceCompensator {
@@ -59,7 +59,7 @@ TEST(HarnessCheck, AForceWithoutItsSampleOfDelayWouldNotPass) {
 }
 
 TEST(HarnessCheck, UncompensatedTheFirstCaseDiverges) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   CompensatedPath path{std::make_unique<NoCompensation>(), Arrangement::straight};
   NoForceCompensation forces;
@@ -81,7 +81,7 @@ TEST(HarnessCheck, AValueOffByMoreThanThreePercentIsNotConfirmed) {
 }
 
 TEST(BenchmarkInputs, TheNoiseFloorsOfJ2AreTheIssuedOnes) {
-  SKIP_WITHOUT_BENCHMARK_MOTIONS();
+  HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   constexpr std::array<std::array<double, 3>, 4> kFloors{
       {{2.6, 2.9, 3.2}, {2.4, 2.5, 3.3}, {1.6, 1.9, 3.0}, {2.0, 2.5, 2.4}}};
