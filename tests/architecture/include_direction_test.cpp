@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(IncludeDirection, TheTreeHasNoArrowThatTheDesignDoesNotHave) {
+TEST(IncludeDirection, TreeFollowsTheTableOfParts) {
   const std::vector<SourceFile> files = read_sources(HYBRIDTEST_SOURCE_DIR);
   for (const char* folder : {"core/", "mechanics/", "compensation/", "coordinator/", "numerical_substructure/",
                              "experimental_site/", "transport/", "recording/", "launch/", "tests/"}) {
@@ -30,7 +30,7 @@ struct ForbiddenLine {
 
 class Forbidden : public testing::TestWithParam<ForbiddenLine> {};
 
-TEST_P(Forbidden, IsFound) {
+TEST_P(Forbidden, IsReported) {
   const auto& [path, line, finding] = GetParam();
   EXPECT_THAT(violations({{path, std::string{"#include <vector>\n"} + line + "\n"}}), ElementsAre(finding));
 }
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   "plant/sensors/noisy_sensor.cpp:2 draws from a generator that is not "
                                   "core/random.hpp: normal_distribution"}));
 
-TEST(IncludeDirection, WhatTheDesignAllowsIsNotFound) {
+TEST(IncludeDirection, AllowedIncludesAreNotReported) {
   EXPECT_THAT(violations({
                   {"coordinator/main.cpp", "#include \"runtime/participant_process.hpp\"\n"},
                   {"experimental_site/rigs/simulated_rig.cpp", "#include \"mechanics/laws/law.hpp\"\n"},

@@ -64,7 +64,7 @@ class PeerProcess {
 // The lease bounds the silence; what the operating system adds under load is given as much again.
 constexpr Duration kLossTime = 2 * kTestLease;
 
-TEST(FastDdsTransport, KilledProcessIsLostWithinTheLease) {
+TEST(FastDdsTransport, ReportsKilledProcessLostWithinLease) {
   const auto observer = FastDdsUdpNetwork::join(unique_test_name());
   const auto statuses = observer->status_inbox();
   const PeerProcess peer{unique_test_name()};
@@ -75,7 +75,7 @@ TEST(FastDdsTransport, KilledProcessIsLostWithinTheLease) {
   EXPECT_LE(std::chrono::steady_clock::now() - killed, kLossTime);
 }
 
-TEST(FastDdsTransport, StoppedProcessIsLostAndHeardAgainWhenItGoesOn) {
+TEST(FastDdsTransport, FrozenProcessIsLostAndReturnsWhenResumed) {
   const auto observer = FastDdsUdpNetwork::join(unique_test_name());
   const auto statuses = observer->status_inbox();
   const PeerProcess peer{unique_test_name()};
@@ -88,7 +88,7 @@ TEST(FastDdsTransport, StoppedProcessIsLostAndHeardAgainWhenItGoesOn) {
   EXPECT_TRUE(hears(*observer, *statuses, LifecycleState::running));
 }
 
-TEST(FastDdsTransport, ParticipantWhoseNodeStallsWhileItsRigCanMoveIsLost) {
+TEST(FastDdsTransport, StalledParticipantIsLostWhileMotionIsPossible) {
   const auto observer = FastDdsUdpNetwork::join(unique_test_name());
   const auto statuses = observer->status_inbox();
   const auto peer = FastDdsUdpNetwork::join(unique_test_name());
@@ -99,7 +99,7 @@ TEST(FastDdsTransport, ParticipantWhoseNodeStallsWhileItsRigCanMoveIsLost) {
   EXPECT_GE(observer->counters().deadlines_missed, 1U);
 }
 
-TEST(FastDdsTransport, ParticipantThatIsSilentBeforeItsRigCanMoveIsNotLost) {
+TEST(FastDdsTransport, SilentParticipantIsNotLostBeforeMotionIsPossible) {
   const auto observer = FastDdsUdpNetwork::join(unique_test_name());
   const auto statuses = observer->status_inbox();
   const auto connecting = FastDdsUdpNetwork::join(unique_test_name());
@@ -155,7 +155,7 @@ struct Forgery {
 
 class ForgedControl : public ::testing::TestWithParam<Forgery> {};
 
-TEST_P(ForgedControl, IsDroppedAndCountedAndWhatFollowsArrives) {
+TEST_P(ForgedControl, IsDroppedAndCountedWithoutLosingLaterMessages) {
   namespace dds = fast_dds::dds;
   const auto receiver = FastDdsUdpNetwork::join(unique_test_name());
   const auto controls = receiver->control_inbox();
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Forgery{"no_such_verb", {0, 1, 0, 0, 200, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}}),
     [](const auto& forgery) { return forgery.param.name; });
 
-TEST(FastDdsSettings, OutOfRangeIsRefused) {
+TEST(FastDdsSettings, RejectsValuesOutOfRange) {
   const auto refused = [](auto change) {
     fast_dds::FastDdsSettings settings = test_settings();
     change(settings);
@@ -212,7 +212,7 @@ TEST(FastDdsSettings, OutOfRangeIsRefused) {
   EXPECT_NO_THROW(static_cast<void>(fast_dds::participant_qos(test_settings())));
 }
 
-TEST(FastDdsSettings, TestNameThatPartitionsWouldMisreadIsRefused) {
+TEST(FastDdsSettings, RejectsInvalidTestName) {
   for (const std::string& name : {std::string{}, std::string{"a*"}, std::string{"a/b"}, std::string(65, 'a')}) {
     EXPECT_THROW(static_cast<void>(fast_dds::make_fast_dds_transport(test_settings(), name)), std::invalid_argument);
   }
@@ -233,7 +233,7 @@ class ProfileFile : public ::testing::Test {
 };
 
 // Fast DDS keeps the profiles of every file that a process has read: this test comes first.
-TEST_F(ProfileFile, WithoutOurProfileOrWithoutSenseIsRefused) {
+TEST_F(ProfileFile, RejectsInvalidFileAndMissingProfile) {
   EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with("no xml"))), std::runtime_error);
   EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">

@@ -12,7 +12,7 @@
 namespace hybridtest::in_process {
 namespace {
 
-TEST(InProcessHub, KilledParticipantNeitherSendsNorReceivesAndIsLost) {
+TEST(InProcessHub, KilledParticipantIsSilentAndReportedLost) {
   Hub hub;
   const auto observer = hub.join("test");
   const auto victim = hub.join("test");
@@ -39,7 +39,7 @@ TEST(InProcessHub, KilledParticipantNeitherSendsNorReceivesAndIsLost) {
   EXPECT_FALSE(late_statuses->take(received)) << "what the dead had said went with him";
 }
 
-TEST(InProcessHub, SendSaysWhenAReceiverWasFull) {
+TEST(InProcessHub, SendReportsFullReceiver) {
   Hub hub;
   const auto sender = hub.join("test");
   const auto receiver = hub.join("test");
@@ -51,7 +51,7 @@ TEST(InProcessHub, SendSaysWhenAReceiverWasFull) {
   EXPECT_EQ(receiver->counters().overflowed, 1U);
 }
 
-TEST(InProcessHub, LossIsReportedIntoAFullInbox) {
+TEST(InProcessHub, ReportsLossEvenIntoFullInbox) {
   Hub hub;
   const auto observer = hub.join("test");
   auto victim = hub.join("test");
@@ -66,7 +66,7 @@ TEST(InProcessHub, LossIsReportedIntoAFullInbox) {
   EXPECT_EQ(received.state, LifecycleState::lost);
 }
 
-TEST(InProcessHub, PortsOutliveTheirTransportAndTheHub) {
+TEST(InProcessHub, PortsRemainValidAfterTransportAndHubAreDestroyed) {
   auto hub = std::make_unique<Hub>();
   auto participant = hub->join("test");
   const auto outbox = participant->event_outbox();
@@ -78,7 +78,7 @@ TEST(InProcessHub, PortsOutliveTheirTransportAndTheHub) {
   EXPECT_FALSE(inbox->take(event));
 }
 
-TEST(InProcessHub, ManyThreadsSendWhileOthersComeAndGo) {
+TEST(InProcessHub, ThreadsSendWhileParticipantsJoinAndLeave) {
   Hub hub;
   const auto receiver = hub.join("test");
   const auto inbox = receiver->measurement_inbox();

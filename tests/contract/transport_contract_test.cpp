@@ -117,7 +117,7 @@ TYPED_TEST(TransportContract, EveryMessageArrivesUnchanged) {
   check(sender->signal_outbox(), receiver->signal_inbox(), sample_signal(31));
 }
 
-TYPED_TEST(TransportContract, ForceThatIsNotFiniteArrivesAsSent) {
+TYPED_TEST(TransportContract, NonFiniteForceArrivesUnchanged) {
   const auto sender = this->join();
   const auto receiver = this->join();
   const auto outbox = sender->measurement_outbox();
@@ -131,7 +131,7 @@ TYPED_TEST(TransportContract, ForceThatIsNotFiniteArrivesAsSent) {
   EXPECT_EQ(received.force_n[1], -std::numeric_limits<double>::infinity());
 }
 
-TYPED_TEST(TransportContract, OrderOfOneSenderIsKeptAndNothingIsLost) {
+TYPED_TEST(TransportContract, KeepsOrderOfOneSenderWithoutLoss) {
   Coupled test{[this] { return this->join(); }};
   ASSERT_TRUE(test.ready);
   constexpr Step kBurst = 8;  // less than any queue holds
@@ -145,7 +145,7 @@ TYPED_TEST(TransportContract, OrderOfOneSenderIsKeptAndNothingIsLost) {
   }
 }
 
-TYPED_TEST(TransportContract, SubstructureTakesItsOwnCommandsAndTheCoordinatorAllMeasurements) {
+TYPED_TEST(TransportContract, RoutesCommandsBySubstructureAndAllMeasurements) {
   Coupled test{[this] { return this->join(); }};
   ASSERT_TRUE(test.ready);
   ASSERT_TRUE(test.commands->send(sample_command(1, 7)));
@@ -171,7 +171,7 @@ TYPED_TEST(TransportContract, SubstructureTakesItsOwnCommandsAndTheCoordinatorAl
   EXPECT_FALSE(test.numerical_commands->take(command));
 }
 
-TYPED_TEST(TransportContract, CommandForAnUnknownSubstructureIsNotAccepted) {
+TYPED_TEST(TransportContract, RejectsCommandForUnknownSubstructure) {
   const auto coordinator = this->join();
   const auto commands = coordinator->command_outbox(2);
   EXPECT_TRUE(commands->send(sample_command(1, 0)));
@@ -180,7 +180,7 @@ TYPED_TEST(TransportContract, CommandForAnUnknownSubstructureIsNotAccepted) {
   EXPECT_EQ(coordinator->counters().unsent, 1U);
 }
 
-TYPED_TEST(TransportContract, LateJoinerGetsTheAnnouncementAndTheNewestStatusOfEach) {
+TYPED_TEST(TransportContract, LateJoinerGetsAnnouncementAndNewestStatuses) {
   const auto coordinator = this->join();
   const auto site = this->join();
   const auto announcement = coordinator->announcement_outbox();
@@ -209,7 +209,7 @@ TYPED_TEST(TransportContract, LateJoinerGetsTheAnnouncementAndTheNewestStatusOfE
   EXPECT_EQ(heard[1], sample_status("site", LifecycleState::armed));
 }
 
-TYPED_TEST(TransportContract, TwoTestsDoNotHearEachOther) {
+TYPED_TEST(TransportContract, TestsOfDifferentNamesAreIsolated) {
   const auto here = this->join();
   const auto here_too = this->join();
   const auto elsewhere = this->join_other_test();
@@ -240,7 +240,7 @@ TYPED_TEST(TransportContract, TwoTestsDoNotHearEachOther) {
   EXPECT_FALSE(elsewhere->reachable(0));
 }
 
-TYPED_TEST(TransportContract, ParticipantDoesNotHearItself) {
+TYPED_TEST(TransportContract, ParticipantDoesNotReceiveItsOwnMessages) {
   const auto self = this->join();
   const auto other = this->join();
   const auto inbox = self->status_inbox();
@@ -254,7 +254,7 @@ TYPED_TEST(TransportContract, ParticipantDoesNotHearItself) {
   while (inbox->take(received));
 }
 
-TYPED_TEST(TransportContract, TwoWhoClaimOneIdAreBothHeard) {
+TYPED_TEST(TransportContract, ReceivesBothParticipantsWithOneId) {
   const auto first = this->join();
   const auto second = this->join();
   const auto observer = this->join();
@@ -278,7 +278,7 @@ TYPED_TEST(TransportContract, TwoWhoClaimOneIdAreBothHeard) {
   }));
 }
 
-TYPED_TEST(TransportContract, WhoLeavesWithoutAFarewellIsReportedLostOnce) {
+TYPED_TEST(TransportContract, ReportsSilentLeaverLostOnce) {
   const auto observer = this->join();
   const auto statuses = observer->status_inbox();
   auto polite = this->join();
@@ -320,7 +320,7 @@ TYPED_TEST(TransportContract, WhoLeavesWithoutAFarewellIsReportedLostOnce) {
   EXPECT_EQ(lost.size(), 2U);
 }
 
-TYPED_TEST(TransportContract, FullInboxTurnsAwayCountsAndRecovers) {
+TYPED_TEST(TransportContract, FullInboxRejectsCountsAndRecovers) {
   Coupled test{[this] { return this->join(); }};
   ASSERT_TRUE(test.ready);
   constexpr std::size_t kCapacity = kInboxCapacity<DisplacementCommand>;
@@ -353,7 +353,7 @@ TYPED_TEST(TransportContract, FullInboxTurnsAwayCountsAndRecovers) {
   }));
 }
 
-TYPED_TEST(TransportContract, SendReturnsWhenNobodyListens) {
+TYPED_TEST(TransportContract, SendReturnsWithoutReceivers) {
   const auto alone = this->join();
   const auto commands = alone->command_outbox(1);
   const auto events = alone->event_outbox();
@@ -385,7 +385,7 @@ TYPED_TEST(TransportContract, ReachableFollowsTheOtherEnd) {
   EXPECT_TRUE(eventually(*coordinator, [&] { return !coordinator->reachable(0); }));
 }
 
-TYPED_TEST(TransportContract, ArrivalSignalsTheWaker) {
+TYPED_TEST(TransportContract, ArrivalSignalsWaker) {
   Coupled test{[this] { return this->join(); }};
   ASSERT_TRUE(test.ready);
   Waker& waker = test.site->waker();

@@ -13,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 constexpr Clock::time_point kPast{};
 constexpr Clock::time_point kEndless = Clock::time_point::max();
 
-TEST(Waker, RemembersOneSignalForALaterWait) {
+TEST(Waker, KeepsOneSignalForALaterWait) {
   Waker waker;
   waker.signal();
   waker.signal();
@@ -21,14 +21,14 @@ TEST(Waker, RemembersOneSignalForALaterWait) {
   EXPECT_FALSE(waker.wait_until(kPast)) << "used up";
 }
 
-TEST(Waker, DeadlinePassesOnlyWhenItIsThere) {
+TEST(Waker, WaitEndsAtItsDeadline) {
   Waker waker;
   const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds{20};
   EXPECT_FALSE(waker.wait_until(deadline));
   EXPECT_GE(Clock::now(), deadline);
 }
 
-TEST(Waker, SignalOfAnotherThreadEndsAnEndlessWait) {
+TEST(Waker, SignalFromAnotherThreadEndsWait) {
   Waker waker;
   std::thread other{[&] { waker.signal(); }};
   EXPECT_TRUE(waker.wait_until(kEndless));
@@ -36,7 +36,7 @@ TEST(Waker, SignalOfAnotherThreadEndsAnEndlessWait) {
 }
 
 // A lost signal would leave both threads waiting for ever.
-TEST(Waker, NoSignalIsLostBetweenTwoThreadsThatAnswerEachOther) {
+TEST(Waker, LosesNoSignalBetweenTwoThreads) {
   constexpr int kRounds = 20000;
   Waker ping;
   Waker pong;
@@ -58,7 +58,7 @@ TEST(Waker, NoSignalIsLostBetweenTwoThreadsThatAnswerEachOther) {
 }
 
 // The last of several signals must be seen by a wait that begins after it was taken note of.
-TEST(Waker, SeveralSignallersAndOneWaiterMissNothing) {
+TEST(Waker, LosesNoSignalOfSeveralThreads) {
   constexpr int kEach = 5000;
   Waker waker;
   std::atomic<int> sent{0};

@@ -49,7 +49,7 @@ void change(std::string& text, Random& random) {
   }
 }
 
-TEST(GroundMotionFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
+TEST(GroundMotionFuzzReplay, CorpusFilesBehaveAsNamed) {
   const auto files = corpus();
   ASSERT_GE(files.size(), 10U);
   for (const auto& [name, text] : files) {
@@ -59,7 +59,7 @@ TEST(GroundMotionFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
   }
 }
 
-TEST(GroundMotionFuzzReplay, SurvivesFourThousandMutationsOfTheCorpus) {
+TEST(GroundMotionFuzzReplay, SurvivesMutationsOfTheCorpus) {
   constexpr std::uint64_t kSeed = 1;
   constexpr std::uint64_t kMutations = 4000;
   std::vector<std::string> texts;

@@ -47,7 +47,7 @@ void change(std::string& text, Random& random) {
   }
 }
 
-TEST(RecordingFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
+TEST(RecordingFuzzReplay, CorpusFilesBehaveAsNamed) {
   const auto files = corpus();
   ASSERT_GE(files.size(), 10U);
   for (const auto& [name, text] : files) {
@@ -57,7 +57,7 @@ TEST(RecordingFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
   }
 }
 
-TEST(RecordingFuzzReplay, SurvivesFourThousandMutationsOfTheCorpus) {
+TEST(RecordingFuzzReplay, SurvivesMutationsOfTheCorpus) {
   constexpr std::uint64_t kSeed = 1;
   constexpr std::uint64_t kMutations = 4000;
   std::vector<std::string> texts;

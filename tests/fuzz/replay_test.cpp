@@ -88,7 +88,7 @@ void print_input(void* text) noexcept {
   std::fprintf(stderr, "input of %zu bytes:\n%s\n", input.size(), input.c_str());
 }
 
-TEST(ConfigFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
+TEST(ConfigFuzzReplay, CorpusFilesBehaveAsNamed) {
   const std::map<std::string, ConfigFuzzOutcome> expected = {{"accepted", ConfigFuzzOutcome::accepted},
                                                              {"errors", ConfigFuzzOutcome::with_errors},
                                                              {"refused", ConfigFuzzOutcome::refused}};
@@ -101,7 +101,7 @@ TEST(ConfigFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
   }
 }
 
-TEST(ConfigFuzzReplay, SurvivesTwoThousandMutationsOfTheCorpus) {
+TEST(ConfigFuzzReplay, SurvivesMutationsOfTheCorpus) {
   constexpr std::uint64_t kSeed = 1;
   constexpr std::uint64_t kMutations = 2000;
   std::vector<std::string> texts;

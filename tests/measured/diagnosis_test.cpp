@@ -89,7 +89,7 @@ class ServoHydraulicActuator : public testing::Test {
   std::vector<Recording> recordings_;
 };
 
-TEST_F(ServoHydraulicActuator, HasABandwidthAndNoDelay) {
+TEST_F(ServoHydraulicActuator, NamesBandwidthForIdealActuator) {
   const Diagnosis diagnosis = answer(ideal_actuator(), recordings_);
   EXPECT_TRUE(names(diagnosis, "transfer_system", "bandwidth"));
   EXPECT_EQ(diagnosis.report.where.front().interface, "transfer_system");
@@ -97,7 +97,7 @@ TEST_F(ServoHydraulicActuator, HasABandwidthAndNoDelay) {
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.997);
 }
 
-TEST_F(ServoHydraulicActuator, HasABandwidthBesideTheBestDelay) {
+TEST_F(ServoHydraulicActuator, NamesBandwidthBesideFittedDelay) {
   const Diagnosis diagnosis = answer(delayed_actuator(0.0166), recordings_);
   EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
   ASSERT_FALSE(diagnosis.report.ranking.empty());
@@ -116,7 +116,7 @@ SiteModel unpowered_damper() {
   return model;
 }
 
-TEST(MagnetorheologicalDamper, DiffersAtTheSpecimenOnceItHasCurrent) {
+TEST(MagnetorheologicalDamper, LocatesCurrentEffectAtSpecimen) {
   HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_1A"));
   const Diagnosis diagnosis = answer(unpowered_damper(), {measured("servo_hydraulic_mr_damper_1A")});
   EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
@@ -151,7 +151,7 @@ class ServoAxis : public testing::Test {
   SiteModel mass_only_ = ideal_actuator();
 };
 
-TEST_F(ServoAxis, HasViscousAndDryFriction) {
+TEST_F(ServoAxis, NamesViscousAndDryFriction) {
   const Diagnosis diagnosis = answer(mass_only_, {stretch(*excitation_, 0.0, 0.4, RecordingRole::fit),
                                                   stretch(*excitation_, 0.6, 1.0, RecordingRole::fit),
                                                   stretch(*excitation_, 0.4, 0.6, RecordingRole::held_out)});
@@ -172,7 +172,7 @@ TEST_F(ServoAxis, HasViscousAndDryFriction) {
   }
 }
 
-TEST_F(ServoAxis, IsCleanOnTheRecordThatWasDisturbedUpstream) {
+TEST_F(ServoAxis, SpecimenIsCleanWhenDisturbedUpstream) {
   const Diagnosis found = answer(mass_only_, {*excitation_});
   // A disturbance upstream of the force is nothing that the specimen knows of. (98 % in a fit by other means below
   // 80 Hz, where the noise of the force ends.)
@@ -191,7 +191,7 @@ TEST_F(ServoAxis, IsCleanOnTheRecordThatWasDisturbedUpstream) {
   EXPECT_LT(again.causes[0].values[0], 1e-3);
 }
 
-TEST(FrictionDamper, HasFrictionAndPlay) {
+TEST(FrictionDamper, NamesFrictionAndBacklash) {
   std::vector<Recording> recordings;
   for (const char* name : {"friction_damper_1Hz36lb_1in", "friction_damper_0.5Hz36lb_1in"}) {
     HYBRIDTEST_NEEDS_DATA(measured_file(name));

@@ -123,7 +123,7 @@ class ControlPath : public testing::TestWithParam<PathCase> {
   }
 };
 
-TEST_P(ControlPath, TheControlLoopMakesNoForbiddenCall) {
+TEST_P(ControlPath, ControlLoopMakesNoForbiddenCall) {
   LoopOnRings loop{GetParam().mode, GetParam().compensates};
   LoopStory story;
   ForbiddenCalls calls;
@@ -139,7 +139,7 @@ TEST_P(ControlPath, TheControlLoopMakesNoForbiddenCall) {
   EXPECT_GE(loop.rows(), 5000U);
 }
 
-TEST_P(ControlPath, AWholeTestOnQueuesMakesNoForbiddenCall) {
+TEST_P(ControlPath, WholeTestOnQueuesMakesNoForbiddenCall) {
   constexpr Step kLastStep = 2000;
   RingCoupling coupling{GetParam().mode, kLastStep, GetParam().compensates};
   ForbiddenCalls calls;

@@ -83,7 +83,7 @@ class EffectsPath : public testing::Test {
   }
 };
 
-TEST_F(EffectsPath, NoEffectMakesAForbiddenCall) {
+TEST_F(EffectsPath, EffectMakesNoForbiddenCall) {
   for (const EffectType& type : effect_library()) {
     if (type.make == nullptr) continue;  // acts where the coordinator starts
     const auto rig = rig_with({some_setting(type)});

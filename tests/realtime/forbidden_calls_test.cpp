@@ -36,7 +36,7 @@ void keep(const Value& value) {
   asm volatile("" : : "g"(&value) : "memory");
 }
 
-TEST_F(ForbiddenCallsTest, NothingIsCountedWhereNothingIsDone) {
+TEST_F(ForbiddenCallsTest, CountsNothingInAnEmptyScope) {
   double sum = 0.0;
   const ForbiddenCallCount count;
   for (int i = 0; i < 1000; ++i) sum += i;
@@ -44,7 +44,7 @@ TEST_F(ForbiddenCallsTest, NothingIsCountedWhereNothingIsDone) {
   EXPECT_EQ(count.calls(), ForbiddenCalls{});
 }
 
-TEST_F(ForbiddenCallsTest, NothingIsCountedOutside) {
+TEST_F(ForbiddenCallsTest, CountsNothingOutsideTheScope) {
   ForbiddenCalls calls;
   {
     const ForbiddenCallCount count;
@@ -54,7 +54,7 @@ TEST_F(ForbiddenCallsTest, NothingIsCountedOutside) {
   EXPECT_EQ(calls, ForbiddenCalls{});
 }
 
-TEST_F(ForbiddenCallsTest, EveryWayToAllocateIsSeen) {
+TEST_F(ForbiddenCallsTest, CountsEveryKindOfAllocation) {
   const auto allocations = [](auto&& work) {
     const ForbiddenCallCount count;
     work();
@@ -81,7 +81,7 @@ TEST_F(ForbiddenCallsTest, EveryWayToAllocateIsSeen) {
   EXPECT_GE(allocations([&] { std::vector<double>{}.swap(given); }), 1) << "giving back is seen as well";
 }
 
-TEST_F(ForbiddenCallsTest, EveryLockIsSeen) {
+TEST_F(ForbiddenCallsTest, CountsEveryLock) {
   const auto locks = [](auto&& work) {
     const ForbiddenCallCount count;
     work();
@@ -100,7 +100,7 @@ TEST_F(ForbiddenCallsTest, EveryLockIsSeen) {
   EXPECT_EQ(locks([&] { condition.notify_all(); }), 1);
 }
 
-TEST_F(ForbiddenCallsTest, EveryLineOfALogIsSeen) {
+TEST_F(ForbiddenCallsTest, CountsEveryLogLine) {
   const std::unique_ptr<FILE, int (*)(FILE*)> nowhere{std::fopen("/dev/null", "w"), std::fclose};
   ASSERT_TRUE(nowhere);
   const auto writes = [](auto&& work) {
@@ -115,7 +115,7 @@ TEST_F(ForbiddenCallsTest, EveryLineOfALogIsSeen) {
   EXPECT_GE(writes([&] { EXPECT_EQ(::write(fileno(nowhere.get()), "x", 1), 1); }), 1);
 }
 
-TEST_F(ForbiddenCallsTest, EveryLookAtAClockIsSeen) {
+TEST_F(ForbiddenCallsTest, CountsEveryClockRead) {
   const ForbiddenCallCount count;
   keep(std::chrono::steady_clock::now());
   keep(std::chrono::system_clock::now());
@@ -124,7 +124,7 @@ TEST_F(ForbiddenCallsTest, EveryLookAtAClockIsSeen) {
   EXPECT_GE(count.calls().clocks, 3);
 }
 
-TEST(SystemCalls, AreSeenWhoeverMakesThem) {
+TEST(SystemCalls, AreDetectedFromAnyLibrary) {
   const auto none = system_calls_of([] {});
   if (!none) GTEST_SKIP() << "this kernel does not let a process turn away its own system calls";
   EXPECT_TRUE(none->empty());

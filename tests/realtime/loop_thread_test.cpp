@@ -90,14 +90,14 @@ class LoopThreadTest : public testing::Test {
   std::vector<Row> rows_;
 };
 
-TEST_F(LoopThreadTest, APauseOfTheLinkStopsNeitherTheLoopNorItsInterlock) {
+TEST_F(LoopThreadTest, PausedLinkStopsNeitherLoopNorInterlock) {
   thread_.emplace(coupling_.control_loop(), clock_, RealTimeRequest{}, kControlPeriod);
   expect_runs_on_and_holds([] {});
   coupling_.advance_link(clock_.now());
   EXPECT_TRUE(any(coupling_.site_faults() & FaultFlags::command_age)) << "the link hears of it when it is back";
 }
 
-TEST_F(LoopThreadTest, ANetworkThatHangsStopsNeitherTheLoopNorItsInterlock) {
+TEST_F(LoopThreadTest, HangingNetworkStopsNeitherLoopNorInterlock) {
   thread_.emplace(coupling_.control_loop(), clock_, RealTimeRequest{}, kControlPeriod);
   expect_runs_on_and_holds([this] { coupling_.advance_link(clock_.now()); });
   EXPECT_TRUE(any(coupling_.site_faults() & FaultFlags::command_age));
@@ -119,7 +119,7 @@ class HeldUp final : public Node {
   std::atomic<int> runs_{0};
 };
 
-TEST_F(LoopThreadTest, ALoopThatIsHeldUpShowsInItsTiming) {
+TEST_F(LoopThreadTest, DelayedLoopShowsInItsTiming) {
   HeldUp held_up{coupling_.control_loop()};
   LoopThread thread{held_up, clock_, RealTimeRequest{}, kControlPeriod};
   while (!held_up.was_held_up()) {
@@ -159,7 +159,7 @@ class Watched final : public Node {
   ForbiddenCalls calls_;
 };
 
-TEST_F(LoopThreadTest, ItsThreadNeitherAllocatesNorLocksNorWritesFromOnePeriodToTheNext) {
+TEST_F(LoopThreadTest, PeriodMakesNoAllocationLockOrWrite) {
   for (const bool allocates : {false, true}) {
     RingCoupling coupling{CouplingMode::paced, kEndless, true, 10.0};
     Watched watched{coupling.control_loop(), allocates};
@@ -180,7 +180,7 @@ TEST_F(LoopThreadTest, ItsThreadNeitherAllocatesNorLocksNorWritesFromOnePeriodTo
   }
 }
 
-TEST(RealTimeGrantTest, TellsWhatWasRefusedAndWhy) {
+TEST(RealTimeGrantTest, ReportsWhatWasRefusedAndWhy) {
   RealTimeGrant impossible;
   std::thread{[&] { impossible = enter_real_time({.priority = 100, .cpu = 1023, .allow_degraded = true}); }}.join();
   EXPECT_EQ(impossible.scheduling_error, EINVAL) << "99 is the highest there is";

@@ -9,7 +9,7 @@ namespace {
 
 class Determinism : public testing::TestWithParam<CouplingMode> {};
 
-TEST_P(Determinism, TheSameSeedGivesTheSameBytes) {
+TEST_P(Determinism, SameSeedGivesSameBytes) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const DrawnCase drawn = draw_case(seed, GetParam());
     SCOPED_TRACE(drawn.command());
@@ -30,7 +30,7 @@ class Lockstep : public testing::Test {
   KeptSimulation reference_ = keep_simulation(scenario_, SimulationSettings{});
 };
 
-TEST_F(Lockstep, AnotherSeedMovesMessagesAndNotTheStructure) {
+TEST_F(Lockstep, NetworkSeedDoesNotChangeTheHistory) {
   SimulationSettings settings;
   settings.seed = 2;
   settings.network.jitter = std::chrono::milliseconds{1};
@@ -39,7 +39,7 @@ TEST_F(Lockstep, AnotherSeedMovesMessagesAndNotTheStructure) {
   EXPECT_EQ(history_violated(other, reference_), Violations{});
 }
 
-TEST_F(Lockstep, ClocksThatRunFastAndSlowChangeNothing) {
+TEST_F(Lockstep, ClockDriftDoesNotChangeTheHistory) {
   for (const double drift_ppm : {0.0, 500.0, 20000.0}) {
     SimulationSettings settings;
     settings.seed = 3;
@@ -50,7 +50,7 @@ TEST_F(Lockstep, ClocksThatRunFastAndSlowChangeNothing) {
   }
 }
 
-TEST_F(Lockstep, AnotherNoiseSeedIsAnotherHistory) {
+TEST_F(Lockstep, NoiseSeedChangesTheHistory) {
   const Scenario other =
       shipped_scenario("two_storey_two_sites",
                        {kPulse, "time.duration_s=0.5", "substructures[first_storey_columns].rig.sensors.seed=8"});

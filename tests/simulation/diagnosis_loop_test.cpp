@@ -73,7 +73,7 @@ class DiagnosisLoop : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(DiagnosisLoop, WhatADiagnosisAddsClosesTheGap) {
+TEST_F(DiagnosisLoop, AddedEffectsCloseTheGap) {
   const Scenario real =
       simulate("real", {in_rig(kModel + kNoise + kFriction), "substructures[storey_1].model={" + kModel + "}"});
   std::ostringstream said;
@@ -102,7 +102,7 @@ TEST_F(DiagnosisLoop, WhatADiagnosisAddsClosesTheGap) {
   EXPECT_LT(response.at("energy_error_after"), 0.01 * response.at("energy_error_before").get<double>()) << response;
 }
 
-TEST_F(DiagnosisLoop, CommandsRecomputedWithTheRunsOwnScenarioAgreeBitForBit) {
+TEST_F(DiagnosisLoop, RecomputedCommandsAreBitIdentical) {
   simulate("run", {in_rig(kModel + kNoise)});
   const Scenario scenario = read_scenario(directory_ / "run" / "scenario.yaml", {});
   const StructureRecord record = structure_record(directory_ / "run", scenario);
@@ -113,7 +113,7 @@ TEST_F(DiagnosisLoop, CommandsRecomputedWithTheRunsOwnScenarioAgreeBitForBit) {
   EXPECT_TRUE(record.notes.empty());
 }
 
-TEST_F(DiagnosisLoop, AWrongMassOfTheStructureIsNamedAndClosesTheGapOfTheWholeTest) {
+TEST_F(DiagnosisLoop, NamesWrongMassAndClosesTheTestGap) {
   const std::string mass = "effects=[{interface: numerical_substructure, effect: mass_error, mass_error_ratio: 0.05}]";
   simulate("real", {in_rig(kModel + kNoise), mass});
   simulate("taken", {in_rig(kModel + kNoise)});
@@ -139,7 +139,7 @@ TEST_F(DiagnosisLoop, AWrongMassOfTheStructureIsNamedAndClosesTheGapOfTheWholeTe
   EXPECT_LT(report.response_shrink->nrmse_after, 1e-9);
 }
 
-TEST_F(DiagnosisLoop, AScenarioOfAnotherTestIsRefused) {
+TEST_F(DiagnosisLoop, RejectsScenarioOfAnotherTest) {
   simulate("run", {in_rig(kModel + kNoise)});
   SiteDiagnosis diagnosis;
   const std::filesystem::path other =
@@ -148,7 +148,7 @@ TEST_F(DiagnosisLoop, AScenarioOfAnotherTestIsRefused) {
               testing::ThrowsMessage<ConfigError>(testing::HasSubstr("not the test that was recorded")));
 }
 
-TEST_F(DiagnosisLoop, ATestThatCannotBeSimulatedHasNoResponse) {
+TEST_F(DiagnosisLoop, TestWithoutSimulationHasNoResponse) {
   const Scenario real =
       simulate("real", {in_rig(kModel + kNoise + kFriction), "substructures[storey_1].model={" + kModel + "}"});
   const std::filesystem::path scenario = directory_ / "real" / "scenario.yaml";
@@ -169,7 +169,7 @@ TEST_F(DiagnosisLoop, ATestThatCannotBeSimulatedHasNoResponse) {
   EXPECT_EQ(diagnosis.diagnosis.report.why_no_response, "nothing was added to the model");
 }
 
-TEST_F(DiagnosisLoop, ARealRigWithoutAModelCannotBeDiagnosed) {
+TEST_F(DiagnosisLoop, RejectsRealRigWithoutModel) {
   const Scenario simulated = shipped_scenario("two_storey_one_site", {});
   EXPECT_NO_THROW(require_models(simulated));
   Scenario real = simulated;
@@ -179,7 +179,7 @@ TEST_F(DiagnosisLoop, ARealRigWithoutAModelCannotBeDiagnosed) {
   EXPECT_NO_THROW(require_models(real));
 }
 
-TEST_F(DiagnosisLoop, ASiteThatRecordedElsewhereIsLeftOut) {
+TEST_F(DiagnosisLoop, SkipsSiteRecordedOnAnotherHost) {
   const Scenario scenario = shipped_scenario("two_storey_one_site", {});
   prepare_run_directory(directory_ / "empty", scenario);
   std::ostringstream said;

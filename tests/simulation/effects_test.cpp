@@ -89,7 +89,7 @@ TEST(Effects, AnEmptyListIsBitIdenticalToNone) {
   EXPECT_EQ(shaken({std::string{kRig} + "[]"}).digest(), without().digest());
 }
 
-TEST(Effects, AtTheirNeutralValueTheyAreBitIdenticalToNone) {
+TEST(Effects, NeutralValueIsBitIdenticalToNone) {
   EXPECT_EQ(shaken({std::string{kRig} + "[{interface: transfer_system, effect: delay, delay_s: 0.0}, "
                                         "{interface: specimen, effect: stiffness_error, stiffness_n_per_m: 0.0}]"})
                 .digest(),
@@ -115,7 +115,7 @@ void expect_alike(const KeptSimulation& a, const KeptSimulation& b) {
   for (std::size_t i = 0; i < left.size(); ++i) ASSERT_NEAR(left[i], right[i], 1e-10) << "step " << i;
 }
 
-TEST(Effects, AWrongNumberIsTheScenarioWithThatNumber) {
+TEST(Effects, WrongNumberEqualsScenarioWithThatNumber) {
   const std::string linear = "substructures[storey_1].rig.specimen={type: elastic, stiffness_n_per_m: 4.0e6}";
   const std::string undamped = "structure.damping={type: none}";
   expect_alike(shaken({linear, std::string{kRig} +
@@ -139,7 +139,7 @@ TEST(Effects, AWrongNumberIsTheScenarioWithThatNumber) {
                        "damping_ratio: 0.9, delay_s: 0.001}"}));
 }
 
-TEST(Effects, AServoHydraulicActuatorCarriesTheTest) {
+TEST(Effects, ServoHydraulicActuatorCompletesTheTest) {
   const KeptSimulation run = shaken(
       {"substructures[storey_1].rig.transfer_system={type: servo_hydraulic, piston_area_m2: 1.0e-2, "
        "supply_pressure_pa: 21.0e6, rated_flow_m3_per_s: 1.0e-2, stroke_m: 0.15, oil_volume_m3: 3.0e-3, "
@@ -157,7 +157,7 @@ TEST(Effects, AServoHydraulicActuatorCarriesTheTest) {
   EXPECT_GT(peak(measured_m), 0.5 * peak(commanded_m));
 }
 
-TEST(Effects, DampAndLimitAsTheyShould) {
+TEST(Effects, FrictionDampsAndYieldingLimits) {
   const auto force_n = [](const KeptSimulation& run) {
     return run.table("storey_1", "control").column_values("measured_force_n");
   };

@@ -51,7 +51,7 @@ double final_command_m(const KeptSimulation& run, const std::string& site) {
 
 class Killed : public testing::TestWithParam<std::string> {};
 
-TEST_P(Killed, InMidTestEndsItWithinTheLease) {
+TEST_P(Killed, EndsTheTestWithinTheLease) {
   const Scenario scenario = two_storeys();
   const KeptSimulation reference = keep_simulation(scenario, SimulationSettings{});
   Random random{7};
@@ -86,7 +86,7 @@ TEST_P(Killed, InMidTestEndsItWithinTheLease) {
 INSTANTIATE_TEST_SUITE_P(Substructures, Killed, testing::Values("storey_1", "storey_2"),
                          [](const auto& id) { return id.param; });
 
-TEST(KilledSubstructure, TheSiteThatWaitsForItHoldsAndTheCoordinatorNamesWhoDoesNotAnswer) {
+TEST(KilledSubstructure, SiteHoldsAndCoordinatorNamesTheSilentOne) {
   const Scenario scenario = two_storeys({"substructures[storey_1].limits.command_age_s=0.5"});
   SimulationSettings settings = slow_network();
   settings.kills.push_back({"storey_2", milliseconds{2000}});
@@ -99,7 +99,7 @@ TEST(KilledSubstructure, TheSiteThatWaitsForItHoldsAndTheCoordinatorNamesWhoDoes
   expect_sound(run, scenario);
 }
 
-TEST(KilledCoordinator, TheSiteHoldsWithinTheCommandAgeThenReturnsAndSaysBoth) {
+TEST(KilledCoordinator, SiteHoldsThenReturnsAndReportsBoth) {
   for (const char* mode : {"lockstep", "paced"}) {
     SCOPED_TRACE(mode);
     const Scenario scenario = two_storeys(
@@ -131,7 +131,7 @@ TEST(KilledCoordinator, TheSiteHoldsWithinTheCommandAgeThenReturnsAndSaysBoth) {
   }
 }
 
-TEST(KilledBeforeTheTest, TheOthersNameWhoIsMissing) {
+TEST(KilledBeforeTheTest, OthersNameTheMissingParticipant) {
   const Scenario scenario = two_storeys();
   for (const char* killed : {"coordinator", "storey_1", "storey_2"}) {
     SCOPED_TRACE(killed);
@@ -147,7 +147,7 @@ TEST(KilledBeforeTheTest, TheOthersNameWhoIsMissing) {
   }
 }
 
-TEST(Outage, ShorterThanTheLeaseIsHarmlessAndTheRepeatsAreCounted) {
+TEST(Outage, ShorterThanLeaseIsHarmlessAndRetriesAreCounted) {
   const Scenario scenario = two_storeys();
   const KeptSimulation reference = keep_simulation(scenario, SimulationSettings{});
   for (const char* cut_off : {"coordinator", "storey_1", "storey_2"}) {
@@ -168,7 +168,7 @@ TEST(Outage, ShorterThanTheLeaseIsHarmlessAndTheRepeatsAreCounted) {
   }
 }
 
-TEST(Outage, LongerThanTheLeaseEndsTheTestOnBothSides) {
+TEST(Outage, LongerThanLeaseEndsTestOnBothSides) {
   const Scenario scenario = two_storeys();
   const KeptSimulation reference = keep_simulation(scenario, SimulationSettings{});
   for (const char* cut_off : {"storey_1", "storey_2"}) {
@@ -209,7 +209,7 @@ TEST(Interlock, EndsTheTestAndTheSiteReturnsToZero) {
   }
 }
 
-TEST(Uncompensated, TheEnergyErrorTripsItsInterlock) {
+TEST(Uncompensated, EnergyErrorTripsInterlock) {
   // 20 ms of delay on a period of 0.8 s feed energy into the structure until the monitor ends it.
   const std::vector<std::string> delayed{
       kPulse,
@@ -269,7 +269,7 @@ class Paced : public testing::Test {
   }
 };
 
-TEST_F(Paced, OnAFastNetworkKeepsItsTimeAndTheSameMotionAsLockstep) {
+TEST_F(Paced, KeepsTimeAndMotionOfLockstepOnFastNetwork) {
   const Scenario paced = ideal({"time.time_scale=2.0"});
   const KeptSimulation run = keep_simulation(paced, SimulationSettings{});
   ASSERT_EQ(run.result.coordinator.reason, StopReason::completed);
@@ -284,7 +284,7 @@ TEST_F(Paced, OnAFastNetworkKeepsItsTimeAndTheSameMotionAsLockstep) {
   EXPECT_LT(difference(run, lockstep), 1e-11);
 }
 
-TEST_F(Paced, LateTargetsSlowTheActuatorDownAndNothingJumps) {
+TEST_F(Paced, LateTargetsSlowActuatorWithoutJumps) {
   const Scenario scenario = ideal();
   SimulationSettings settings;
   settings.network.latency = microseconds{600};  // there and back more than a step
@@ -301,7 +301,7 @@ TEST_F(Paced, LateTargetsSlowTheActuatorDownAndNothingJumps) {
   EXPECT_LT(difference(run, lockstep), 2e-3);
 }
 
-TEST_F(Paced, AnOutageHoldsTheActuatorShortOfTheStepAndItGoesOn) {
+TEST_F(Paced, ActuatorHoldsDuringOutageAndContinues) {
   const Scenario scenario = ideal();
   SimulationSettings settings;
   settings.network.outages.push_back({"coordinator", milliseconds{600}, milliseconds{1100}});
@@ -320,7 +320,7 @@ TEST_F(Paced, AnOutageHoldsTheActuatorShortOfTheStepAndItGoesOn) {
       << "path time is set back by 40 % of a step at most";
 }
 
-TEST_F(Paced, AnOutageBeyondTheCommandAgeIsAnInterlock) {
+TEST_F(Paced, OutageBeyondCommandAgeTripsInterlock) {
   const Scenario scenario = ideal({"substructures[storey_1].limits.command_age_s=0.3"});
   SimulationSettings settings;
   settings.network.outages.push_back({"storey_2", milliseconds{600}, milliseconds{1500}});
@@ -339,7 +339,7 @@ TEST_F(Paced, AnOutageBeyondTheCommandAgeIsAnInterlock) {
   expect_sound(run, scenario);
 }
 
-TEST_F(Paced, ClocksThatDriftAreMadeUpFor) {
+TEST_F(Paced, ClockDriftIsCompensated) {
   // The site's clock may be slower than the coordinator's: targets wait, at most one ahead.
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Scenario scenario = ideal({"time.duration_s=1.0"});
@@ -352,7 +352,7 @@ TEST_F(Paced, ClocksThatDriftAreMadeUpFor) {
   }
 }
 
-TEST_F(Paced, ALongStepIsNotRepeated) {
+TEST_F(Paced, LongStepIsNotRetried) {
   const Scenario scenario =
       ideal({"time.duration_s=0.02", "time.time_scale=1000.0", "substructures[storey_1].limits.command_age_s=5.0"});
   const KeptSimulation run = keep_simulation(scenario, SimulationSettings{});

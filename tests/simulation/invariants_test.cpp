@@ -31,78 +31,78 @@ TEST_F(InvariantsTest, HoldForAGoodRun) {
   EXPECT_EQ(history_violated(run_, reference_), Violations{});
 }
 
-TEST_F(InvariantsTest, AMissingStepIsSeen) {
+TEST_F(InvariantsTest, DetectsMissingStep) {
   run_.table("coordinator", "steps").drop(100);
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AMissingLastStepIsSeen) {
+TEST_F(InvariantsTest, DetectsMissingLastStep) {
   run_.table("coordinator", "steps").drop(300);
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AStepTakenTwiceByASubstructureIsSeen) {
+TEST_F(InvariantsTest, DetectsStepTakenTwiceBySubstructure) {
   value("storey_2", "steps", 100, "step") = 99.0;
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AMissingExchangeIsSeen) {
+TEST_F(InvariantsTest, DetectsMissingExchange) {
   run_.table("coordinator", "exchanges").drop(7);
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, ASubstructureThatWasMovedElsewhereIsSeen) {
+TEST_F(InvariantsTest, DetectsSubstructureMovedElsewhere) {
   nudge(value("storey_2", "steps", 100, "displacement_floor_2_relative_to_floor_1_m"));
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AForceThatNobodyMeasuredIsSeen) {
+TEST_F(InvariantsTest, DetectsForceThatWasNotMeasured) {
   nudge(value("coordinator", "steps", 100, "restoring_force_floor_1_n"));
   EXPECT_FALSE(steps_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, ACommandBeyondTheLimitIsSeen) {
+TEST_F(InvariantsTest, DetectsCommandBeyondLimit) {
   value("storey_1", "control", 100, "command_displacement_m") = 0.2001;
   EXPECT_FALSE(limits_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, ACommandThatJumpsIsSeen) {
+TEST_F(InvariantsTest, DetectsJumpingCommand) {
   // 1.5 m/s at 2 kHz: the control rate of 1024 Hz is rounded up to two periods a step.
   value("storey_1", "control", 100, "command_displacement_m") += 0.0016;
   EXPECT_FALSE(limits_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, ACommandThatIsNotANumberIsSeen) {
+TEST_F(InvariantsTest, DetectsCommandThatIsNotANumber) {
   value("storey_1", "control", 100, "command_displacement_m") = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(limits_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AMissingControlPeriodIsSeen) {
+TEST_F(InvariantsTest, DetectsMissingControlPeriod) {
   run_.table("storey_1", "control").drop(100);
   EXPECT_FALSE(limits_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AForceThatWasNotIntegratedIsSeenInTheEnergy) {
+TEST_F(InvariantsTest, DetectsForceThatWasNotIntegratedByEnergy) {
   value("coordinator", "steps", 200, "restoring_force_floor_1_n") *= 1.0 + 1e-6;
   EXPECT_FALSE(energy_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, ADisplacementThatDoesNotBelongToTheMotionIsSeenInTheEnergy) {
+TEST_F(InvariantsTest, DetectsForeignDisplacementByEnergy) {
   value("coordinator", "steps", 200, "displacement_floor_2_m") *= 1.0 + 1e-6;
   EXPECT_FALSE(energy_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AStepThatWasSkippedIsSeenInTheEnergy) {
+TEST_F(InvariantsTest, DetectsSkippedStepByEnergy) {
   run_.table("coordinator", "steps").drop(200);
   EXPECT_FALSE(energy_violated(run_, scenario_).empty());
 }
 
-TEST_F(InvariantsTest, AParticipantThatHangsIsSeen) {
+TEST_F(InvariantsTest, DetectsHangingParticipant) {
   run_.result.participants[1].is_done = false;
   EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
 }
 
-TEST_F(InvariantsTest, AnEndWithoutAWordIsSeen) {
+TEST_F(InvariantsTest, DetectsEndWithoutReport) {
   run_.result.coordinator.reason = StopReason::participant_lost;
   drawn_.settings.kills.push_back({"storey_1", {}});
   EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
@@ -114,7 +114,7 @@ TEST_F(InvariantsTest, AnEndWithoutAWordIsSeen) {
   EXPECT_TRUE(ending_violated(run_, reference_, scenario_, drawn_).empty());
 }
 
-TEST_F(InvariantsTest, AnotherEndThanWithoutFaultsIsSeenWhenTheFaultsAreHarmless) {
+TEST_F(InvariantsTest, DetectsOtherEndDespiteHarmlessFaults) {
   run_.result.coordinator.reason = StopReason::participant_lost;
   Event told;
   told.source = "coordinator";
@@ -123,12 +123,12 @@ TEST_F(InvariantsTest, AnotherEndThanWithoutFaultsIsSeenWhenTheFaultsAreHarmless
   EXPECT_FALSE(ending_violated(run_, reference_, scenario_, drawn_).empty());
 }
 
-TEST_F(InvariantsTest, AHistoryThatDiffersByOneBitIsSeen) {
+TEST_F(InvariantsTest, DetectsHistoryThatDiffersByOneBit) {
   nudge(value("coordinator", "steps", 300, "velocity_floor_2_m_per_s"));
   EXPECT_FALSE(history_violated(run_, reference_).empty());
 }
 
-TEST_F(InvariantsTest, TheWallMayTakeItsTime) {
+TEST_F(InvariantsTest, AllowAnyWallTime) {
   value("coordinator", "steps", 300, "wall_time_s") += 1.0;
   EXPECT_TRUE(history_violated(run_, reference_).empty());
 }

@@ -73,7 +73,7 @@ TEST_F(NodeBenchTest, CompletesATest) {
   expect_completed();
 }
 
-TEST_F(NodeBenchTest, ASecondCoordinatorIsRefusedAndTheTestGoesOn) {
+TEST_F(NodeBenchTest, RefusesSecondCoordinatorAndContinues) {
   add_all();
   // At the last moment before stepping begins, and in the middle of it.
   for (const Duration start : {milliseconds{250}, milliseconds{330}}) {
@@ -87,7 +87,7 @@ TEST_F(NodeBenchTest, ASecondCoordinatorIsRefusedAndTheTestGoesOn) {
   EXPECT_GE(bench_.count(EventCode::second_coordinator, late.incarnation()), 1U);
 }
 
-TEST_F(NodeBenchTest, OfTwoCoordinatorsThatStartTogetherOneRunsTheTest) {
+TEST_F(NodeBenchTest, OneOfTwoSimultaneousCoordinatorsRunsTest) {
   coordinator_ = &bench_.add_coordinator(scenario_);
   NodeBench::Seat& other = bench_.add_coordinator(scenario_);
   site_ = &bench_.add_substructure(scenario_, "storey_1");
@@ -96,7 +96,7 @@ TEST_F(NodeBenchTest, OfTwoCoordinatorsThatStartTogetherOneRunsTheTest) {
   EXPECT_EQ(other.reason(), StopReason::refused);
 }
 
-TEST_F(NodeBenchTest, ASecondParticipantWithTheIdOfOneThatRunsIsRefused) {
+TEST_F(NodeBenchTest, RefusesDuplicateOfRunningParticipant) {
   add_all();
   run_to_step(50);
   NodeBench::Seat& second_site = bench_.add_substructure(scenario_, "storey_1", bench_.now());
@@ -111,14 +111,14 @@ TEST_F(NodeBenchTest, ASecondParticipantWithTheIdOfOneThatRunsIsRefused) {
   }
 }
 
-TEST_F(NodeBenchTest, OfTwoWithOneIdBeforeTheTestTheYoungerIsRefused) {
+TEST_F(NodeBenchTest, YoungerDuplicateIsRefusedBeforeTest) {
   add_all();
   NodeBench::Seat& younger = bench_.add_substructure(scenario_, "storey_1", milliseconds{150});
   expect_completed();
   EXPECT_EQ(younger.reason(), StopReason::refused);
 }
 
-TEST_F(NodeBenchTest, AParticipantWithAnotherScenarioIsRefusedBeforeAnythingMoves) {
+TEST_F(NodeBenchTest, RefusesOtherScenarioBeforeMotion) {
   const Scenario other = two_storeys({"substructures[storey_1].limits.force_n=160.0e3"});
   ASSERT_NE(other.digest, scenario_.digest);
   coordinator_ = &bench_.add_coordinator(scenario_);
@@ -134,7 +134,7 @@ TEST_F(NodeBenchTest, AParticipantWithAnotherScenarioIsRefusedBeforeAnythingMove
   EXPECT_EQ(calls_.trials, 0);
 }
 
-TEST_F(NodeBenchTest, MeasurementsOfStrangersAreNotCounted) {
+TEST_F(NodeBenchTest, MeasurementsOfUnknownSendersAreIgnored) {
   add_all();
   Transport& impostor = bench_.add_outsider();
   const auto outbox = impostor.measurement_outbox();
@@ -155,7 +155,7 @@ TEST_F(NodeBenchTest, MeasurementsOfStrangersAreNotCounted) {
   }
 }
 
-TEST_F(NodeBenchTest, CommandsOfStrangersMoveNothing) {
+TEST_F(NodeBenchTest, CommandsOfUnknownSendersCauseNoMotion) {
   add_all();
   Transport& impostor = bench_.add_outsider();
   const auto outbox = impostor.command_outbox(2);
@@ -174,7 +174,7 @@ TEST_F(NodeBenchTest, CommandsOfStrangersMoveNothing) {
   for (const InterfaceVector& displacement_m : calls_.committed_m) EXPECT_LT(std::abs(displacement_m[0]), 0.09);
 }
 
-TEST_F(NodeBenchTest, AForceThatIsNotANumberEndsTheTestAndIsNotIntegrated) {
+TEST_F(NodeBenchTest, NonFiniteForceEndsTestWithoutIntegration) {
   script([](int trial, const InterfaceVector& displacement_m) -> InterfaceVector {
     if (trial == 100) return InterfaceVector::Constant(1, std::numeric_limits<double>::quiet_NaN());
     return kStiffness_n_per_m * displacement_m;
@@ -191,7 +191,7 @@ TEST_F(NodeBenchTest, AForceThatIsNotANumberEndsTheTestAndIsNotIntegrated) {
       << "the site returns to zero";
 }
 
-TEST_F(NodeBenchTest, AForceVectorOfAnotherSizeEndsTheTest) {
+TEST_F(NodeBenchTest, WrongForceVectorSizeEndsTest) {
   add_all();
   Transport& impostor = bench_.add_outsider();
   run_to_step(20);
@@ -212,7 +212,7 @@ TEST_F(NodeBenchTest, AForceVectorOfAnotherSizeEndsTheTest) {
   EXPECT_EQ(coordinator_->reason(), StopReason::not_finite);
 }
 
-TEST_F(NodeBenchTest, AParticipantThatComesLateIsWaitedForAndOneThatDoesNotComeIsNamed) {
+TEST_F(NodeBenchTest, WaitsForLateParticipantAndNamesMissingOne) {
   add_all();
   const Scenario patient = two_storeys({"timeouts={discovery_s: 5.0}"});
   {
@@ -236,7 +236,7 @@ TEST_F(NodeBenchTest, AParticipantThatComesLateIsWaitedForAndOneThatDoesNotComeI
   }
 }
 
-TEST_F(NodeBenchTest, AnOperatorPausesAndResumesInBothModes) {
+TEST_F(NodeBenchTest, OperatorPausesAndResumesInBothModes) {
   for (const char* mode : {"lockstep", "paced"}) {
     SCOPED_TRACE(mode);
     scenario_ = two_storeys({std::string{"time.mode="} + mode});
@@ -266,7 +266,7 @@ TEST_F(NodeBenchTest, AnOperatorPausesAndResumesInBothModes) {
   }
 }
 
-TEST_F(NodeBenchTest, AnEmergencyStopEndsMotionWhereItIs) {
+TEST_F(NodeBenchTest, EmergencyStopEndsMotionAtOnce) {
   for (const char* mode : {"lockstep", "paced"}) {
     SCOPED_TRACE(mode);
     scenario_ = two_storeys({std::string{"time.mode="} + mode});
@@ -290,7 +290,7 @@ TEST_F(NodeBenchTest, AnEmergencyStopEndsMotionWhereItIs) {
   }
 }
 
-TEST_F(NodeBenchTest, AnOperatorStopsTheTestAndTheSiteReturnsToZero) {
+TEST_F(NodeBenchTest, OperatorStopReturnsSiteToZero) {
   scenario_ = two_storeys({"time.mode=paced"});
   script(linear_spring(kStiffness_n_per_m));
   add_all();
@@ -323,7 +323,7 @@ TEST_F(NodeBenchTest, AnyParticipantCanBeStoppedByHand) {
   }
 }
 
-TEST_F(NodeBenchTest, ARecordingWithHolesEndsTheTestAsTheScenarioSays) {
+TEST_F(NodeBenchTest, DroppedRecordsEndTestAsConfigured) {
   for (const char* on_failure : {"stop", "continue"}) {
     SCOPED_TRACE(on_failure);
     scenario_ = two_storeys({std::string{"recording={on_failure: "} + on_failure + "}"});

@@ -12,7 +12,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(Recording, NoRunPassesWithADroppedRecord) {
+TEST(Recording, DroppedRecordFailsTheRun) {
   int whole = 0;
   int with_holes = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

@@ -21,7 +21,7 @@ KeptSimulation simulated(const std::string& rig) {
   return keep_simulation(shipped_scenario("two_storey_one_site", {kPulse, kHalfASecond, kSite + rig}), {});
 }
 
-TEST(Replay, FeedsBackWhatWasRecordedAndTheTestRepeatsItself) {
+TEST(Replay, RecordedForcesRepeatTheTest) {
   const KeptSimulation original = keep_simulation(shipped_scenario("two_storey_one_site", {kPulse, kHalfASecond}), {});
   // As `hybridtest export` writes the site's table.
   const TemporaryDirectory directory;
@@ -42,7 +42,7 @@ TEST(Replay, FeedsBackWhatWasRecordedAndTheTestRepeatsItself) {
   EXPECT_EQ(history_violated(replayed, original), Violations{});
 }
 
-TEST(Replay, ARecordThatEndsTooEarlyEndsTheTestByTheInterlock) {
+TEST(Replay, ShortRecordEndsTestByInterlock) {
   const TemporaryDirectory directory;
   std::ofstream{directory / "short.csv"} << "time_s,measured_displacement_m,measured_force_n\n0,0,0\n0.1,0,0\n";
   const std::string file = (directory / "short.csv").string();
@@ -53,7 +53,7 @@ TEST(Replay, ARecordThatEndsTooEarlyEndsTheTestByTheInterlock) {
   EXPECT_EQ(held.result.coordinator.reason, StopReason::completed) << held.log();
 }
 
-TEST(Geometry, TwoActuatorsWithHalfASpecimenEachAreOneWithAWholeOne) {
+TEST(Geometry, TwoHalfSpecimensEqualOneWhole) {
   const std::string begin =
       "{type: simulated, transfer_system: {type: second_order, natural_frequency_hz: 15.0, "
       "damping_ratio: 0.9, delay_s: 0.004}, ";

@@ -43,7 +43,7 @@ class RunRecording : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(RunRecording, HoldsTheSitesControlTableAndWhatWasSent) {
+TEST_F(RunRecording, HoldsControlTableAndSentCommands) {
   simulate("two_storey_one_site", {});
   const Recording recording = read_recording(directory_.path(), RecordingRole::held_out);
   const RunFileReader site{run_file(directory_.path(), "storey_1")};
@@ -79,7 +79,7 @@ TEST_F(RunRecording, HoldsTheSitesControlTableAndWhatWasSent) {
   EXPECT_LT(worst_m, 1e-6 * peak_m);
 }
 
-TEST_F(RunRecording, TheExportedControlTableIsTheSameRecording) {
+TEST_F(RunRecording, ExportedControlTableIsTheSameRecording) {
   simulate("two_storey_one_site", {});
   const Recording from_run = read_recording(directory_.path(), RecordingRole::fit);
   export_csv(directory_.path(), directory_ / "csv");
@@ -92,7 +92,7 @@ TEST_F(RunRecording, TheExportedControlTableIsTheSameRecording) {
   EXPECT_FALSE(from_csv.dofs[0].has(Channel::sent_displacement)) << "the coordinator's file knows that, not the site's";
 }
 
-TEST_F(RunRecording, OfSeveralSitesOneIsNamed) {
+TEST_F(RunRecording, RequiresSiteNameForSeveralSites) {
   simulate("two_storey_two_sites", {});
   EXPECT_THAT([&] { (void)read_recording(directory_.path(), RecordingRole::fit); },
               testing::ThrowsMessage<ConfigError>(testing::HasSubstr("first_storey_columns, second_storey_columns")));
@@ -103,7 +103,7 @@ TEST_F(RunRecording, OfSeveralSitesOneIsNamed) {
   EXPECT_EQ(second.dofs[0].of(Channel::measured_force), first(second, site.column("control", "measured_force_n")));
 }
 
-TEST(ReadRecording, FindingsAndAMissingFileAreConfigurationErrors) {
+TEST(ReadRecording, FindingsAndMissingFileAreConfigErrors) {
   const TemporaryDirectory directory;
   std::ofstream{directory / "a.csv"} << "time_s,measured_force_n\n0,1\n0.1,nan\n0.2,3\n";
   try {

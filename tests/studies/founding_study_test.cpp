@@ -38,7 +38,7 @@ TEST_F(FoundingStudy, ShowsEveryFinding) {
   }
 }
 
-TEST_F(FoundingStudy, WithoutCompensationTheMotionGrowsUntilAnInterlockEndsIt) {
+TEST_F(FoundingStudy, UncompensatedTestEndsByInterlock) {
   const Distance uncompensated = distance("uncompensated");
   EXPECT_FALSE(uncompensated.is_complete);
   EXPECT_FALSE(uncompensated.interlock.empty());
@@ -47,14 +47,14 @@ TEST_F(FoundingStudy, WithoutCompensationTheMotionGrowsUntilAnInterlockEndsIt) {
   for (std::size_t i = 1; i < quarters.size(); ++i) EXPECT_GT(quarters[i], 2.0 * quarters[i - 1]);
 }
 
-TEST_F(FoundingStudy, DisplacementAndKinematicsStayClosestAndForceIsWorse) {
+TEST_F(FoundingStudy, ForceMethodsAreWorseThanDisplacementMethods) {
   const double closest = std::max(worst_rms("polynomial_displacement"), worst_rms("newmark_kinematics"));
   EXPECT_LT(closest, 2.0);
   EXPECT_GT(worst_rms("polynomial_force"), 5.0 * closest);
   EXPECT_GT(worst_rms("force_correction_quadratic"), 2.0 * closest);
 }
 
-TEST_F(FoundingStudy, TheQuadraticCorrectionJumpsAndOursDoesNot) {
+TEST_F(FoundingStudy, QuadraticCorrectionJumpsAndOursDoesNot) {
   EXPECT_EQ(distance("exact").jumps, 0);
   EXPECT_GT(distance("force_correction_quadratic").jumps, 100);
   EXPECT_EQ(distance("force_correction").jumps, 0);

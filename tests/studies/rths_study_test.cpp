@@ -13,7 +13,7 @@
 namespace hybridtest::rths {
 namespace {
 
-TEST(RthsStudy, TheHarnessIsConfirmed) {
+TEST(RthsStudy, HarnessReproducesPublishedValues) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const HarnessCheck check = check_harness(BenchmarkInputs{benchmark_motions()}, usable_threads());
   std::printf("%s", to_markdown(check).c_str());
@@ -21,7 +21,7 @@ TEST(RthsStudy, TheHarnessIsConfirmed) {
   EXPECT_EQ(check.uncompensated_diverged, 12);
 }
 
-TEST(RthsStudy, DoesNotDependOnTheNumberOfThreads) {
+TEST(RthsStudy, ResultIsIndependentOfThreadCount) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   const auto candidates = chosen_candidates({"adaptive_time_series", "newmark_kinematics+pi"});
@@ -36,7 +36,7 @@ TEST(RthsStudy, DoesNotDependOnTheNumberOfThreads) {
 }
 
 /// The targets that are set for our best compensator, over all runs.
-TEST(RthsStudy, OursMeetsItsTargets) {
+TEST(RthsStudy, OurCompensatorMeetsItsTargets) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   const auto candidates = chosen_candidates({std::string{kOurs}});

@@ -28,7 +28,7 @@ void PrintTo(const Building& building, std::ostream* stream) { *stream << buildi
 
 class Accuracy : public SystemTest, public ::testing::WithParamInterface<Building> {};
 
-TEST_P(Accuracy, AgreesWithTheReferenceAtBothFloors) {
+TEST_P(Accuracy, AgreesWithReferenceAtBothFloors) {
   const Building& building = GetParam();
   HYBRIDTEST_NEEDS_DATA(recorded_reference(building.law));
   HYBRIDTEST_NEEDS_DATA(reference_motion());

@@ -15,7 +15,7 @@ using ::testing::Optional;
 
 class ByHand : public SystemTest {};
 
-TEST_F(ByHand, ThreeProgramsInAnyOrderMakeATest) {
+TEST_F(ByHand, ThreeProgramsStartedInAnyOrderCompleteATest) {
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   const Arguments arguments{"--set", "time.duration_s=2"};
   StartedProgram site = start_participant("experimental_site", "storey_1", scenario, "at_site", arguments);
@@ -44,7 +44,7 @@ TEST_F(ByHand, ThreeProgramsInAnyOrderMakeATest) {
             recorded("simulated").column("coordinator", "steps", "displacement_floor_2_m"));
 }
 
-TEST_F(ByHand, TheDirectoryOfARunCanBeRunAgain) {
+TEST_F(ByHand, RunDirectoryCanBeRunAgain) {
   StartedProgram first = start_simulate(shipped_scenario("two_storey_one_site"), "run", {"--set", "time.duration_s=1"});
   ASSERT_THAT(first.wait(), Optional(kExitCompleted)) << first.standard_error();
   StartedProgram again = start_simulate(recorded("run").directory() / "scenario.yaml", "again");

@@ -32,7 +32,7 @@ class LateActuator : public SystemTest {
   ReferenceHistory reference_;
 };
 
-TEST_F(LateActuator, WithoutCompensationTheEnergyErrorGrowsAndAnInterlockEndsTheTest) {
+TEST_F(LateActuator, UncompensatedTestEndsByEnergyInterlock) {
   StartedProgram run = start_with("{type: none}");
   ASSERT_THAT(run.wait(), ::testing::Optional(kExitEndedEarly)) << run.standard_error();
 
@@ -63,7 +63,7 @@ TEST_F(LateActuator, WithoutCompensationTheEnergyErrorGrowsAndAnInterlockEndsThe
             << 100.0 * distance.floor_2 << " % (floor 2) of the peak by then\n";
 }
 
-TEST_F(LateActuator, WithPolynomialCompensationTheTestCompletesNearTheExactAnswer) {
+TEST_F(LateActuator, PolynomialCompensationStaysNearReference) {
   StartedProgram run = start_with("{type: polynomial_displacement, order: 3, delay_s: 0.020}");
   ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
 

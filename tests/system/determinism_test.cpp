@@ -50,7 +50,7 @@ class Determinism : public SystemTest, public ::testing::WithParamInterface<Ship
   }
 };
 
-TEST_P(Determinism, OverDdsAndSimulatedTheRecordsAreBitIdentical) {
+TEST_P(Determinism, RunAndSimulateGiveTheSameBits) {
   const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
   StartedProgram run = start_run(scenario, "run", {"--set", "time.duration_s=4"});
   StartedProgram simulated = start_simulate(scenario, "simulated", {"--set", "time.duration_s=4"});
@@ -66,7 +66,7 @@ TEST_P(Determinism, OverDdsAndSimulatedTheRecordsAreBitIdentical) {
   for (const std::string& numerical : GetParam().numerical) expect_same_table(numerical, "steps");
 }
 
-TEST_P(Determinism, ControlAnotherSeedOfTheSensorsIsNoticed) {
+TEST_P(Determinism, ControlSensorSeedChangesTheRecords) {
   // Shows that the comparison can fail: noise is part of what is compared.
   const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
   StartedProgram one = start_simulate(scenario, "run", {"--set", "time.duration_s=1"});

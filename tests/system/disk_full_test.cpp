@@ -48,7 +48,7 @@ class DiskFull : public SystemTest {
   }
 };
 
-TEST_F(DiskFull, OnContinueTheTestCompletesAndTheVerdictSaysDataInvalid) {
+TEST_F(DiskFull, ContinueCompletesTestWithInvalidData) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", six_seconds("continue"),
                                  {.file_bytes_max = kRoom_bytes});
   ASSERT_THAT(run.wait(), Optional(kExitDataInvalid)) << run.standard_error();
@@ -68,7 +68,7 @@ TEST_F(DiskFull, OnContinueTheTestCompletesAndTheVerdictSaysDataInvalid) {
   }
 }
 
-TEST_F(DiskFull, OnStopTheTestEndsSafelyAndTheVerdictSaysDataInvalid) {
+TEST_F(DiskFull, StopEndsTestSafelyWithInvalidData) {
   StartedProgram run =
       start_run(shipped_scenario("two_storey_one_site"), "run", six_seconds("stop"), {.file_bytes_max = kRoom_bytes});
   ASSERT_THAT(run.wait(), Optional(kExitDataInvalid)) << run.standard_error();
@@ -88,7 +88,7 @@ void PrintTo(const OneFullDisk& full, std::ostream* stream) { *stream << full.pa
 
 class OneDiskFull : public DiskFull, public ::testing::WithParamInterface<OneFullDisk> {};
 
-TEST_P(OneDiskFull, DecidesForTheWholeTest) {
+TEST_P(OneDiskFull, DecidesOutcomeOfWholeTest) {
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   const Arguments arguments = six_seconds(GetParam().on_failure);
   const auto start = [&](const std::string& program_name, const std::string& id) {
@@ -153,7 +153,7 @@ class SmallDisk {
 
 class WholeDiskFull : public DiskFull, public ::testing::WithParamInterface<std::string> {};
 
-TEST_P(WholeDiskFull, StillEndsWithAVerdict) {
+TEST_P(WholeDiskFull, StillPrintsAVerdict) {
   const SmallDisk disk{directory() / "small"};
   if (!disk.is_there()) GTEST_SKIP() << "a small file system takes the right to mount one: " << std::strerror(errno);
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "small/run", six_seconds(GetParam()));

@@ -16,7 +16,7 @@ using ::testing::Optional;
 
 class Interlock : public SystemTest {};
 
-TEST_F(Interlock, ALimitThatIsPassedEndsTheTest) {
+TEST_F(Interlock, ExceededLimitEndsTest) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run",
                                  {"--set", "substructures[storey_1].limits.displacement_m=0.002"});
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
@@ -41,7 +41,7 @@ TEST_F(Interlock, ALimitThatIsPassedEndsTheTest) {
   expect_rig_came_to_zero(record, "storey_1");
 }
 
-TEST_F(Interlock, ABuildingThatRunsAwayBeyondAllNumbersEndsTheTest) {
+TEST_F(Interlock, DivergingMotionEndsTest) {
   StartedProgram run = start_run(system_scenario("falls_over"), "run");
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_THAT(run.standard_error(), HasSubstr("test stopped: not_finite"));
@@ -60,7 +60,7 @@ TEST_F(Interlock, ABuildingThatRunsAwayBeyondAllNumbersEndsTheTest) {
   expect_rig_came_to_zero(record, "storey_1");
 }
 
-TEST_F(Interlock, ASpecimenWhoseForceIsNoNumberEndsTheTestAtTheSite) {
+TEST_F(Interlock, NonFiniteForceEndsTestAtSite) {
   // So much stiffer than claimed that the integration runs away, and its own force overflows first.
   StartedProgram run = start_run(system_scenario("falls_over"), "run",
                                  {"--set", "substructures[storey_1].rig.specimen.stiffness_n_per_m=1.0e12"});

@@ -33,7 +33,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 class Loss : public SystemTest {};
 
-TEST_F(Loss, AParticipantThatNeverAppearsIsNamedAfterTheDiscoveryTimeout) {
+TEST_F(Loss, NamesMissingParticipantAfterDiscoveryTimeout) {
   const auto begin = std::chrono::steady_clock::now();
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run",
                                  {"--remote", "storey_2", "--loopback-only", "--set", "timeouts={discovery_s: 2}"});
@@ -51,14 +51,14 @@ TEST_F(Loss, AParticipantThatNeverAppearsIsNamedAfterTheDiscoveryTimeout) {
   EXPECT_TRUE(recorded("run").open("storey_1").counters().closed_cleanly);
 }
 
-TEST_F(Loss, ACoordinatorThatNeverAppearsIsNamedToo) {
+TEST_F(Loss, NamesMissingCoordinator) {
   StartedProgram site = start_participant("experimental_site", "storey_1", shipped_scenario("two_storey_one_site"),
                                           "site", {"--set", "timeouts={discovery_s: 1}"});
   ASSERT_THAT(site.wait(), Optional(kExitConfiguration)) << site.standard_error();
   EXPECT_THAT(site.standard_error(), HasSubstr("'coordinator' did not appear"));
 }
 
-TEST_F(Loss, AKilledSiteEndsTheTestWithinTheLeaseAndItsRecordHoldsAllButTheLastTenthOfASecond) {
+TEST_F(Loss, KilledSiteEndsTestWithinLeaseAndKeepsItsRecord) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", kEndless});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t site = run.child({"--id", "storey_1"});
@@ -99,7 +99,7 @@ TEST_F(Loss, AKilledSiteEndsTheTestWithinTheLeaseAndItsRecordHoldsAllButTheLastT
   EXPECT_LE(lag_s, kFlushInterval_s + kFlushMargin_s);
 }
 
-TEST_F(Loss, WhenTheCoordinatorOfARunIsKilledTheOthersComeToRestAndTheVerdictSaysSo) {
+TEST_F(Loss, KilledCoordinatorBringsOthersToRest) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", kEndless});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const std::vector<pid_t> children = run.children();
@@ -125,7 +125,7 @@ TEST_F(Loss, WhenTheCoordinatorOfARunIsKilledTheOthersComeToRestAndTheVerdictSay
   expect_rig_came_to_zero(record, "storey_1");
 }
 
-TEST_F(Loss, AFrozenSiteEndsTheTestWithinTheLeaseAndLeavesWhenItThaws) {
+TEST_F(Loss, FrozenSiteEndsTestWithinLeaseAndExitsWhenResumed) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", kEndless});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t site = run.child({"--id", "storey_1"});
@@ -149,7 +149,7 @@ TEST_F(Loss, AFrozenSiteEndsTheTestWithinTheLeaseAndLeavesWhenItThaws) {
   expect_rig_came_to_zero(record, "storey_1");
 }
 
-TEST_F(Loss, WhenItsParentIsKilledEveryProcessStopsSafelyByItself) {
+TEST_F(Loss, KilledParentStopsEveryProcessSafely) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", kEndless});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const std::vector<pid_t> children = run.children();
@@ -173,7 +173,7 @@ TEST_F(Loss, WhenItsParentIsKilledEveryProcessStopsSafelyByItself) {
 
 class LostCoordinator : public SystemTest, public ::testing::WithParamInterface<std::string> {};
 
-TEST_P(LostCoordinator, SitesHoldWithinTheCommandAgeLimitSaySoAndLeave) {
+TEST_P(LostCoordinator, SitesHoldWithinCommandAgeAndExit) {
   constexpr double kCommandAge_s = 0.3;
   const std::filesystem::path scenario = shipped_scenario("two_storey_two_sites");
   const std::vector<std::string> sites{"first_storey_columns", "second_storey_columns"};

@@ -18,7 +18,7 @@ using ::testing::Optional;
 
 class Paced : public SystemTest {};
 
-TEST_F(Paced, TakesItsTimeAndComesNearTheLockstepAnswer) {
+TEST_F(Paced, TakesItsTimeAndStaysNearLockstep) {
   constexpr double kDuration_s = 2.0;
   constexpr double kTimeScale = 1.5;
   // The motion's beginning is nearly still; from 3 times its strength there is something to follow.

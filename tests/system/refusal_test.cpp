@@ -15,7 +15,7 @@ using ::testing::Optional;
 
 class Refusal : public SystemTest {};
 
-TEST_F(Refusal, ASecondCoordinatorAndASecondParticipantLeaveAndTheTestGoesOn) {
+TEST_F(Refusal, DuplicatesExitAndTestContinues) {
   // Paced, so that the test lasts as long as it takes to be turned away.
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   const Arguments paced{"--set", "time.mode=paced", "--set", "time.step_s=0.01", "--set", "time.duration_s=8"};
@@ -43,7 +43,7 @@ TEST_F(Refusal, ASecondCoordinatorAndASecondParticipantLeaveAndTheTestGoesOn) {
   for (const auto& substructure : summary["substructures"]) EXPECT_EQ(substructure["exchange"]["lost"], 0);
 }
 
-TEST_F(Refusal, AnotherScenarioIsNotArmedAndBothSidesSaySo) {
+TEST_F(Refusal, OtherScenarioIsRefusedAndBothSidesReportIt) {
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   StartedProgram run = start_run(scenario, "run", {"--remote", "storey_2", "--loopback-only"});
   StartedProgram other = start_participant("numerical_substructure", "storey_2", scenario, "other",

@@ -25,7 +25,7 @@ class SiteKeepsTime : public SystemTest {
                          "--set", "excitation.scale=0.5"};
 };
 
-TEST_F(SiteKeepsTime, WhenTheCoordinatorIsStopped) {
+TEST_F(SiteKeepsTime, LoopRunsWhileCoordinatorIsFrozen) {
   StartedProgram coordinator = start_participant("coordinator", "coordinator", scenario_, "run", paced_);
   StartedProgram numerical = start_participant("numerical_substructure", "storey_2", scenario_, "run", paced_);
   StartedProgram site = start_participant("experimental_site", "storey_1", scenario_, "run", paced_);
@@ -61,7 +61,7 @@ TEST_F(SiteKeepsTime, WhenTheCoordinatorIsStopped) {
   EXPECT_LT(record.column("storey_1", "loop_timing", "start_lateness_p50_us").at(0), 1e4);
 }
 
-TEST_F(SiteKeepsTime, ARefusalStopsTheStartWhereItIsNotAllowed) {
+TEST_F(SiteKeepsTime, RealTimeRefusalStopsStartWhereRequired) {
   Arguments arguments = paced_;
   // No machine has this processor.
   arguments.insert(arguments.end(), {"--set", "substructures[storey_1].real_time={cpu: 1023, allow_degraded: false}"});

@@ -57,7 +57,7 @@ TEST_F(Stop, CtrlCStopsTheTestSafely) {
   expect_stopped_in_order(StopReason::interrupted);
 }
 
-TEST_F(Stop, CtrlCBeforeEverybodyIsThereEndsTheWaiting) {
+TEST_F(Stop, CtrlCDuringDiscoveryEndsTheRun) {
   StartedProgram run =
       start_run(shipped_scenario("two_storey_one_site"), "run", {"--remote", "storey_2", "--loopback-only"});
   ASSERT_TRUE(wait_until([&] { return run.standard_error().find("storey_1: ready") != std::string::npos; }))
@@ -78,7 +78,7 @@ TEST_F(Stop, CtrlCAtASiteStopsTheWholeTest) {
   expect_stopped_in_order(StopReason::interrupted);
 }
 
-TEST_F(Stop, TheStopCommandFindsTheTestByItsName) {
+TEST_F(Stop, StopCommandFindsTestByName) {
   StartedProgram run = start_endless_run();
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   EXPECT_EQ(control("stop"), kExitCompleted);
@@ -86,7 +86,7 @@ TEST_F(Stop, TheStopCommandFindsTheTestByItsName) {
   expect_stopped_in_order(StopReason::interrupted);
 }
 
-TEST_F(Stop, APausedTestStandsAndGoesOnWhenResumedAndAnEmergencyStopEndsIt) {
+TEST_F(Stop, PauseResumeAndEmergencyStopTakeEffect) {
   StartedProgram run = start_endless_run();
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   EXPECT_EQ(control("pause"), kExitCompleted);

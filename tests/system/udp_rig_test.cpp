@@ -90,7 +90,7 @@ double peak(const std::vector<double>& values) {
   return std::abs(*std::ranges::max_element(values, {}, [](double value) { return std::abs(value); }));
 }
 
-TEST_F(UdpRigTest, AnswersAsTheSimulatedRigOfTheSamePlantDoes) {
+TEST_F(UdpRigTest, AgreesWithSimulatedRigOfSamePlant) {
   Controller controller = start_controller();
   StartedProgram udp = start_with_udp(controller.port(), "pace: datagrams", kTenSeconds);
   ASSERT_THAT(udp.wait(), Optional(kExitCompleted)) << udp.standard_error();
@@ -118,7 +118,7 @@ TEST_F(UdpRigTest, AnswersAsTheSimulatedRigOfTheSamePlantDoes) {
   EXPECT_EQ(last_of_link("answers_invalid"), 0.0);
 }
 
-TEST_F(UdpRigTest, CompletesThoughDatagramsAreLostDoubledAndOvertaken) {
+TEST_F(UdpRigTest, CompletesDespiteLossDuplicationAndReordering) {
   Controller controller = start_controller({"--loss", "0.01", "--duplication", "0.01", "--reordering", "0.01"});
   StartedProgram udp =
       start_with_udp(controller.port(), "pace: datagrams, reply_wait_s: 0.005, watchdog_s: 0.02", kTenSeconds);
@@ -131,7 +131,7 @@ TEST_F(UdpRigTest, CompletesThoughDatagramsAreLostDoubledAndOvertaken) {
   EXPECT_EQ(last_of_link("answers_invalid"), 0.0);
 }
 
-TEST_F(UdpRigTest, AControllerThatDiesIsAFaultWithinTheWatchdogTime) {
+TEST_F(UdpRigTest, DeadControllerIsAFaultWithinWatchdogTime) {
   constexpr double kWatchdog_s = 0.1;
   Controller controller = start_controller({"--pace", "clock", "--rate-hz", "400"});
   StartedProgram udp = start_with_udp(controller.port(), "watchdog_s: 0.1, reply_wait_s: 0.001", kPaced);
@@ -162,7 +162,7 @@ TEST_F(UdpRigTest, AControllerThatDiesIsAFaultWithinTheWatchdogTime) {
   EXPECT_NEAR(noticed_s, kWatchdog_s, 1e-9);
 }
 
-TEST_F(UdpRigTest, ASiteThatDiesDropsTheEnableAtTheController) {
+TEST_F(UdpRigTest, DeadSiteDropsTheEnableAtController) {
   Controller controller = start_controller({"--pace", "clock", "--rate-hz", "400", "--watchdog-s", "0.2"});
   StartedProgram udp = start_with_udp(controller.port(), "watchdog_s: 0.5, reply_wait_s: 0.001", kPaced);
   ASSERT_TRUE(wait_until([&] { return has_recorded("udp", "storey_1", 100.0); })) << udp.standard_error();
@@ -177,7 +177,7 @@ TEST_F(UdpRigTest, ASiteThatDiesDropsTheEnableAtTheController) {
   EXPECT_THAT(udp.wait(), Optional(kExitEndedEarly)) << udp.standard_error();
 }
 
-TEST_F(UdpRigTest, TheEndOfATestStopsTheController) {
+TEST_F(UdpRigTest, EndOfTestStopsController) {
   Controller controller = start_controller();
   StartedProgram udp = start_with_udp(controller.port(), "pace: datagrams", {"--set", "time.duration_s=0.1"});
   ASSERT_THAT(udp.wait(), Optional(kExitCompleted)) << udp.standard_error();
@@ -186,7 +186,7 @@ TEST_F(UdpRigTest, TheEndOfATestStopsTheController) {
   })) << controller.program().standard_output();
 }
 
-TEST_F(UdpRigTest, WhenNobodyAnswersTheSiteSaysSo) {
+TEST_F(UdpRigTest, ReportsControllerThatDoesNotAnswer) {
   StartedProgram site = start_participant(
       "experimental_site", "storey_1", shipped_scenario("two_storey_one_site"), "udp",
       {"--set",
@@ -196,7 +196,7 @@ TEST_F(UdpRigTest, WhenNobodyAnswersTheSiteSaysSo) {
   EXPECT_THAT(site.standard_error(), HasSubstr("no answer from the controller 127.0.0.1:9"));
 }
 
-TEST_F(UdpRigTest, UnderSimulatedTimeThereIsNoOtherProcess) {
+TEST_F(UdpRigTest, SimulateRejectsUdpRig) {
   StartedProgram simulate =
       start_simulate(shipped_scenario("two_storey_one_site"), "udp",
                      {"--set", "substructures[storey_1].rig={type: udp, host: 127.0.0.1, port: 9, pace: datagrams}"});

@@ -26,7 +26,7 @@ class WrongInput : public SystemTest {
   }
 };
 
-TEST_F(WrongInput, EveryErrorOfAScenarioIsListedAtOnceWithItsPlace) {
+TEST_F(WrongInput, ListsEveryScenarioErrorWithItsPlace) {
   const std::string scenario = system_scenario("many_errors");
   const auto says_all = AllOf(HasSubstr("many_errors.yaml:5:24: "), HasSubstr("did you mean 'step_s'"),      // stepp_s
                               HasSubstr("many_errors.yaml:9:"), HasSubstr("many_errors.yaml:10:"),           //
@@ -39,14 +39,14 @@ TEST_F(WrongInput, EveryErrorOfAScenarioIsListedAtOnceWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(directory() / "runs")) << "nothing is written for a test that cannot be";
 }
 
-TEST_F(WrongInput, AMissingFileIsNamed) {
+TEST_F(WrongInput, NamesMissingFile) {
   EXPECT_THAT(refusal("hybridtest", {"run", "no_such_scenario.yaml"}), HasSubstr("no_such_scenario.yaml"));
   EXPECT_THAT(refusal("hybridtest", {"check", shipped_scenario("two_storey_one_site"), "--set",
                                      "excitation.ground_motion=no_such_motion.AT2"}),
               AllOf(HasSubstr("ground_motion"), HasSubstr("no_such_motion.AT2")));
 }
 
-TEST_F(WrongInput, AnOverrideThatDoesNotFitIsExplained) {
+TEST_F(WrongInput, ExplainsOverrideThatDoesNotApply) {
   const std::string scenario = shipped_scenario("two_storey_one_site");
   EXPECT_THAT(refusal("hybridtest", {"run", scenario, "--set", "time.stepp_s=0.002"}),
               AllOf(HasSubstr("stepp_s"), HasSubstr("did you mean 'step_s'")));
@@ -55,12 +55,12 @@ TEST_F(WrongInput, AnOverrideThatDoesNotFitIsExplained) {
               AllOf(HasSubstr("--set time.step_s"), HasSubstr("fast")));
 }
 
-TEST_F(WrongInput, AStepBeyondTheStabilityLimitIsRefused) {
+TEST_F(WrongInput, RejectsStepAboveStabilityLimit) {
   EXPECT_THAT(refusal("hybridtest", {"run", shipped_scenario("two_storey_one_site"), "--set", "time.step_s=0.2"}),
               AllOf(HasSubstr("time: the step of 0.2 s is too long"), HasSubstr("at most T_n/pi")));
 }
 
-TEST_F(WrongInput, AnIdThatTheScenarioDoesNotHaveIsRefusedWithThoseItHas) {
+TEST_F(WrongInput, RejectsUnknownIdAndListsKnownOnes) {
   const std::string scenario = shipped_scenario("two_storey_one_site");
   EXPECT_THAT(refusal("experimental_site", {"--scenario", scenario, "--id", "storey_9"}),
               AllOf(HasSubstr("storey_9"), HasSubstr("storey_1, storey_2")));
@@ -70,7 +70,7 @@ TEST_F(WrongInput, AnIdThatTheScenarioDoesNotHaveIsRefusedWithThoseItHas) {
   EXPECT_THAT(refusal("experimental_site", {"--scenario", scenario}), HasSubstr("--id"));
 }
 
-TEST_F(WrongInput, ACommandLineThatMakesNoSenseIsRefused) {
+TEST_F(WrongInput, RejectsInvalidCommandLine) {
   EXPECT_THAT(refusal("hybridtest", {}), HasSubstr("subcommand"));
   EXPECT_THAT(refusal("hybridtest", {"run"}), HasSubstr("FILE"));
   EXPECT_THAT(refusal("hybridtest", {"run", shipped_scenario("two_storey_one_site"), "--no-such-option"}),
@@ -79,7 +79,7 @@ TEST_F(WrongInput, ACommandLineThatMakesNoSenseIsRefused) {
   EXPECT_THAT(refusal("hybridtest", {"export", directory().string(), "--csv"}), HasSubstr("no run file"));
 }
 
-TEST_F(WrongInput, ADirectoryThatHoldsARunIsNotWrittenOver) {
+TEST_F(WrongInput, KeepsExistingRunDirectory) {
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   StartedProgram first = start_simulate(scenario, "run", {"--set", "time.duration_s=0.1"});
   ASSERT_THAT(first.wait(), Optional(kExitCompleted)) << first.standard_error();
@@ -90,7 +90,7 @@ TEST_F(WrongInput, ADirectoryThatHoldsARunIsNotWrittenOver) {
   EXPECT_EQ(text_of(recorded("run").file("coordinator")), before);
 }
 
-TEST_F(WrongInput, TheShippedScenariosAreValid) {
+TEST_F(WrongInput, ShippedScenariosAreValid) {
   for (const char* name : {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated"}) {
     StartedProgram check = start_hybridtest({"check", shipped_scenario(name)}, "check");
     EXPECT_THAT(check.wait(), Optional(kExitCompleted)) << check.standard_error();

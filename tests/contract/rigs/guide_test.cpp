@@ -14,7 +14,7 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-TEST(WritingARig, QuotesTheExampleAsItIsCompiled) {
+TEST(WritingARig, QuotesTheCompiledExample) {
   const std::string mark = "// [example]\n";
   const std::string source = text_of("tests/contract/rigs/example_rig.hpp");
   const std::size_t begin = source.find(mark) + mark.size();

@@ -151,9 +151,9 @@ class RigContract : public testing::Test {
 using AllRigs = testing::Types<SimulatedBench, UdpBench, ReplayBench, TransformedBench, ExampleBench>;
 TYPED_TEST_SUITE(RigContract, AllRigs);
 
-TYPED_TEST(RigContract, AnExchangeBeforeConnectingIsAFault) { EXPECT_EQ(this->exchange(0.0), RigStatus::fault); }
+TYPED_TEST(RigContract, ExchangeBeforeConnectIsAFault) { EXPECT_EQ(this->exchange(0.0), RigStatus::fault); }
 
-TYPED_TEST(RigContract, ItMeasuresButDoesNotMoveBeforeItIsArmed) {
+TYPED_TEST(RigContract, MeasuresWithoutMovingBeforeArming) {
   this->rig_->connect();
   ASSERT_EQ(this->exchange(0.0), RigStatus::healthy);
   const RigFeedback at_rest = this->feedback_;
@@ -161,7 +161,7 @@ TYPED_TEST(RigContract, ItMeasuresButDoesNotMoveBeforeItIsArmed) {
   EXPECT_EQ(this->feedback_.displacement_m, at_rest.displacement_m);
 }
 
-TYPED_TEST(RigContract, OnceArmedItMovesAndMeasuresFiniteNumbers) {
+TYPED_TEST(RigContract, MovesAndMeasuresFiniteNumbersWhenArmed) {
   this->arm();
   ASSERT_EQ(this->exchange(0.0), RigStatus::healthy);
   const RigFeedback at_rest = this->feedback_;
@@ -170,15 +170,15 @@ TYPED_TEST(RigContract, OnceArmedItMovesAndMeasuresFiniteNumbers) {
   EXPECT_TRUE(this->feedback_.displacement_m.allFinite() && this->feedback_.force_n.allFinite());
 }
 
-TYPED_TEST(RigContract, ArmingNeedsAConnection) { EXPECT_THROW(this->rig_->arm(), std::runtime_error); }
+TYPED_TEST(RigContract, ArmFailsWithoutConnection) { EXPECT_THROW(this->rig_->arm(), std::runtime_error); }
 
-TYPED_TEST(RigContract, ArmingTwiceIsArmingOnce) {
+TYPED_TEST(RigContract, ArmingTwiceHasNoFurtherEffect) {
   this->arm();
   EXPECT_NO_THROW(this->rig_->arm());
   EXPECT_EQ(this->exchange(0.0), RigStatus::healthy);
 }
 
-TYPED_TEST(RigContract, OnceStoppedItStandsAndStillMeasures) {
+TYPED_TEST(RigContract, StandsStillAndMeasuresAfterStop) {
   this->arm();
   this->exchange_all(this->kCommand_m);
   this->rig_->stop_motion();
@@ -188,7 +188,7 @@ TYPED_TEST(RigContract, OnceStoppedItStandsAndStillMeasures) {
   EXPECT_EQ(this->feedback_.displacement_m, stopped.displacement_m);
 }
 
-TYPED_TEST(RigContract, AStopHoldsUntilItIsConnectedAnew) {
+TYPED_TEST(RigContract, StopPersistsUntilReconnected) {
   this->arm();
   this->rig_->stop_motion();
   EXPECT_THROW(this->rig_->arm(), std::runtime_error);
@@ -196,7 +196,7 @@ TYPED_TEST(RigContract, AStopHoldsUntilItIsConnectedAnew) {
   EXPECT_EQ(this->exchange(0.0), RigStatus::healthy);
 }
 
-TYPED_TEST(RigContract, StoppingIsPossibleInEveryStateAndAnyNumberOfTimes) {
+TYPED_TEST(RigContract, StopIsAcceptedInEveryStateRepeatedly) {
   this->rig_->stop_motion();
   this->rig_->connect();
   this->rig_->stop_motion();
@@ -207,7 +207,7 @@ TYPED_TEST(RigContract, StoppingIsPossibleInEveryStateAndAnyNumberOfTimes) {
   this->rig_->stop_motion();
 }
 
-TYPED_TEST(RigContract, WhatIsNoCommandIsAFaultAndMovesNothing) {
+TYPED_TEST(RigContract, InvalidCommandIsAFaultWithoutMotion) {
   this->arm();
   this->exchange_all(this->kCommand_m);
   const RigFeedback before = this->feedback_;
@@ -220,13 +220,13 @@ TYPED_TEST(RigContract, WhatIsNoCommandIsAFaultAndMovesNothing) {
   EXPECT_EQ(this->rig_->exchange(this->command_, this->feedback_), RigStatus::fault);
 }
 
-TYPED_TEST(RigContract, AFeedbackOfAnotherSizeIsAFault) {
+TYPED_TEST(RigContract, WrongFeedbackSizeIsAFault) {
   this->arm();
   this->feedback_.force_n = InterfaceVector::Zero(this->kActuators + 1);
   EXPECT_EQ(this->exchange(0.0), RigStatus::fault);
 }
 
-TYPED_TEST(RigContract, AnExchangeAllocatesNothing) {
+TYPED_TEST(RigContract, ExchangeDoesNotAllocate) {
   this->arm();
   ASSERT_EQ(this->exchange(0.0), RigStatus::healthy);
   const std::size_t before = allocation_count();
@@ -235,7 +235,7 @@ TYPED_TEST(RigContract, AnExchangeAllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TYPED_TEST(RigContract, AnotherThreadMayStopItWhileItRuns) {
+TYPED_TEST(RigContract, StopFromAnotherThreadDuringExchange) {
   this->arm();
   std::atomic<bool> has_begun{false};
   std::thread other{[&] {
@@ -253,7 +253,7 @@ TYPED_TEST(RigContract, AnotherThreadMayStopItWhileItRuns) {
   EXPECT_EQ(this->feedback_.displacement_m, stopped.displacement_m);
 }
 
-TYPED_TEST(RigContract, ConnectedAnewItCanBeUsedAgain) {
+TYPED_TEST(RigContract, CanBeUsedAgainAfterReconnecting) {
   this->arm();
   this->exchange_all(this->kCommand_m);
   this->rig_->stop_motion();

@@ -54,7 +54,7 @@ class UdpPorts : public testing::Test {
   UdpPort there_{{.host = "127.0.0.1", .port = here_number_, .local_port = there_number_}};
 };
 
-TEST_F(UdpPorts, CarryDatagramsBothWaysOneByOne) {
+TEST_F(UdpPorts, CarryDatagramsInBothDirections) {
   here_.open();
   there_.open();
   ASSERT_TRUE(here_.send(datagram(3, 1)));
@@ -65,14 +65,14 @@ TEST_F(UdpPorts, CarryDatagramsBothWaysOneByOne) {
   EXPECT_EQ(received(here_), datagram(7, 3));
 }
 
-TEST_F(UdpPorts, ReceiveDoesNotWaitWithoutPatience) {
+TEST_F(UdpPorts, ReceiveDoesNotWaitWithZeroTimeout) {
   here_.open();
   Duration patience{};
   std::array<std::byte, 16> buffer{};
   EXPECT_FALSE(here_.receive(buffer, patience));
 }
 
-TEST_F(UdpPorts, PatienceIsUsedUpWhenNothingComesThoughNobodyListens) {
+TEST_F(UdpPorts, ReceiveWaitsFullTimeoutWithoutPeer) {
   here_.open();
   for (int i = 0; i < 3; ++i) here_.send(datagram(3, 1));  // each is answered by a refusal
   Duration patience = 5ms;
@@ -81,7 +81,7 @@ TEST_F(UdpPorts, PatienceIsUsedUpWhenNothingComesThoughNobodyListens) {
   EXPECT_EQ(patience, 0ns);
 }
 
-TEST_F(UdpPorts, PatienceIsKeptWhenSomethingIsThere) {
+TEST_F(UdpPorts, ReceiveReturnsAtOnceWhenADatagramWaits) {
   here_.open();
   there_.open();
   there_.send(datagram(3, 1));
@@ -94,7 +94,7 @@ TEST_F(UdpPorts, PatienceIsKeptWhenSomethingIsThere) {
   EXPECT_LE(patience, kPatience);
 }
 
-TEST_F(UdpPorts, HearNobodyElse) {
+TEST_F(UdpPorts, IgnoreOtherSenders) {
   here_.open();
   UdpPort stranger{{.host = "127.0.0.1", .port = here_number_}};
   stranger.open();
@@ -104,12 +104,12 @@ TEST_F(UdpPorts, HearNobodyElse) {
   EXPECT_EQ(received(here_), datagram(3, 1));
 }
 
-TEST_F(UdpPorts, DoNothingBeforeTheyAreOpen) {
+TEST_F(UdpPorts, DoNothingBeforeOpening) {
   EXPECT_FALSE(here_.send(datagram(3, 1)));
   EXPECT_TRUE(received(here_).empty());
 }
 
-TEST_F(UdpPorts, SayWhatIsInTheWay) {
+TEST_F(UdpPorts, ReportWhyOpeningFailed) {
   UdpPort nowhere{{.host = "no.such.host.invalid", .port = 5000}};
   EXPECT_THAT([&] { nowhere.open(); }, ThrowsMessage<std::runtime_error>(HasSubstr("udp no.such.host.invalid:5000:")));
   here_.open();

@@ -45,7 +45,7 @@ void change(std::string& bytes, Random& random) {
   }
 }
 
-TEST(WireFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
+TEST(WireFuzzReplay, CorpusFilesBehaveAsNamed) {
   const std::map<std::string, WireFuzzOutcome> expected = {{"accepted", WireFuzzOutcome::accepted},
                                                            {"refused", WireFuzzOutcome::refused},
                                                            {"unreadable", WireFuzzOutcome::unreadable}};
@@ -58,7 +58,7 @@ TEST(WireFuzzReplay, TheCorpusBehavesAsItsFileNamesSay) {
   }
 }
 
-TEST(WireFuzzReplay, SurvivesTwentyThousandMutationsOfTheCorpus) {
+TEST(WireFuzzReplay, SurvivesMutationsOfTheCorpus) {
   constexpr std::uint64_t kSeed = 1;
   constexpr std::uint64_t kMutations = 20000;
   std::vector<std::string> inputs;

@@ -91,7 +91,7 @@ TEST(AdaptiveInverse, BoundsItsCorrection) {
   }
 }
 
-TEST(AdaptiveInverse, RefusesParametersOutOfRange) {
+TEST(AdaptiveInverse, RejectsParametersOutOfRange) {
   EXPECT_THROW((AdaptiveInverse{{-0.01, 1.0, 1.0, 0.01}, kPeriod_s}), ConfigError);
   EXPECT_THROW((AdaptiveInverse{{0.02, -1.0, 1.0, 0.01}, kPeriod_s}), ConfigError);
   EXPECT_THROW((AdaptiveInverse{{0.02, 1.0, -1.0, 0.01}, kPeriod_s}), ConfigError);

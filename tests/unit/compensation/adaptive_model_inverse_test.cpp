@@ -67,7 +67,7 @@ Outcome track(AdaptiveModelInverse& compensator, const TransferSystemModel& plan
   return outcome;
 }
 
-TEST(AdaptiveModelInverse, HoldsThePlantThatItKnowsAtTwentyFrequencies) {
+TEST(AdaptiveModelInverse, InvertsKnownPlantAtTwentyFrequencies) {
   for (const double frequency_hz : twenty_frequencies_hz(0.3, 15.0)) {
     const double omega = 2.0 * std::numbers::pi * frequency_hz;
     AdaptiveModelInverse compensator{{}, kPeriod_s};
@@ -95,7 +95,7 @@ TEST(AdaptiveModelInverse, HoldsThePlantThatItKnowsAtTwentyFrequencies) {
   }
 }
 
-TEST(AdaptiveModelInverse, CommandsTheInverseWhereNothingIsMeasured) {
+TEST(AdaptiveModelInverse, CommandsInverseWithoutMeasurement) {
   // Without measurements the estimate is the model's own answer, and nothing is left to regulate but what the
   // jerk filter misses: the command is the inverse, half a period ahead because it is held over one.
   const TransferSystemModel model;
@@ -117,7 +117,7 @@ TEST(AdaptiveModelInverse, CommandsTheInverseWhereNothingIsMeasured) {
   expect_frequency_response([] { return Unmeasured{}; }, closed_form, tolerance, kPeriod_s, 3 * 4096, 0.2, 10.0);
 }
 
-TEST(AdaptiveModelInverse, LearnsAPlantTwoDeviationsOff) {
+TEST(AdaptiveModelInverse, LearnsPlantTwoStandardDeviationsOff) {
   TransferSystemModel plant;
   plant.stiffness_n_per_m += 2.0 * 5e4;
   plant.beta2_per_s2 -= 2.0 * 3.3e3;
@@ -142,7 +142,7 @@ TEST(AdaptiveModelInverse, TracksItsPlantThroughNoise) {
   EXPECT_LT(track(compensator, {}, 3e-3, 1.0, 10).rms_error, 0.001);
 }
 
-TEST(AdaptiveModelInverse, AMotionTooSmallMovesNothing) {
+TEST(AdaptiveModelInverse, IgnoresTooSmallMotion) {
   TransferSystemModel plant;
   plant.stiffness_n_per_m += 2.0 * 5e4;
   AdaptiveModelInverse compensator{{}, kPeriod_s};
@@ -154,7 +154,7 @@ TEST(AdaptiveModelInverse, AMotionTooSmallMovesNothing) {
   EXPECT_NEAR(compensator.parameters()(0), 1.19e6, 0.2 * 5e4);
 }
 
-TEST(AdaptiveModelInverse, ASpikeIsNotAMotion) {
+TEST(AdaptiveModelInverse, IgnoresSpike) {
   AdaptiveModelInverse bounded{{}, kPeriod_s};
   AdaptiveModelInverse::Parameters believing;
   believing.innovation_bound = 1e6;
@@ -188,7 +188,7 @@ TEST(AdaptiveModelInverse, LeadsByItsAdvance) {
   EXPECT_LT(worst_m, 0.001 * 3e-3 * (1.0 / 0.8 + 1.0 / 3.6 + 1.0 / 9.1));
 }
 
-TEST(AdaptiveModelInverse, RefusesParametersOutOfRangeAndSaysWhy) {
+TEST(AdaptiveModelInverse, RejectsParametersOutOfRangeAndSaysWhy) {
   const auto refused = [](auto change) {
     AdaptiveModelInverse::Parameters parameters;
     change(parameters);

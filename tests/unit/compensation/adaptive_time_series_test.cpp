@@ -87,7 +87,7 @@ TYPED_TEST(TimeSeries, StaysUsefulWithSensorNoise) {
   EXPECT_LT(outcome.worst_error_m, 0.02 * 9e-3);
 }
 
-TYPED_TEST(TimeSeries, KeepsRangesAndRatesOfThePublication) {
+TYPED_TEST(TimeSeries, KeepsPublishedRangesAndRates) {
   TypeParam series{{}, kPeriod_s};
   // An actuator outside the ranges: a0 would be 1.6.
   const Outcome outcome = track(series, {1.6, 0.05, 4e-4}, 3e-3);
@@ -104,13 +104,13 @@ TYPED_TEST(TimeSeries, KeepsRangesAndRatesOfThePublication) {
   EXPECT_GT(rate(1), 0.049);  // it did hurry
 }
 
-TYPED_TEST(TimeSeries, LearnsNothingFromAMotionTooSmallToTell) {
+TYPED_TEST(TimeSeries, DoesNotUpdateBelowMinimumMotion) {
   TypeParam series{{}, kPeriod_s};
   const Outcome outcome = track(series, {1.02, kA1_s, kA2_s2}, 3e-5, 16e-6);
   EXPECT_EQ(outcome.coefficients, Eigen::Vector3d(1.0, 0.020, 0.0002));
 }
 
-TYPED_TEST(TimeSeries, HasTheFrequencyResponseOfATimeSeriesBeforeItLearns) {
+TYPED_TEST(TimeSeries, InitialFrequencyResponseMatchesTimeSeries) {
   TimeSeriesParameters parameters;
   parameters.a0 = 1.1;
   parameters.a1_s = 0.02;
@@ -134,7 +134,7 @@ TYPED_TEST(TimeSeries, IsTheIdentityWithoutDerivatives) {
   }
 }
 
-TYPED_TEST(TimeSeries, RefusesParametersOutOfRangeAndSaysWhy) {
+TYPED_TEST(TimeSeries, RejectsParametersOutOfRangeAndSaysWhy) {
   const auto refused = [](auto change) {
     TimeSeriesParameters parameters;
     change(parameters);
@@ -156,7 +156,7 @@ TYPED_TEST(TimeSeries, RefusesParametersOutOfRangeAndSaysWhy) {
   EXPECT_NE(refused([](TimeSeriesParameters& p) { p.a2_s2 = std::nan(""); }), "");
 }
 
-TEST(AdaptiveTimeSeries, ForgetsAMotionWhenItsWindowIsOver) {
+TEST(AdaptiveTimeSeries, ForgetsMotionOlderThanItsWindow) {
   // An actuator that changes: after a window and the time that the rates take, the new one is known.
   AdaptiveTimeSeries series{{}, kPeriod_s};
   SecondOrderActuator actuator{1.0, 0.012, 1.0e-4};
@@ -176,7 +176,7 @@ TEST(AdaptiveTimeSeries, ForgetsAMotionWhenItsWindowIsOver) {
   }
 }
 
-TEST(AdaptiveTimeSeries, ForgetsTheRoundingOfALargeMotionToo) {
+TEST(AdaptiveTimeSeries, ForgetsRoundingErrorsOfLargeMotion) {
   // Ten million times as large, so that what rounding leaves of its squares is a hundredth of those that follow.
   AdaptiveTimeSeries series{{}, kPeriod_s};
   SecondOrderActuator actuator{1.02, kA1_s, kA2_s2};

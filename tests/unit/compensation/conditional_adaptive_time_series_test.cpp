@@ -33,7 +33,7 @@ Eigen::Vector3d after_tracking(Series&& series, SecondOrderActuator actuator) {
   return series.coefficients();
 }
 
-TEST(ConditionalAdaptiveTimeSeries, LeavesACoefficientWhoseValueIsOutOfRange) {
+TEST(ConditionalAdaptiveTimeSeries, KeepsCoefficientWhenUpdateIsOutOfRange) {
   TimeSeriesParameters parameters;
   parameters.a0_max = 1.1;
   const SecondOrderActuator actuator{1.2, 0.016, 1.1e-4};

@@ -14,7 +14,7 @@ constexpr double kPeriod_s = 1.0 / 1024.0;
 // part of a sample, at most half of one, the parabola, which stands for a cosine, misses (w h)^2 / 3.
 constexpr double tolerance_s(double memory_s) { return 4e-3 * 4e-3 / (2.0 * memory_s) + 0.5 * kPeriod_s * 2e-3; }
 
-TEST(CrossCorrelation, TellsADelayOfPartsOfASample) {
+TEST(CrossCorrelation, EstimatesFractionalDelay) {
   for (const double memory_s : {1.0, 4.0}) {
     for (const double delay_s : {0.3 * kPeriod_s, 12.34e-3, 20.0 * kPeriod_s, 43.21e-3}) {
       CrossCorrelation::Parameters parameters;
@@ -26,12 +26,12 @@ TEST(CrossCorrelation, TellsADelayOfPartsOfASample) {
   }
 }
 
-TEST(CrossCorrelation, TellsTheDelayOfAChirp) {
+TEST(CrossCorrelation, EstimatesDelayOfChirp) {
   CrossCorrelation estimator{{}, kPeriod_s};
   EXPECT_NEAR(estimate_of(estimator, chirp_m, 17.77e-3, kPeriod_s, 20.0), 17.77e-3, tolerance_s(1.0));
 }
 
-TEST(CrossCorrelation, IsNotMovedByAGain) {
+TEST(CrossCorrelation, IsIndependentOfGain) {
   CrossCorrelation estimator{{}, kPeriod_s};
   const auto motion = [](double t) { return sine_m(3.0, t); };
   EXPECT_NEAR(estimate_of(estimator, motion, 17.77e-3, kPeriod_s, 10.0, 0.7), 17.77e-3, tolerance_s(1.0));
@@ -46,7 +46,7 @@ TEST(CrossCorrelation, AveragesNoise) {
   EXPECT_NEAR(estimate_s, 17.77e-3, 23e-6 + tolerance_s(1.0));
 }
 
-TEST(CrossCorrelation, LearnsNothingBelowItsMotion) {
+TEST(CrossCorrelation, DoesNotUpdateBelowMinimumMotion) {
   CrossCorrelation::Parameters parameters;
   parameters.motion_m_min = 4e-3;  // 5 mm are 3.5 in the root mean square
   CrossCorrelation estimator{parameters, kPeriod_s};
@@ -55,7 +55,7 @@ TEST(CrossCorrelation, LearnsNothingBelowItsMotion) {
             20e-3);
 }
 
-TEST(CrossCorrelation, RefusesParametersOutOfRange) {
+TEST(CrossCorrelation, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     CrossCorrelation::Parameters parameters;
     change(parameters);

@@ -52,7 +52,7 @@ TEST(DiscreteRegulator, EstimatesAConstantAsTheMeanDoes) {
   EXPECT_NEAR(gain(0), p / (p + r), 1e-14);
 }
 
-TEST(DiscreteRegulator, RefusesWhatCannotBeStabilised) {
+TEST(DiscreteRegulator, RejectsSystemThatCannotBeStabilised) {
   const Eigen::MatrixXd growing = Eigen::MatrixXd::Constant(1, 1, 1.5);
   EXPECT_THROW(static_cast<void>(solve_riccati(growing, Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(1, 1), 1.0)),
                ConfigError);

@@ -92,7 +92,7 @@ TEST(EstimatedDelayCompensation, AddsTheNetwork) {
   EXPECT_DOUBLE_EQ(compensation.command(unit_velocity), 0.013);
 }
 
-TEST(EstimatedDelayCompensation, IsAsNewAfterReset) {
+TEST(EstimatedDelayCompensation, ResetRestoresInitialState) {
   const auto make = [] {
     auto inner =
         std::make_unique<PolynomialDisplacement>(PolynomialDisplacement::Parameters{3, 0.008, 0.020}, kPeriod_s);
@@ -106,7 +106,7 @@ TEST(EstimatedDelayCompensation, IsAsNewAfterReset) {
   EXPECT_EQ(tracking_error(used), tracking_error(fresh));
 }
 
-TEST(EstimatedDelayCompensation, RefusesWhatItCannotDriveAndSaysWhy) {
+TEST(EstimatedDelayCompensation, RejectsUnsupportedCompensatorAndSaysWhy) {
   const auto refused = [](std::unique_ptr<Compensator> compensator, std::unique_ptr<DelayEstimator> with) {
     try {
       const EstimatedDelayCompensation compensation{std::move(compensator), std::move(with)};

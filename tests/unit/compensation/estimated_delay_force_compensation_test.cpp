@@ -27,7 +27,7 @@ std::unique_ptr<ForceCompensator> polynomial() {
   return std::make_unique<PolynomialForce>(PolynomialForce::Parameters{3, 0.008, 0.020}, kPeriod_s);
 }
 
-TEST(EstimatedDelayForceCompensation, FindsHowLateTheForceIs) {
+TEST(EstimatedDelayForceCompensation, EstimatesForceDelay) {
   constexpr double kLag_s = 17.3e-3;
   EstimatedDelayForceCompensation compensation{polynomial(), least_squares()};
   const auto force_n = [](double t) { return 5e3 * std::sin(2.0 * std::numbers::pi * 2.0 * t + 0.3); };
@@ -43,7 +43,7 @@ TEST(EstimatedDelayForceCompensation, FindsHowLateTheForceIs) {
   EXPECT_LT(worst_n, 0.003 * 5e3);
 }
 
-TEST(EstimatedDelayForceCompensation, IsAsNewAfterReset) {
+TEST(EstimatedDelayForceCompensation, ResetRestoresInitialState) {
   EstimatedDelayForceCompensation used{polynomial(), least_squares()};
   EstimatedDelayForceCompensation fresh{polynomial(), least_squares()};
   const auto sample = [](int i) {
@@ -55,7 +55,7 @@ TEST(EstimatedDelayForceCompensation, IsAsNewAfterReset) {
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(used.corrected_force(sample(i)), fresh.corrected_force(sample(i)));
 }
 
-TEST(EstimatedDelayForceCompensation, RefusesWhatHasNoDelay) {
+TEST(EstimatedDelayForceCompensation, RejectsMethodWithoutDelay) {
   auto correction = std::make_unique<ForceCorrection>(ForceCorrection::Parameters{}, kPeriod_s);
   EXPECT_THROW((EstimatedDelayForceCompensation{std::move(correction), least_squares()}), ConfigError);
   EXPECT_THROW((EstimatedDelayForceCompensation{polynomial(), nullptr}), ConfigError);

@@ -135,7 +135,7 @@ class EveryCompensator : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(All, EveryCompensator, testing::ValuesIn(all_kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
-TEST_P(EveryCompensator, AnswersTheSameBytesAfterResetAsWhenNew) {
+TEST_P(EveryCompensator, GivesSameBitsAfterResetAsWhenNew) {
   const Subject used = GetParam().make();
   Random other{99};
   for (int i = 777; i < 6000; ++i) static_cast<void>(used.answer(moment(i, other)));
@@ -174,7 +174,7 @@ std::vector<double> answers_around(const Subject& subject, Spoil spoil) {
   return answers;
 }
 
-TEST_P(EveryCompensator, RecoversFromATargetThatIsNotFinite) {
+TEST_P(EveryCompensator, RecoversFromNonFiniteTarget) {
   const auto answers = answers_around(GetParam().make(), [](CompensatorInput& input) {
     input.target_m = input.target_velocity_m_per_s = input.target_acceleration_m_per_s2 = kNaN;
   });
@@ -183,13 +183,13 @@ TEST_P(EveryCompensator, RecoversFromATargetThatIsNotFinite) {
   for (std::size_t i = 0; i < 200; ++i) ASSERT_TRUE(std::isfinite(answers[i])) << i;
 }
 
-TEST_P(EveryCompensator, ShowsATargetThatIsNotFiniteToTheInterlocks) {
+TEST_P(EveryCompensator, PassesNonFiniteTargetToInterlocks) {
   if (!GetParam().is_for_commands) return;
   const auto answers = answers_around(GetParam().make(), [](CompensatorInput& input) { input.target_m = kNaN; });
   EXPECT_FALSE(std::isfinite(answers[200]));
 }
 
-TEST_P(EveryCompensator, NeverLetsAMeasurementThatIsNotFiniteIntoTheCommand) {
+TEST_P(EveryCompensator, KeepsNonFiniteMeasurementOutOfCommand) {
   for (const double spoilt : {kNaN, std::numeric_limits<double>::infinity()}) {
     const auto answers = answers_around(GetParam().make(), [&](CompensatorInput& input) {
       input.measured_displacement_m = input.measured_force_n = spoilt;
@@ -205,7 +205,7 @@ TEST_P(EveryCompensator, NeverLetsAMeasurementThatIsNotFiniteIntoTheCommand) {
 }
 
 /// Shows that the guard of NeverAllocates sees an allocation.
-TEST(AllocationCount, CountsWhatACompensatorAllocates) {
+TEST(AllocationCount, CountsAllocationsOfACompensator) {
   class Allocating final : public Compensator {
    public:
     double command(const CompensatorInput& input) noexcept override {

@@ -75,7 +75,7 @@ TEST_P(EveryAdaptiveDelayEstimator, StaysWithinItsBounds) {
   }
 }
 
-TEST_P(EveryAdaptiveDelayEstimator, MovesNoFasterThanItsRate) {
+TEST_P(EveryAdaptiveDelayEstimator, StaysWithinItsRateLimit) {
   const double rate = 0.005;
   const auto estimator = GetParam().make({0.020, 0.0, 0.1, rate});
   double before_s = estimator->delay_s();
@@ -92,7 +92,7 @@ TEST_P(EveryAdaptiveDelayEstimator, MovesNoFasterThanItsRate) {
   EXPECT_NEAR(estimator->delay_s(), 0.005, 1e-4);  // and arrived: 35 ms take 7 s
 }
 
-TEST_P(EveryAdaptiveDelayEstimator, IsFrozenWhileTheMotionIsTooSmallToTell) {
+TEST_P(EveryAdaptiveDelayEstimator, DoesNotUpdateBelowMinimumMotion) {
   const auto estimator = GetParam().make({0.020, 0.0, 0.1, 0.02});
   const auto learn = [&](auto motion, double delay_s) {
     return estimate_of(*estimator, motion, delay_s, kPeriod_s, 10.0, 1.0, 16e-6);
@@ -121,14 +121,14 @@ TEST_P(EveryDelayEstimator, AddsTheMeasuredNetworkLatency) {
   EXPECT_EQ(estimate_of(*estimator, motion_m, 0.020, kPeriod_s, 10.0), 0.1);
 }
 
-TEST_P(EveryDelayEstimator, FollowsTheNetworkWhileTheSpecimenRests) {
+TEST_P(EveryDelayEstimator, FollowsNetworkLatencyAtRest) {
   const auto estimator = GetParam().make({0.020, 0.0, 0.1, 0.02});
   estimator->set_network_latency(0.013);
   for (int i = 0; i < 2048; ++i) static_cast<void>(estimator->estimate({0.0, 0.0}));
   EXPECT_DOUBLE_EQ(estimator->delay_s(), 0.033);
 }
 
-TEST_P(EveryDelayEstimator, SkipsWhatIsNotFinite) {
+TEST_P(EveryDelayEstimator, SkipsNonFiniteSamples) {
   const auto estimator = GetParam().make({0.020, 0.0, 0.1, 0.02});
   static_cast<void>(estimate_of(*estimator, motion_m, 0.020, kPeriod_s, 3.0));
   for (const DelaySample sample : {DelaySample{kNaN, 0.0}, {0.0, kNaN}, {INFINITY, 0.0}, {0.0, -INFINITY}}) {
@@ -137,7 +137,7 @@ TEST_P(EveryDelayEstimator, SkipsWhatIsNotFinite) {
   EXPECT_NEAR(estimate_of(*estimator, motion_m, 0.020, kPeriod_s, 10.0), 0.020, 5e-5);
 }
 
-TEST_P(EveryDelayEstimator, IsAsNewAfterReset) {
+TEST_P(EveryDelayEstimator, ResetRestoresInitialState) {
   const DelayLimits limits{0.020, 0.0, 0.1, 0.02};
   const auto used = GetParam().make(limits);
   static_cast<void>(estimate_of(*used, chirp_m, 0.031, kPeriod_s, 3.3, 0.8, 1e-4));
@@ -166,7 +166,7 @@ TEST_P(EveryDelayEstimator, NeverAllocates) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST_P(EveryDelayEstimator, RefusesLimitsOutOfRange) {
+TEST_P(EveryDelayEstimator, RejectsLimitsOutOfRange) {
   const auto refuses = [](const DelayLimits& limits) { EXPECT_THROW(GetParam().make(limits), ConfigError); };
   refuses({0.020, -0.001, 0.1, 0.02});
   refuses({0.020, 0.1, 0.1, 0.02});

@@ -64,7 +64,7 @@ double worst_error(FeedforwardLqg&& compensator, const TransferSystemModel& plan
   return worst_m / amplitude_m;
 }
 
-TEST(FeedforwardLqg, TracksThePlantThatItKnows) {
+TEST(FeedforwardLqg, TracksKnownPlant) {
   // Left over: half a period of hold, w T / 2 = 2.3e-3; the jerk late by 2 ms, a3 w^3 w 2 ms = 1.0e-4; the fourth
   // derivative, a4 w^4 = 7e-5.
   EXPECT_LT(worst_error(FeedforwardLqg{feedforward_alone(), kPeriod_s}, {}), 2.5e-3);
@@ -82,7 +82,7 @@ TEST(FeedforwardLqg, FeedbackReducesTheErrorOfAWrongModel) {
   EXPECT_LT(with, 0.7 * without);
 }
 
-TEST(FeedforwardLqg, RefusesParametersOutOfRange) {
+TEST(FeedforwardLqg, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     FeedforwardLqg::Parameters parameters;
     change(parameters);

@@ -29,7 +29,7 @@ TEST(ForceCorrectionQuadratic, IsExactForQuadraticsInTime) {
   }
 }
 
-TEST(ForceCorrectionQuadratic, IsTheIdentityWhereTheSpecimenIsAtTheTarget) {
+TEST(ForceCorrectionQuadratic, IsTheIdentityWithoutTrackingError) {
   ForceCorrectionQuadratic correction{{3, 0.010}, kPeriod_s};
   for (int i = 0; i < 100; ++i) {
     const double x = std::sin(0.05 * i);
@@ -38,7 +38,7 @@ TEST(ForceCorrectionQuadratic, IsTheIdentityWhereTheSpecimenIsAtTheTarget) {
   }
 }
 
-TEST(ForceCorrectionQuadratic, UsesTheUncorrectedForceWhereTheRootsAreComplex) {
+TEST(ForceCorrectionQuadratic, UsesUncorrectedForceForComplexRoots) {
   ForceCorrectionQuadratic correction{{3, 0.010}, kPeriod_s};
   double answer = 0.0;
   for (int i = 0; i <= 40; ++i) {
@@ -48,7 +48,7 @@ TEST(ForceCorrectionQuadratic, UsesTheUncorrectedForceWhereTheRootsAreComplex) {
   EXPECT_EQ(answer, 5.0);
 }
 
-TEST(ForceCorrectionQuadratic, RefusesParametersOutOfRange) {
+TEST(ForceCorrectionQuadratic, RejectsParametersOutOfRange) {
   EXPECT_THROW((ForceCorrectionQuadratic{{2, 0.01}, kPeriod_s}), ConfigError);
   EXPECT_THROW((ForceCorrectionQuadratic{{3, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((ForceCorrectionQuadratic{{3, 1e-4}, kPeriod_s}), ConfigError);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPeriod_s = 1.0 / 1024.0;
 
-TEST(ForceCorrection, IsExactForQuadraticsInTimeOnceTheRootHasArrived) {
+TEST(ForceCorrection, IsExactForQuadraticsOnceRootIsFound) {
   const auto displacement_m = [](double t) { return 0.01 + 0.5 * t - 0.2 * t * t; };
   const auto force_n = [](double t) { return 300.0 - 2000.0 * t + 9000.0 * t * t; };
   for (const double lag_s : {0.0, 5.3e-3, 20e-3}) {
@@ -31,7 +31,7 @@ TEST(ForceCorrection, IsExactForQuadraticsInTimeOnceTheRootHasArrived) {
   }
 }
 
-TEST(ForceCorrection, IsExactForAnElasticSpecimenWithoutAnyRoot) {
+TEST(ForceCorrection, IsExactForElasticSpecimenWithoutRoot) {
   // Stiffness known beforehand, no horizon at all, so that the root has nowhere to go.
   ForceCorrection::Parameters parameters;
   parameters.horizon_s = 0.0;
@@ -45,7 +45,7 @@ TEST(ForceCorrection, IsExactForAnElasticSpecimenWithoutAnyRoot) {
   }
 }
 
-TEST(ForceCorrection, ChoosesTheRootOnTheRightSideOfThePeak) {
+TEST(ForceCorrection, ChoosesRootOnCorrectSideOfPeak) {
   // The measured parabola turns 10 ms from now, the desired displacement is 20 ms ahead, past the peak: the root
   // nearest to now is 0, the right one 20 ms.
   ForceCorrection correction{{}, kPeriod_s};
@@ -85,7 +85,7 @@ double largest_step(ForceCompensator&& correction) {
   return largest_n;
 }
 
-TEST(ForceCorrection, DoesNotJumpWhereThePublishedMethodDoes) {
+TEST(ForceCorrection, DoesNotJumpWherePublishedMethodJumps) {
   // The exact force moves by (0.01 * 9 + 0.004 * 31) m/s * 1e6 N/m / 1024 Hz = 209 N a sample. To that: noise of
   // the fits, and the root at its rate of 1 s/s across f' - k_s x', which hysteresis leaves, some 20 % of f'.
   const double smooth_n = 209.0;
@@ -104,7 +104,7 @@ TEST(ForceCorrection, LearnsTheSecantStiffness) {
   EXPECT_NEAR(correction.stiffness_n_per_m(), 3e6, 2e6 * 2.5e-3);
 }
 
-TEST(ForceCorrection, RefusesParametersOutOfRange) {
+TEST(ForceCorrection, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     ForceCorrection::Parameters parameters;
     change(parameters);

@@ -17,7 +17,7 @@ constexpr double kPeriod_s = 1.0 / 1024.0;
 // away, where its products with the first are below 2e-4 of the whole. That is an angle at f = 3 Hz.
 constexpr double kTolerance_s = 2e-4 / (2.0 * std::numbers::pi * 3.0);
 
-TEST(FrequencyEvaluationIndex, TellsADelayOfPartsOfASample) {
+TEST(FrequencyEvaluationIndex, EstimatesFractionalDelay) {
   for (const double frequency_hz : {3.0, 3.37, 3.5}) {
     for (const double delay_s : {0.3 * kPeriod_s, 12.34e-3, 43.21e-3}) {
       FrequencyEvaluationIndex estimator{{}, kPeriod_s};
@@ -43,14 +43,14 @@ TEST(FrequencyEvaluationIndex, IsThePublishedIndexOfTwoTones) {
   EXPECT_NEAR(estimator.frequency_hz(), frequency_hz, 1e-2);
 }
 
-TEST(FrequencyEvaluationIndex, TellsTheDelayOfAChirp) {
+TEST(FrequencyEvaluationIndex, EstimatesDelayOfChirp) {
   FrequencyEvaluationIndex estimator{{}, kPeriod_s};
   // The frequency moves by 0.2 Hz in a window; the delayed chirp is taken from a window 18 ms earlier, in which the
   // frequency weighed is lower by 0.2 Hz/s * 18 ms / 2 of 5 Hz.
   EXPECT_NEAR(estimate_of(estimator, chirp_m, 17.77e-3, kPeriod_s, 20.0), 17.77e-3, 17.77e-3 * 1e-3);
 }
 
-TEST(FrequencyEvaluationIndex, TellsGainAndDelayApart) {
+TEST(FrequencyEvaluationIndex, SeparatesGainAndDelay) {
   FrequencyEvaluationIndex estimator{{}, kPeriod_s};
   const auto motion = [](double t) { return sine_m(3.0, t); };
   EXPECT_NEAR(estimate_of(estimator, motion, 17.77e-3, kPeriod_s, 10.0, 0.7), 17.77e-3, kTolerance_s);
@@ -65,7 +65,7 @@ TEST(FrequencyEvaluationIndex, AveragesNoise) {
   EXPECT_NEAR(estimate_s, 17.77e-3, 32e-6);
 }
 
-TEST(FrequencyEvaluationIndex, IsNotMovedByAnOffsetOfTheSensor) {
+TEST(FrequencyEvaluationIndex, IsIndependentOfSensorOffset) {
   FrequencyEvaluationIndex::Parameters parameters;
   parameters.frequency_hz_min = 2.0;  // Hann's window leaves nothing of a constant beyond its first line
   FrequencyEvaluationIndex estimator{parameters, kPeriod_s};
@@ -77,7 +77,7 @@ TEST(FrequencyEvaluationIndex, IsNotMovedByAnOffsetOfTheSensor) {
   EXPECT_NEAR(estimate_s, 17.77e-3, kTolerance_s);
 }
 
-TEST(FrequencyEvaluationIndex, LearnsNothingBelowItsMotion) {
+TEST(FrequencyEvaluationIndex, DoesNotUpdateBelowMinimumMotion) {
   FrequencyEvaluationIndex::Parameters parameters;
   parameters.motion_m_min = 3.6e-3;  // 5 mm are 3.54 in the root mean square
   FrequencyEvaluationIndex estimator{parameters, kPeriod_s};
@@ -88,7 +88,7 @@ TEST(FrequencyEvaluationIndex, LearnsNothingBelowItsMotion) {
   EXPECT_NEAR(estimate_of(other, motion, 43e-3, kPeriod_s, 10.0), 43e-3, kTolerance_s);
 }
 
-TEST(FrequencyEvaluationIndex, RefusesParametersOutOfRange) {
+TEST(FrequencyEvaluationIndex, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     FrequencyEvaluationIndex::Parameters parameters;
     change(parameters);

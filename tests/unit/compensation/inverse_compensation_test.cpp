@@ -77,7 +77,7 @@ TEST(InverseCompensation, FollowsAChangedDelayWithinItsBounds) {
   EXPECT_EQ(compensator.delay_s(), 20e-3);
 }
 
-TEST(InverseCompensation, RefusesParametersOutOfRange) {
+TEST(InverseCompensation, RejectsParametersOutOfRange) {
   EXPECT_THROW((InverseCompensation{{-1e-3}, kPeriod_s}), ConfigError);
   EXPECT_THROW((InverseCompensation{{1.1}, kPeriod_s}), ConfigError);
   EXPECT_THROW((InverseCompensation{{0.02}, 0.0}), ConfigError);

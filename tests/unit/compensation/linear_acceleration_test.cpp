@@ -58,7 +58,7 @@ TEST(LinearAcceleration, HasTheFrequencyResponseOfItsEquation) {
       closed_form, [](double) { return 1e-12; }, kPeriod_s, 82);
 }
 
-TEST(LinearAcceleration, KeepsItsSpacingWhenTheDelayChanges) {
+TEST(LinearAcceleration, KeepsSpacingWhenDelayChanges) {
   LinearAcceleration compensator{{20e-3, 0.0}, kPeriod_s};
   const double spacing_s = compensator.point_spacing_s();
   EXPECT_DOUBLE_EQ(spacing_s, 82 * kPeriod_s);
@@ -76,7 +76,7 @@ TEST(LinearAcceleration, KeepsItsSpacingWhenTheDelayChanges) {
   EXPECT_DOUBLE_EQ(compensator.delay_s(), 20e-3);
 }
 
-TEST(LinearAcceleration, RefusesParametersOutOfRange) {
+TEST(LinearAcceleration, RejectsParametersOutOfRange) {
   EXPECT_THROW((LinearAcceleration{{-1e-3, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((LinearAcceleration{{2.0, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((LinearAcceleration{{0.02, 0.002}, kPeriod_s}), ConfigError);  // ten spacings ahead

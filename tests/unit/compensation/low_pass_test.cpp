@@ -37,7 +37,7 @@ TEST(LowPass, HasTheFrequencyResponseOfButterworthsPoles) {
   }
 }
 
-TEST(LowPass, IsAsNewAfterReset) {
+TEST(LowPass, ResetRestoresInitialState) {
   LowPass used{20.0, kPeriod_s};
   LowPass fresh{20.0, kPeriod_s};
   for (int i = 0; i < 100; ++i) static_cast<void>(used.filter(i));
@@ -45,7 +45,7 @@ TEST(LowPass, IsAsNewAfterReset) {
   for (int i = 0; i < 100; ++i) ASSERT_EQ(used.filter(std::sin(i)), fresh.filter(std::sin(i)));
 }
 
-TEST(LowPass, RefusesACornerBeyondTheSampleRate) {
+TEST(LowPass, RejectsCornerAboveSampleRate) {
   EXPECT_THROW((LowPass{2000.0, kPeriod_s}), ConfigError);
   EXPECT_THROW((LowPass{0.0, kPeriod_s}), ConfigError);
   EXPECT_THROW((LowPass{20.0, 0.0}), ConfigError);

@@ -65,7 +65,7 @@ TEST(NewmarkKinematics, FollowsAChangedDelayWithinItsBounds) {
   EXPECT_DOUBLE_EQ(compensator.command(unit_velocity), 0.020);
 }
 
-TEST(NewmarkKinematics, RefusesParametersOutOfRangeAndSaysWhy) {
+TEST(NewmarkKinematics, RejectsParametersOutOfRangeAndSaysWhy) {
   EXPECT_THROW((NewmarkKinematics{{0.02, -1.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((NewmarkKinematics{{0.02, 0.0}, 0.0}), ConfigError);
   try {

@@ -16,7 +16,7 @@ constexpr double kOmega = 12.0;
 double displacement_m(double t) { return 0.01 * std::sin(kOmega * t); }
 double force_n(double t) { return 1e6 * 0.01 * std::sin(kOmega * t + 0.5); }
 
-TEST(OptimalPick, FindsTheForceOfTheInstantAtWhichTheSpecimenWasThere) {
+TEST(OptimalPick, ReturnsForceOfTheTimeTargetWasReached) {
   constexpr double kLead_s = 4.3e-3;  // the specimen is early by that
   OptimalPick pick{{0.012}, kPeriod_s};
   for (int i = 0; i < 2000; ++i) {
@@ -32,19 +32,19 @@ TEST(OptimalPick, FindsTheForceOfTheInstantAtWhichTheSpecimenWasThere) {
   }
 }
 
-TEST(OptimalPick, TakesTheNearestWhereTheSpecimenWasNeverThere) {
+TEST(OptimalPick, ReturnsNearestForceIfTargetWasNotReached) {
   OptimalPick pick{{0.010}, kPeriod_s};
   for (int i = 0; i <= 10; ++i) static_cast<void>(pick.corrected_force({0.0, 1e-3 * i, 100.0 * i}));
   EXPECT_EQ(pick.corrected_force({0.5, 0.009, 900.0}), 1000.0);  // the sample at 10 mm
 }
 
-TEST(OptimalPick, LooksBackNoFurtherThanItsWindow) {
+TEST(OptimalPick, SearchesOnlyItsWindow) {
   OptimalPick pick{{0.005}, kPeriod_s};
   for (int i = 0; i <= 10; ++i) static_cast<void>(pick.corrected_force({1.0, 1e-3 * i, 100.0 * i}));
   EXPECT_EQ(pick.corrected_force({0.0, 0.011, 1100.0}), 600.0);
 }
 
-TEST(OptimalPick, IsTheIdentityWhereTheSpecimenIsAtTheTarget) {
+TEST(OptimalPick, IsTheIdentityWithoutTrackingError) {
   OptimalPick pick{{0.010}, kPeriod_s};
   for (int i = 0; i < 100; ++i) {
     const double t = kPeriod_s * i;
@@ -52,7 +52,7 @@ TEST(OptimalPick, IsTheIdentityWhereTheSpecimenIsAtTheTarget) {
   }
 }
 
-TEST(OptimalPick, RefusesAWindowOutOfRange) {
+TEST(OptimalPick, RejectsAWindowOutOfRange) {
   EXPECT_THROW((OptimalPick{{0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((OptimalPick{{1.5}, kPeriod_s}), ConfigError);
   EXPECT_THROW((OptimalPick{{1e-4}, kPeriod_s}), ConfigError);

@@ -36,7 +36,7 @@ TEST(ParameterCheck, NamesValueRangeAndReason) {
             "window_s is 0.001; expected 3 to 1000000 control periods of 0.001 s, because a fit has three points");
 }
 
-TEST(ParameterCheck, ReturnsWhatItAccepts) {
+TEST(ParameterCheck, ReturnsAcceptedValue) {
   EXPECT_EQ(checked_parameter("delay_s", 0.0, {0.0, 1.0}, ""), 0.0);
   EXPECT_EQ(checked_parameter("delay_s", 1.0, {0.0, 1.0}, ""), 1.0);
   EXPECT_EQ(checked_periods("window_s", 0.0104, 0.001, 3, ""), 10U);

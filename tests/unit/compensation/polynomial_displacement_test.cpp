@@ -128,7 +128,7 @@ TEST(PolynomialDisplacement, AmplifiesWhiteNoiseByTheRootOfItsSquaredWeights) {
   EXPECT_NEAR(square / kSamples, 69.0, 69.0 * 4.0 * std::sqrt(2.35 * 2.0 / kSamples));
 }
 
-TEST(PolynomialDisplacement, BeginsWithTheOrderThatHistoryAllows) {
+TEST(PolynomialDisplacement, StartsWithOrderThatHistoryAllows) {
   PolynomialDisplacement compensator{3, 2ms, kPeriod};  // points 2 samples apart
   const auto cubic = [](double time_s) { return 0.1 + 3.0 * time_s; };
   for (int i = 0; i < 20; ++i) {
@@ -183,7 +183,7 @@ std::string refusal(int order, Duration delay, Duration period, Duration spacing
   return {};
 }
 
-TEST(PolynomialDisplacement, RefusesParametersOutOfRangeAndSaysWhy) {
+TEST(PolynomialDisplacement, RejectsParametersOutOfRangeAndSaysWhy) {
   EXPECT_EQ(refusal(0, 1ms, 1ms), "order is 0; expected an integer from 1 to 4");
   EXPECT_EQ(refusal(5, 1ms, 1ms), "order is 5; expected an integer from 1 to 4");
   EXPECT_THAT(refusal(1, -1ms, 1ms), HasSubstr("delay is -0.001 s; expected at least 0 s"));

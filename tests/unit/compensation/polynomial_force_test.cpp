@@ -62,7 +62,7 @@ TEST(PolynomialForce, HasTheFrequencyResponseOfBackwardDifferences) {
       kPeriod_s, 2 * kSpacing);
 }
 
-TEST(PolynomialForce, RefusesParametersOutOfRange) {
+TEST(PolynomialForce, RejectsParametersOutOfRange) {
   EXPECT_THROW((PolynomialForce{{0, 0.01, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((PolynomialForce{{5, 0.01, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((PolynomialForce{{2, -0.01, 0.0}, kPeriod_s}), ConfigError);
@@ -71,7 +71,7 @@ TEST(PolynomialForce, RefusesParametersOutOfRange) {
   EXPECT_THROW((PolynomialForce{{2, 0.01, 0.0}, 2.0}), ConfigError);
 }
 
-TEST(NoForceCompensation, HandsTheMeasuredForceOn) {
+TEST(NoForceCompensation, ReturnsMeasuredForce) {
   NoForceCompensation none;
   EXPECT_EQ(corrected(none, 123.456), 123.456);
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPeriod_s = 1.0 / 1024.0;
 
-TEST(RecursiveLeastSquares, TellsADelayOfPartsOfASample) {
+TEST(RecursiveLeastSquares, EstimatesFractionalDelay) {
   // The straight line between samples is a weighted mean of two of them, late by the right part of a sample up to
   // (w T)^2 T / 16: below a microsecond.
   for (const double delay_s : {0.3 * kPeriod_s, 12.34e-3, 20e-3, 43.21e-3}) {
@@ -21,12 +21,12 @@ TEST(RecursiveLeastSquares, TellsADelayOfPartsOfASample) {
   }
 }
 
-TEST(RecursiveLeastSquares, TellsTheDelayOfAChirp) {
+TEST(RecursiveLeastSquares, EstimatesDelayOfChirp) {
   RecursiveLeastSquares estimator{{}, kPeriod_s};
   EXPECT_NEAR(estimate_of(estimator, chirp_m, 17.77e-3, kPeriod_s, 20.0), 17.77e-3, 1e-6);
 }
 
-TEST(RecursiveLeastSquares, TellsGainAndDelayApart) {
+TEST(RecursiveLeastSquares, SeparatesGainAndDelay) {
   RecursiveLeastSquares estimator{{}, kPeriod_s};
   const auto motion = [](double t) { return sine_m(3.0, t); };
   EXPECT_NEAR(estimate_of(estimator, motion, 17.77e-3, kPeriod_s, 15.0, 0.7), 17.77e-3, 1e-6);
@@ -41,7 +41,7 @@ TEST(RecursiveLeastSquares, IsUnbiasedByNoise) {
   EXPECT_NEAR(estimate_s, 17.77e-3, 16e-6);
 }
 
-TEST(RecursiveLeastSquares, LearnsNothingBelowItsMotionOrFromWhatDoesNotFollow) {
+TEST(RecursiveLeastSquares, IgnoresSmallOrUncorrelatedMotion) {
   const auto motion = [](double t) { return sine_m(3.0, t); };
   RecursiveLeastSquares::Parameters parameters;
   parameters.motion_m_min = 4e-3;  // 5 mm are 3.5 in the root mean square
@@ -51,7 +51,7 @@ TEST(RecursiveLeastSquares, LearnsNothingBelowItsMotionOrFromWhatDoesNotFollow) 
   EXPECT_EQ(estimate_of(unfollowed, motion, 43e-3, kPeriod_s, 10.0, 0.1), 20e-3);
 }
 
-TEST(RecursiveLeastSquares, RefusesParametersOutOfRange) {
+TEST(RecursiveLeastSquares, RejectsParametersOutOfRange) {
   EXPECT_THROW((RecursiveLeastSquares{{{}, 0.0, 1e-4}, kPeriod_s}), ConfigError);
   EXPECT_THROW((RecursiveLeastSquares{{{}, 1.0, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((RecursiveLeastSquares{{{}, 1.0, 1e-4}, 0.0}), ConfigError);

@@ -42,7 +42,7 @@ TEST(TransferSystemModel, IsDiscretisedExactly) {
   }
 }
 
-TEST(TransferSystemModel, IsRefusedWhereItCannotBeInverted) {
+TEST(TransferSystemModel, RejectsModelWithoutInverse) {
   TransferSystemModel model;
   EXPECT_NO_THROW(checked(model));
   model.gain = 0.0;

@@ -23,7 +23,7 @@ TwoStageAdaptive::Parameters coarse(double delay_s) {
   return parameters;
 }
 
-TEST(TwoStageAdaptive, IsItsPolynomialBeforeItLearns) {
+TEST(TwoStageAdaptive, EqualsPolynomialBeforeLearning) {
   constexpr double kDelay_s = 20 * kPeriod_s;
   const auto closed_form = [](double omega) {
     const Complex z = std::polar(1.0, -omega * kDelay_s);
@@ -38,7 +38,7 @@ TEST(TwoStageAdaptive, IsItsPolynomialBeforeItLearns) {
       kPeriod_s, 60);
 }
 
-TEST(TwoStageAdaptive, IsTheIdentityAtZeroCoarseDelayBeforeItLearns) {
+TEST(TwoStageAdaptive, IsTheIdentityAtZeroDelayBeforeLearning) {
   TwoStageAdaptive compensator{coarse(0.0), kPeriod_s};
   for (int i = 0; i < 100; ++i) {
     const double target_m = std::sin(0.7 * i * i);
@@ -65,7 +65,7 @@ double worst_error(Compensator&& compensator, double noise_m) {
   return worst_m / 10e-3;
 }
 
-TEST(TwoStageAdaptive, MakesUpForWhatThePolynomialLeaves) {
+TEST(TwoStageAdaptive, CompensatesResidualOfPolynomial) {
   // Actuator of amplitude 1/1.05 and a delay of 21 ms, coarse delay of 20 ms. The amplitude alone leaves the
   // polynomial with 5 %.
   const double polynomial = worst_error(PolynomialDisplacement{{3, 0.020, 0.0}, kPeriod_s}, 0.0);
@@ -87,7 +87,7 @@ TEST(TwoStageAdaptive, BoundsItsCoefficients) {
   EXPECT_EQ(compensator.theta().cwiseAbs().maxCoeff(), 1.2);
 }
 
-TEST(TwoStageAdaptive, RefusesParametersOutOfRange) {
+TEST(TwoStageAdaptive, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     TwoStageAdaptive::Parameters parameters;
     change(parameters);

@@ -34,7 +34,7 @@ TEST(UpperBoundDelay, IsTheIdentityAtZero) {
   }
 }
 
-TEST(UpperBoundDelay, RefusesParametersOutOfRange) {
+TEST(UpperBoundDelay, RejectsParametersOutOfRange) {
   EXPECT_THROW((UpperBoundDelay{{-0.01, 3, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((UpperBoundDelay{{0.02, 0, 0.0}, kPeriod_s}), ConfigError);
   EXPECT_THROW((UpperBoundDelay{{0.02, 3, 0.001}, kPeriod_s}), ConfigError);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPeriod_s = 1.0 / 1024.0;
 
-TEST(ZeroCrossingSlope, TellsADelayOfPartsOfASample) {
+TEST(ZeroCrossingSlope, EstimatesFractionalDelay) {
   // Straight lines between samples: the sine's third derivative moves a crossing by less than (w T)^2 T / 16, below
   // a microsecond at 3 Hz.
   for (const double delay_s : {0.3 * kPeriod_s, 12.34e-3, 20e-3, 43.21e-3}) {
@@ -21,12 +21,12 @@ TEST(ZeroCrossingSlope, TellsADelayOfPartsOfASample) {
   }
 }
 
-TEST(ZeroCrossingSlope, TellsTheDelayOfAChirp) {
+TEST(ZeroCrossingSlope, EstimatesDelayOfChirp) {
   ZeroCrossingSlope estimator{{}, kPeriod_s};
   EXPECT_NEAR(estimate_of(estimator, chirp_m, 17.77e-3, kPeriod_s, 20.0), 17.77e-3, 2e-6);  // 5 Hz at the end
 }
 
-TEST(ZeroCrossingSlope, IsNotMovedByAGain) {
+TEST(ZeroCrossingSlope, IsIndependentOfGain) {
   ZeroCrossingSlope estimator{{}, kPeriod_s};
   const auto motion = [](double t) { return sine_m(3.0, t); };
   EXPECT_NEAR(estimate_of(estimator, motion, 17.77e-3, kPeriod_s, 10.0, 0.7), 17.77e-3, 1e-6);
@@ -56,7 +56,7 @@ TEST(ZeroCrossingSlope, AveragesAnOffsetOfTheSensor) {
   EXPECT_NEAR(estimate_s, 17.77e-3, 1.07e-3 / 38.0);
 }
 
-TEST(ZeroCrossingSlope, LearnsNothingFromSlowCrossings) {
+TEST(ZeroCrossingSlope, IgnoresSlowCrossings) {
   ZeroCrossingSlope::Parameters parameters;
   parameters.slope_m_per_s_min = 0.1;  // 3 Hz and 5 mm cross with 0.094
   ZeroCrossingSlope estimator{parameters, kPeriod_s};
@@ -65,7 +65,7 @@ TEST(ZeroCrossingSlope, LearnsNothingFromSlowCrossings) {
             20e-3);
 }
 
-TEST(ZeroCrossingSlope, RefusesParametersOutOfRange) {
+TEST(ZeroCrossingSlope, RejectsParametersOutOfRange) {
   const auto refuses = [](auto change) {
     ZeroCrossingSlope::Parameters parameters;
     change(parameters);

@@ -165,7 +165,7 @@ class CoordinatorTest : public testing::Test {
   std::vector<Event> told_;
 };
 
-TEST_F(CoordinatorTest, AnnouncesTheTestOnceItHasListenedForAnOlderCoordinator) {
+TEST_F(CoordinatorTest, AnnouncesTestAfterListeningForOlderCoordinator) {
   make();
   TestAnnouncement announcement;
   advance();
@@ -207,7 +207,7 @@ TEST_F(CoordinatorTest, ArmsWhenAllAreReadyAndStartsWhenAllAreArmed) {
   EXPECT_EQ(commands[1].substructure, 1);
 }
 
-TEST_F(CoordinatorTest, NamesWhoDidNotAppear) {
+TEST_F(CoordinatorTest, NamesSubstructureThatDidNotAppear) {
   make();
   advance();
   advance(milliseconds{300});
@@ -221,7 +221,7 @@ TEST_F(CoordinatorTest, NamesWhoDidNotAppear) {
   EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"b"}));
 }
 
-TEST_F(CoordinatorTest, NamesWhoDidNotArm) {
+TEST_F(CoordinatorTest, NamesSubstructureThatDidNotArm) {
   make();
   advance();
   advance(milliseconds{300});
@@ -277,7 +277,7 @@ TEST_F(CoordinatorTest, CompletesEveryStepOnceAndInOrder) {
   EXPECT_NEAR(exchanges_.at(3, exchanges_.column("round_trip_us")), 2000.0, 1e-6);
 }
 
-TEST_F(CoordinatorTest, EachCommandCarriesTheStepsBefore) {
+TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {
   make();
   start();
   for (Step step = 0; step < 5; ++step) {
@@ -300,7 +300,7 @@ TEST_F(CoordinatorTest, EachCommandCarriesTheStepsBefore) {
   EXPECT_EQ(commands[0].point_count, 1);
 }
 
-TEST_F(CoordinatorTest, RepeatsACommandToThoseWhoHaveNotAnswered) {
+TEST_F(CoordinatorTest, RepeatsCommandToSilentSubstructures) {
   make();
   start();
   take_commands();
@@ -322,7 +322,7 @@ TEST_F(CoordinatorTest, RepeatsACommandToThoseWhoHaveNotAnswered) {
   EXPECT_EQ(exchanges_.at(1, exchanges_.column("attempts")), 3.0);
 }
 
-TEST_F(CoordinatorTest, InPacedModeASlowStepIsNotTakenForALostCommand) {
+TEST_F(CoordinatorTest, PacedModeDoesNotRetrySlowStep) {
   make(CouplingMode::paced, 5, false, 100.0);  // a step lasts a second
   start();
   answer(0, 0);
@@ -339,7 +339,7 @@ TEST_F(CoordinatorTest, InPacedModeASlowStepIsNotTakenForALostCommand) {
   EXPECT_EQ(take_commands().size(), 2U);
 }
 
-TEST_F(CoordinatorTest, InPacedModeCommandsKeepToTheirTime) {
+TEST_F(CoordinatorTest, PacedModeSendsCommandsOnTime) {
   make(CouplingMode::paced, 20);
   start();  // step 0 is out
   std::vector<Instant> sent;
@@ -381,7 +381,7 @@ TEST_F(CoordinatorTest, PausesAndResumes) {
   EXPECT_EQ(subjects(EventCode::test_resumed).size(), 1U);
 }
 
-TEST_F(CoordinatorTest, AForceThatIsNotFiniteEndsTheTest) {
+TEST_F(CoordinatorTest, NonFiniteForceEndsTest) {
   make();
   start();
   answer(0, 0);
@@ -393,7 +393,7 @@ TEST_F(CoordinatorTest, AForceThatIsNotFiniteEndsTheTest) {
   EXPECT_EQ(exchanges_.size(), 2U) << "the exchange that ended the test is on record";
 }
 
-TEST_F(CoordinatorTest, AForceVectorOfAnotherSizeEndsTheTest) {
+TEST_F(CoordinatorTest, WrongForceVectorSizeEndsTest) {
   make();
   start();
   answer(0, 0);
@@ -408,7 +408,7 @@ TEST_F(CoordinatorTest, AForceVectorOfAnotherSizeEndsTheTest) {
   EXPECT_EQ(integrator_->advances, 0);
 }
 
-TEST_F(CoordinatorTest, AMotionThatIsNotFiniteEndsTheTest) {
+TEST_F(CoordinatorTest, NonFiniteMotionEndsTest) {
   make();
   integrator_->diverges_after = 3;
   start();
@@ -422,7 +422,7 @@ TEST_F(CoordinatorTest, AMotionThatIsNotFiniteEndsTheTest) {
   for (const DisplacementCommand& command : take_commands()) EXPECT_TRUE(command.newest().displacement_m.allFinite());
 }
 
-TEST_F(CoordinatorTest, LosesASubstructureWithItsLease) {
+TEST_F(CoordinatorTest, LosesSubstructureWhenLeaseExpires) {
   make();
   start();
   for (int i = 0; i < 5; ++i) {
@@ -434,7 +434,7 @@ TEST_F(CoordinatorTest, LosesASubstructureWithItsLease) {
   EXPECT_EQ(exchanges_.size(), 2U) << "the unanswered exchange is on record";
 }
 
-TEST_F(CoordinatorTest, NamesAllWhoAreLostAtOnce) {
+TEST_F(CoordinatorTest, NamesAllLostSubstructures) {
   make();
   start();
   advance(seconds{2});
@@ -442,7 +442,7 @@ TEST_F(CoordinatorTest, NamesAllWhoAreLostAtOnce) {
   EXPECT_EQ(subjects(EventCode::participant_lost), (std::multiset<std::string>{"a", "b"}));
 }
 
-TEST_F(CoordinatorTest, ASubstructureThatIsStoppedByHandInterruptsTheTest) {
+TEST_F(CoordinatorTest, ManuallyStoppedSubstructureInterruptsTest) {
   make();
   start();
   say(0, LifecycleState::stopping);
@@ -450,7 +450,7 @@ TEST_F(CoordinatorTest, ASubstructureThatIsStoppedByHandInterruptsTheTest) {
   EXPECT_EQ(reason(), StopReason::interrupted);
 }
 
-TEST_F(CoordinatorTest, ASubstructureThatHasLeftOfItsOwnAccordIsNotLost) {
+TEST_F(CoordinatorTest, DepartedSubstructureIsNotLost) {
   make();
   start();
   say(1, LifecycleState::finished);
@@ -459,7 +459,7 @@ TEST_F(CoordinatorTest, ASubstructureThatHasLeftOfItsOwnAccordIsNotLost) {
   EXPECT_TRUE(subjects(EventCode::participant_lost).empty());
 }
 
-TEST_F(CoordinatorTest, AFaultAtASiteEndsTheTestAsAnInterlock) {
+TEST_F(CoordinatorTest, SiteFaultEndsTestAsInterlock) {
   make();
   start();
   say(0, LifecycleState::running, FaultFlags::force_limit);
@@ -467,7 +467,7 @@ TEST_F(CoordinatorTest, AFaultAtASiteEndsTheTestAsAnInterlock) {
   EXPECT_EQ(reason(), StopReason::interlock);
 }
 
-TEST_F(CoordinatorTest, AFailedRecordingEndsTheTestOnlyIfTheScenarioSaysSo) {
+TEST_F(CoordinatorTest, FailedRecordingEndsTestOnlyIfConfigured) {
   make(CouplingMode::lockstep, 5, false);
   start();
   say(0, LifecycleState::running, FaultFlags::records_dropped);
@@ -483,7 +483,7 @@ TEST_F(CoordinatorTest, AFailedRecordingEndsTheTestOnlyIfTheScenarioSaysSo) {
   EXPECT_EQ(reason(), StopReason::recording_failed);
 }
 
-TEST_F(CoordinatorTest, AStopIsRepeatedUntilEveryoneIsAtRest) {
+TEST_F(CoordinatorTest, RepeatsStopUntilAllAreAtRest) {
   make();
   start();
   take_control();
@@ -505,7 +505,7 @@ TEST_F(CoordinatorTest, AStopIsRepeatedUntilEveryoneIsAtRest) {
   EXPECT_EQ(statuses.back().state, LifecycleState::finished) << "the last word goes out";
 }
 
-TEST_F(CoordinatorTest, DoesNotWaitForeverForTheOthersToComeToRest) {
+TEST_F(CoordinatorTest, WaitsLimitedTimeForOthersToRest) {
   make();
   start();
   coordinator_->request_stop(StopReason::interrupted);
@@ -520,7 +520,7 @@ TEST_F(CoordinatorTest, DoesNotWaitForeverForTheOthersToComeToRest) {
   EXPECT_TRUE(coordinator_->is_done());
 }
 
-TEST_F(CoordinatorTest, AnEmergencyStopEndsTheTest) {
+TEST_F(CoordinatorTest, EmergencyStopEndsTest) {
   make();
   start();
   operator_says(ControlVerb::emergency_stop);
@@ -528,7 +528,7 @@ TEST_F(CoordinatorTest, AnEmergencyStopEndsTheTest) {
   EXPECT_EQ(subjects(EventCode::emergency_stop).size(), 1U);
 }
 
-TEST_F(CoordinatorTest, TheYoungerOfTwoCoordinatorsLeavesAndTouchesNothing) {
+TEST_F(CoordinatorTest, YoungerCoordinatorLeavesWithoutEffect) {
   make();
   ParticipantStatus other;
   other.id = "coordinator";
@@ -546,7 +546,7 @@ TEST_F(CoordinatorTest, TheYoungerOfTwoCoordinatorsLeavesAndTouchesNothing) {
   EXPECT_FALSE(announcements_.take(announcement));
 }
 
-TEST_F(CoordinatorTest, ARunningCoordinatorStaysWhenAnotherAppears) {
+TEST_F(CoordinatorTest, StaysWhenSecondCoordinatorAppears) {
   make();
   start();
   ParticipantStatus other;
@@ -562,7 +562,7 @@ TEST_F(CoordinatorTest, ARunningCoordinatorStaysWhenAnotherAppears) {
   EXPECT_EQ(completed(), 1);
 }
 
-TEST_F(CoordinatorTest, OthersCannotArmStartOrStopInItsName) {
+TEST_F(CoordinatorTest, IgnoresControlFromOtherSenders) {
   make();
   start();
   TestControl message;

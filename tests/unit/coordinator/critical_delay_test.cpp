@@ -50,7 +50,7 @@ double one_dof_critical_delay_s(double mass, double damping, double numerical, d
   return smallest;
 }
 
-TEST(CriticalDelay, OfOneDegreeOfFreedomIsKnown) {
+TEST(CriticalDelay, SingleDofMatchesClosedForm) {
   constexpr double kMass = 3.0;
   constexpr double kTotal = 1200.0;  // 20 rad/s
   for (const double ratio : {0.001, 0.02, 0.2, 0.9}) {
@@ -68,7 +68,7 @@ TEST(CriticalDelay, OfOneDegreeOfFreedomIsKnown) {
   }
 }
 
-TEST(CriticalDelay, OfALightlyDampedStructureIsItsDampingOverTheStiffness) {
+TEST(CriticalDelay, LightDampingGivesDampingOverStiffness) {
   // First order in tau: c_eq = -k tau uses up c.
   const double damping = 2.0 * 1e-4 * std::sqrt(3.0 * 1200.0);
   const auto critical =
@@ -150,7 +150,7 @@ double characteristic_residual(const LinearStructure& structure, const std::vect
   return decomposition.singularValues().minCoeff() / scale;
 }
 
-TEST(CriticalDelay, OfTheBenchmarkCasesIsAsPublished) {
+TEST(CriticalDelay, BenchmarkCasesMatchPublishedValues) {
   for (const BenchmarkCase& the_case : kBenchmark) {
     const LinearStructure structure = benchmark_structure(the_case);
     const CriticalDelay critical = critical_delay(structure, {benchmark_specimen()}, 0);
@@ -183,7 +183,7 @@ double growth(const LinearStructure& structure, const CoupledSite& site, const E
   return late / early;
 }
 
-TEST(CriticalDelay, PartsDecayFromGrowthInTheTimeDomain) {
+TEST(CriticalDelay, SeparatesDecayFromGrowthInTimeDomain) {
   LinearStructure structure = test::two_storeys();
   const VibrationModes modes = vibration_modes(structure);
   structure.damping_n_s_per_m = rayleigh_damping(structure, rayleigh_coefficients(0.02, 1, 2, modes));
@@ -201,7 +201,7 @@ TEST(CriticalDelay, PartsDecayFromGrowthInTheTimeDomain) {
   }
 }
 
-TEST(CriticalDelay, HoldsForSitesOfSeveralDegreesOfFreedomAndBesideOthers) {
+TEST(CriticalDelay, HoldsForSeveralDofsAndSites) {
   LinearStructure structure = test::shear_building(4, 2.0e4, 4.0e6);
   structure.damping_n_s_per_m =
       rayleigh_damping(structure, rayleigh_coefficients(0.03, 1, 3, vibration_modes(structure)));
@@ -223,7 +223,7 @@ TEST(CriticalDelay, HoldsForSitesOfSeveralDegreesOfFreedomAndBesideOthers) {
   }
 }
 
-TEST(CriticalDelay, FindsANarrowResonance) {
+TEST(CriticalDelay, FindsNarrowResonance) {
   // A light, hardly damped appendage: its resonance lifts the loop gain of a stiff, well damped
   // structure over one in a band far narrower than the sweep.
   Eigen::MatrixXd mass = Eigen::Vector2d(1000.0, 1.0).asDiagonal();
@@ -242,13 +242,13 @@ TEST(CriticalDelay, FindsANarrowResonance) {
   EXPECT_LT(characteristic_residual(with_site, {site}, 0, critical), 1e-13);
 }
 
-TEST(CriticalDelay, IsZeroWithoutDampingAndWhenUnstableAnyway) {
+TEST(CriticalDelay, IsZeroWithoutDampingOrWhenUnstable) {
   const std::vector<CoupledSite> sites{spring(InterfaceMap{1, {{0}}}, 600.0)};
   EXPECT_NEAR(critical_delay(test::oscillator(3.0, 0.0, 1200.0), sites, 0).delay_s, 0.0, 1e-10);
   EXPECT_EQ(critical_delay(test::oscillator(3.0, -1.0, 1200.0), sites, 0).delay_s, 0.0);
 }
 
-TEST(CriticalDelay, IsZeroWhenTheMeasuredInertiaOutweighsTheStructure) {
+TEST(CriticalDelay, IsZeroWhenMeasuredInertiaExceedsStructure) {
   CoupledSite site = spring(InterfaceMap{1, {{0}}}, 600.0);
   site.mass_kg = one_by_one(2.9);
   EXPECT_GT(critical_delay(test::oscillator(3.0, 20.0, 1200.0), {site}, 0).delay_s, 0.0);

@@ -10,7 +10,7 @@ namespace {
 
 const GroundMotion kRamp{.dt_s = 0.5, .start_s = 0.0, .acceleration_m_per_s2 = {1.0, 3.0, -1.0}};
 
-TEST(GroundMotion, IsStraightBetweenItsValues) {
+TEST(GroundMotion, InterpolatesLinearly) {
   EXPECT_EQ(kRamp.at(0.0), 1.0);
   EXPECT_EQ(kRamp.at(0.125), 1.5);
   EXPECT_EQ(kRamp.at(0.5), 3.0);
@@ -18,7 +18,7 @@ TEST(GroundMotion, IsStraightBetweenItsValues) {
   EXPECT_EQ(kRamp.at(1.0), -1.0);
 }
 
-TEST(GroundMotion, IsZeroOutside) {
+TEST(GroundMotion, IsZeroOutsideItsDuration) {
   EXPECT_EQ(kRamp.at(1.001), 0.0);
   EXPECT_EQ(kRamp.at(1e300), 0.0);
   EXPECT_EQ(kRamp.at(-0.001), 0.0);
@@ -26,7 +26,7 @@ TEST(GroundMotion, IsZeroOutside) {
   EXPECT_EQ(GroundMotion{}.at(0.0), 0.0);
 }
 
-TEST(GroundMotion, MeetsItsLastValueDespiteRounding) {
+TEST(GroundMotion, ReachesLastValueDespiteRounding) {
   GroundMotion motion{.dt_s = 0.02, .start_s = 0.0, .acceleration_m_per_s2 = std::vector<double>(1559, 2.0)};
   for (int step = 0; step <= 31160; ++step) ASSERT_NEAR(motion.at(step * 0.001), 2.0, 1e-15) << step;
   EXPECT_EQ(motion.at(31.161), 0.0);

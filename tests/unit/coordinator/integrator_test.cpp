@@ -96,7 +96,7 @@ TYPED_TEST(IntegratorTest, IsStableUpToTheLimitAndNotBeyond) {
   EXPECT_GT(peak(2.001), 1e6);
 }
 
-TYPED_TEST(IntegratorTest, DampingDoesNotLowerTheStabilityLimit) {
+TYPED_TEST(IntegratorTest, DampingKeepsTheStabilityLimit) {
   // The difference equation's roots multiply to (1 - z)/(1 + z), z = ratio omega dt, and add to
   // (2 - (omega dt)^2)/(1 + z): one of them passes -1 at omega dt = 2 for any ratio.
   constexpr double kRatio = 0.5;
@@ -202,7 +202,7 @@ TYPED_TEST(IntegratorTest, DoesNotAllocateInAStep) {
   }
 }
 
-TYPED_TEST(IntegratorTest, RefusesWhatItCannotIntegrate) {
+TYPED_TEST(IntegratorTest, RejectsInvalidInput) {
   LinearStructure structure = test::two_storeys();
   EXPECT_THROW((TypeParam{structure, 0.0}), ConfigError);
   EXPECT_THROW((TypeParam{structure, -0.001}), ConfigError);
@@ -213,7 +213,7 @@ TYPED_TEST(IntegratorTest, RefusesWhatItCannotIntegrate) {
   EXPECT_THROW((TypeParam{structure, 0.001}), ConfigError);
 }
 
-TEST(CentralDifference, FollowsItsEquationAsPublished) {
+TEST(CentralDifference, FollowsPublishedEquation) {
   // The formula in its usual form, with u_{i-1} instead of differences.
   const LinearStructure structure = full_structure(true);
   constexpr double kStep_s = 0.02;
@@ -238,7 +238,7 @@ TEST(CentralDifference, FollowsItsEquationAsPublished) {
   }
 }
 
-TEST(ExplicitNewmark, MovesAsCentralDifferencesDo) {
+TEST(ExplicitNewmark, EqualsCentralDifference) {
   for (const bool has_symmetric_damping : {true, false}) {
     const LinearStructure structure = full_structure(has_symmetric_damping);
     const InitialMotion initial{Eigen::VectorXd::Constant(6, 0.1), Eigen::VectorXd::Constant(6, -0.5)};

@@ -57,7 +57,7 @@ TEST(At2, ReadsBothKindsOfHeader) {
   }
 }
 
-TEST(At2, ReadsEveryLineEnd) {
+TEST(At2, ReadsEveryLineEnding) {
   const std::string text = at2("NPTS= 4, DT= .01 SEC", "1 2\n3\n\n4");
   const GroundMotion expected = parse(text);
   for (const char* end : {"\r\n", "\r\r\n", "\r"}) {
@@ -74,20 +74,20 @@ TEST(At2, ReadsFortranNumbers) {
   EXPECT_DOUBLE_EQ(motion.acceleration_m_per_s2[3], 20.0 * kG);
 }
 
-TEST(At2, HeaderLinesMayHoldAnyText) {
+TEST(At2, AcceptsAnyTextInHeaderLines) {
   const GroundMotion motion = parse("1559 points\n0.1 0.2 0.3\nThe units are (g)\nNPTS= 2, DT= .01 SEC\n1 2\n");
   EXPECT_EQ(motion.acceleration_m_per_s2.size(), 2U);
   EXPECT_EQ(parse("\n\n\n2 .01 NPTS, DT\n1 2").acceleration_m_per_s2.size(), 2U);
 }
 
-TEST(At2, ScalesAndTakesAnotherUnit) {
+TEST(At2, AppliesScaleAndUnit) {
   const std::string text = at2("NPTS= 1, DT= .01 SEC", "2.0");
   EXPECT_DOUBLE_EQ(parse(text, {.scale = -0.5, .unit = {}, .dt_s = {}}).acceleration_m_per_s2[0], -kG);
   EXPECT_DOUBLE_EQ(
       parse(text, {.scale = 1.0, .unit = AccelerationUnit::cm_per_s2, .dt_s = {}}).acceleration_m_per_s2[0], 0.02);
 }
 
-TEST(At2, RefusesACountThatDisagreesWithTheHeader) {
+TEST(At2, RejectsCountThatDisagreesWithHeader) {
   EXPECT_EQ(complaint(at2("NPTS= 4, DT= .01 SEC", "1 2\n3\n")),
             "motion.txt:6: the file ends after 3 values, expected 4 values, as line 4 announces");
   EXPECT_EQ(complaint(at2("NPTS= 4, DT= .01 SEC", "1 2\n3 4\n5\n6")),
@@ -95,7 +95,7 @@ TEST(At2, RefusesACountThatDisagreesWithTheHeader) {
   EXPECT_THAT(complaint(at2("NPTS= 4, DT= .01 SEC", "")), HasSubstr("after 0 values, expected 4"));
 }
 
-TEST(At2, RefusesTextInTheNumbers) {
+TEST(At2, RejectsTextBetweenNumbers) {
   EXPECT_EQ(complaint(at2("NPTS= 3, DT= .01 SEC", "1 2\nabc\n")),
             "motion.txt:6: found 'abc', expected an acceleration value");
   for (const char* word : {"nan", "inf", "1.0.0", "1,2", "0x10", "1e999", "--1", "+-1", "*******"}) {
@@ -103,7 +103,7 @@ TEST(At2, RefusesTextInTheNumbers) {
   }
 }
 
-TEST(At2, RefusesAHeaderWithoutStepOrCount) {
+TEST(At2, RejectsHeaderWithoutStepOrCount) {
   EXPECT_THAT(complaint(at2("NPTS= 3", "1 2 3")), AllOf(StartsWith("motion.txt:4: "), HasSubstr("no step DT")));
   EXPECT_THAT(complaint(at2("NPTS, DT= .01", "1 2 3")), HasSubstr("no number of points"));
   EXPECT_THAT(complaint(at2("NPTS= 3, DT= SEC", "1 2 3")), HasSubstr("no step DT"));
@@ -116,7 +116,7 @@ TEST(At2, RefusesAHeaderWithoutStepOrCount) {
   EXPECT_THAT(complaint("only one line", {}, "record.AT2"), StartsWith("record.AT2:1: "));
 }
 
-TEST(At2, RefusesOtherQuantitiesAndUnits) {
+TEST(At2, RejectsOtherQuantitiesAndUnits) {
   EXPECT_THAT(complaint("a\nb\nVELOCITY TIME HISTORY IN UNITS OF CM/S\nNPTS= 1, DT= .01 SEC\n1\n"),
               AllOf(StartsWith("motion.txt:3: "), HasSubstr("expected an acceleration")));
   const std::string in_gal = "a\nb\nACCELERATION TIME HISTORY IN UNITS OF CM/S/S\nNPTS= 1, DT= .01 SEC\n1\n";
@@ -141,14 +141,14 @@ TEST(Columns, ReadTwoWithBlanksCommentsAndWithoutAHeader) {
   EXPECT_DOUBLE_EQ(motion.acceleration_m_per_s2[2], 0.3 * kG);
 }
 
-TEST(Columns, KeepALateStart) {
+TEST(Columns, KeepLateStart) {
   const GroundMotion motion = parse("0.02 1\n0.04 2\n0.06 3", in_g());
   EXPECT_EQ(motion.start_s, 0.02);
   EXPECT_DOUBLE_EQ(motion.at(0.03), 1.5 * kG);
   EXPECT_THAT(complaint("-0.02 1\n0 2", in_g()), AllOf(StartsWith("motion.txt:1: "), HasSubstr("first time")));
 }
 
-TEST(Columns, TakeTheStepOfRoundedTimesFromTheWhole) {
+TEST(Columns, ComputeStepOfRoundedTimesFromWholeRecord) {
   std::string text;
   char line[64];
   for (int i = 0; i < 2000; ++i) {
@@ -158,7 +158,7 @@ TEST(Columns, TakeTheStepOfRoundedTimesFromTheWhole) {
   EXPECT_NEAR(parse(text, in_g()).dt_s, 1.0 / 1024.0, 1e-9);
 }
 
-TEST(Columns, RefuseUnevenSpacingAtItsLine) {
+TEST(Columns, RejectUnevenSpacingAtItsLine) {
   EXPECT_THAT(complaint("0 1\n0.01 2\n0.02 3\n0.04 4\n0.05 5", in_g()),
               AllOf(StartsWith("motion.txt:4: "), HasSubstr("equally spaced")));
   EXPECT_THAT(complaint("0 1\n0.01 2\n0.01 3\n", in_g()), StartsWith("motion.txt:3: "));
@@ -173,14 +173,14 @@ TEST(Columns, ReadOneWithTheStepGiven) {
   EXPECT_THAT(complaint("1\n2\n3", in_g()), AllOf(StartsWith("motion.txt:1: "), HasSubstr("step must be given")));
 }
 
-TEST(Columns, RefuseAnUnknownUnit) {
+TEST(Columns, RejectUnknownUnit) {
   EXPECT_THAT(complaint("0 1\n1 2"), HasSubstr("unit of the acceleration is unknown"));
   EXPECT_THAT(complaint("time_s,acceleration\n0,1\n1,2"), StartsWith("motion.txt:1: the unit"));
   EXPECT_THAT(complaint("time_s,a_m_per_s2\n0,1\n1,2", in_g()), HasSubstr("another unit"));
   EXPECT_THAT(complaint("milliseconds,a_g\n0,1\n1,2"), HasSubstr("expected 'time_s'"));
 }
 
-TEST(Columns, RefuseOtherTextAndOtherNumbersOfColumns) {
+TEST(Columns, RejectTextAndOtherColumnCounts) {
   EXPECT_EQ(complaint("0 1\n1 x\n", in_g()), "motion.txt:2: found 'x', expected a number");
   EXPECT_THAT(complaint("0 1\n1 2 3\n", in_g()), StartsWith("motion.txt:2: found 3 columns, expected 2"));
   EXPECT_THAT(complaint("0 1 2\n", in_g()), HasSubstr("one (acceleration) or two"));
@@ -189,7 +189,7 @@ TEST(Columns, RefuseOtherTextAndOtherNumbersOfColumns) {
   EXPECT_THAT(complaint("# nothing\n", in_g()), HasSubstr("holds no values"));
 }
 
-TEST(GroundMotionFile, RefusesEmptyFilesAndOptionsOutOfRange) {
+TEST(GroundMotionFile, RejectsEmptyFilesAndOptionsOutOfRange) {
   for (const char* text : {"", "\n\r\n", "  \t\n", "\xEF\xBB\xBF"}) {
     EXPECT_THAT(complaint(text), StartsWith("motion.txt:1: the file is empty, expected"));
   }
@@ -202,7 +202,7 @@ TEST(GroundMotionFile, RefusesEmptyFilesAndOptionsOutOfRange) {
               HasSubstr("above 1e6 m/s2"));
 }
 
-TEST(GroundMotionFile, SaysWhichFileCannotBeRead) {
+TEST(GroundMotionFile, ReportsFileThatCannotBeRead) {
   try {
     static_cast<void>(read_ground_motion("no_such_folder/motion.AT2"));
     FAIL() << "accepted";

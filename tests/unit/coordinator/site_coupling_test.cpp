@@ -18,7 +18,7 @@ CoupledSite spring(const InterfaceMap& interface, double stiffness_n_per_m) {
   return site;
 }
 
-TEST(SiteCoupling, SharesOfAllStoreysAddUpToOneInEachMode) {
+TEST(SiteCoupling, StoreySharesAddUpToOneInEachMode) {
   const LinearStructure structure = test::two_storeys();
   const VibrationModes modes = vibration_modes(structure);
   const auto lower = stiffness_share_by_mode(structure, modes, spring(InterfaceMap{2, {{0}}}, 4.0e6));
@@ -30,7 +30,7 @@ TEST(SiteCoupling, SharesOfAllStoreysAddUpToOneInEachMode) {
   EXPECT_NEAR(lower[0], 4.0 / (4.0 + 3.0 * (x - 1.0) * (x - 1.0)), 1e-12);
 }
 
-TEST(SiteCoupling, ADelayIsNegativeDamping) {
+TEST(SiteCoupling, DelayActsAsNegativeDamping) {
   const LinearStructure structure = test::oscillator(2.0, 0.0, 50.0);  // 5 rad/s
   const VibrationModes modes = vibration_modes(structure);
   const CoupledSite site = spring(InterfaceMap{1, {{0}}}, 30.0);
@@ -38,13 +38,13 @@ TEST(SiteCoupling, ADelayIsNegativeDamping) {
   EXPECT_NEAR(equivalent_damping_ratios(modes, site, 0.02)[0], -0.6 / (2.0 * 2.0 * 5.0), 1e-16);
 }
 
-TEST(SiteCoupling, AMotionWithoutStiffnessHasNoShare) {
+TEST(SiteCoupling, MotionWithoutStiffnessHasNoShare) {
   const LinearStructure structure = test::oscillator(2.0, 0.0, 0.0);
   const VibrationModes modes = vibration_modes(structure);
   EXPECT_TRUE(std::isnan(stiffness_share_by_mode(structure, modes, spring(InterfaceMap{1, {{0}}}, 0.0))[0]));
 }
 
-TEST(SiteCoupling, RefusesMatricesThatDoNotFit) {
+TEST(SiteCoupling, RejectsMatricesOfOtherSize) {
   const LinearStructure structure = test::two_storeys();
   CoupledSite site = spring(InterfaceMap{2, {{0}}}, 1.0);
   EXPECT_NO_THROW(require_consistent(structure, site));

@@ -24,7 +24,7 @@ class StepLedgerTest : public testing::Test {
   Instant now_{Duration{350}};
 };
 
-TEST_F(StepLedgerTest, IsCompleteWhenEverySubstructureHasAnsweredOnce) {
+TEST_F(StepLedgerTest, IsCompleteWhenEverySubstructureAnswered) {
   EXPECT_EQ(ledger_.enter(answer(1, 4, 11), now_), LedgerEntry::accepted);
   EXPECT_FALSE(ledger_.is_complete());
   EXPECT_EQ(ledger_.enter(answer(0, 4, 10), now_), LedgerEntry::accepted);
@@ -32,13 +32,13 @@ TEST_F(StepLedgerTest, IsCompleteWhenEverySubstructureHasAnsweredOnce) {
   EXPECT_EQ(ledger_.round_trip(1), Duration{250});
 }
 
-TEST_F(StepLedgerTest, DoesNotCountAnAnswerTwice) {
+TEST_F(StepLedgerTest, CountsEachAnswerOnce) {
   EXPECT_EQ(ledger_.enter(answer(1, 4, 11), now_), LedgerEntry::accepted);
   EXPECT_EQ(ledger_.enter(answer(1, 4, 11), now_), LedgerEntry::duplicate);
   EXPECT_FALSE(ledger_.is_complete());
 }
 
-TEST_F(StepLedgerTest, TurnsAwayWhatIsNotAnAnswerToTheOpenStep) {
+TEST_F(StepLedgerTest, RejectsAnswersToOtherSteps) {
   EXPECT_EQ(ledger_.enter(answer(1, 3, 11), now_), LedgerEntry::stale);
   EXPECT_EQ(ledger_.enter(answer(1, 5, 11), now_), LedgerEntry::foreign);
   EXPECT_EQ(ledger_.enter(answer(1, 4, 12), now_), LedgerEntry::foreign) << "another process than the one armed";
@@ -46,7 +46,7 @@ TEST_F(StepLedgerTest, TurnsAwayWhatIsNotAnAnswerToTheOpenStep) {
   EXPECT_FALSE(ledger_.has_answered(1));
 }
 
-TEST_F(StepLedgerTest, OpeningTheNextStepForgetsTheAnswers) {
+TEST_F(StepLedgerTest, OpeningNextStepClearsAnswers) {
   static_cast<void>(ledger_.enter(answer(0, 4, 10), now_));
   static_cast<void>(ledger_.enter(answer(1, 4, 11), now_));
   ledger_.open(5, now_);

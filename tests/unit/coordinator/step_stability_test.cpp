@@ -21,13 +21,13 @@ TEST(StepStability, IsTheShortestPeriodOverPi) {
   EXPECT_EQ(step_stability(modes).highest_frequency_rad_per_s, modes.frequency_rad_per_s[1]);
 }
 
-TEST(StepStability, RefusesAStepAboveTheLimitOnly) {
+TEST(StepStability, RejectsOnlyStepsAboveTheLimit) {
   const VibrationModes modes = vibration_modes(test::oscillator(1.0, 0.0, 400.0));  // 20 rad/s, limit 0.1 s
   EXPECT_NO_THROW(require_stable_step(modes, 0.0999999));
   EXPECT_THROW(require_stable_step(modes, 0.1000001), ConfigError);
 }
 
-TEST(StepStability, SaysFrequencyLimitAndStep) {
+TEST(StepStability, ErrorNamesFrequencyLimitAndStep) {
   const VibrationModes modes = vibration_modes(test::oscillator(1.0, 0.0, 400.0));
   try {
     require_stable_step(modes, 0.25);
@@ -37,7 +37,7 @@ TEST(StepStability, SaysFrequencyLimitAndStep) {
   }
 }
 
-TEST(StepStability, AStructureWithoutStiffnessHasNoLimit) {
+TEST(StepStability, StructureWithoutStiffnessHasNoLimit) {
   EXPECT_NO_THROW(require_stable_step(vibration_modes(test::oscillator(1.0, 0.0, 0.0)), 100.0));
 }
 

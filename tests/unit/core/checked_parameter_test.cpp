@@ -19,12 +19,12 @@ std::string refusal(double value, const Range& range) {
   return {};
 }
 
-TEST(CheckedParameter, HandsOnWhatLiesInItsRange) {
+TEST(CheckedParameter, ReturnsValueInRange) {
   EXPECT_EQ(checked("ratio", 0.0, kNotNegative), 0.0);
   EXPECT_EQ(checked("ratio", -3.5, kAnyNumber), -3.5);
 }
 
-TEST(CheckedParameter, SaysWhatWhatValueAndWhatWasExpected) {
+TEST(CheckedParameter, ErrorNamesParameterValueAndRange) {
   EXPECT_EQ(refusal(-2.5, kPositive), "ratio is -2.5; expected a number greater than 0");
   EXPECT_EQ(refusal(NAN, kAnyNumber), "ratio is NaN; expected a finite number");
   EXPECT_EQ(refusal(INFINITY, kPositive), "ratio is infinite; expected a number greater than 0");

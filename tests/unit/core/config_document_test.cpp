@@ -114,11 +114,9 @@ empty: {}
 none: []
 )";
 
-TEST(ConfigDocument, EffectiveHoldsEverythingReadWithDefaultsInTheOrderOfReading) {
-  EXPECT_EQ(effective_of(kFile), kEffective);
-}
+TEST(ConfigDocument, EffectiveListsAllValuesReadWithDefaults) { EXPECT_EQ(effective_of(kFile), kEffective); }
 
-TEST(ConfigDocument, EffectiveReadsBackToTheSameText) { EXPECT_EQ(effective_of(kEffective), kEffective); }
+TEST(ConfigDocument, EffectiveTextRoundTrips) { EXPECT_EQ(effective_of(kEffective), kEffective); }
 
 TEST(ConfigDocument, EffectiveDoesNotDependOnOrderOrForm) {
   const std::string reordered = R"(
@@ -154,7 +152,7 @@ TEST(ConfigDocument, EffectiveChangesWithAnyValue) {
   EXPECT_NE(effective_of(changed), kEffective);
 }
 
-TEST(ConfigDocument, EffectiveNumbersReadBackToTheSameBits) {
+TEST(ConfigDocument, EffectiveNumbersKeepTheirBits) {
   for (const double value :
        {0.1, 1.0 / 3.0, 5e-324, 1.7976931348623157e308, -2.2250738585072014e-308, 1e21, 1e22, 123e-7}) {
     Document first = Document::parse("{}", "test.yaml");
@@ -165,7 +163,7 @@ TEST(ConfigDocument, EffectiveNumbersReadBackToTheSameBits) {
   }
 }
 
-TEST(ConfigDocument, EffectiveTextsReadBackToTheSameBytes) {
+TEST(ConfigDocument, EffectiveStringsKeepTheirBytes) {
   for (const std::string& text :
        {std::string{"null"}, std::string{"Yes"}, std::string{"~"}, std::string{"1e5"}, std::string{".nan"},
         std::string{"- a"}, std::string{"a #b"}, std::string{" a "}, std::string{"\r\n"}, std::string{"\0\x01\x7F", 3},
@@ -178,12 +176,12 @@ TEST(ConfigDocument, EffectiveTextsReadBackToTheSameBytes) {
   }
 }
 
-TEST(ConfigDocument, AnEmptyConfigurationIsStillAMapping) {
+TEST(ConfigDocument, EmptyConfigurationIsAMapping) {
   EXPECT_EQ(Document::parse("{}", "test.yaml").effective(), "{}\n");
   EXPECT_EQ(Document::parse("{}\n", "test.yaml").root().keys().size(), 0U);
 }
 
-TEST(ConfigDocument, LoadsAFileAndKnowsItsDirectory) {
+TEST(ConfigDocument, LoadsFileAndKeepsItsDirectory) {
   const TemporaryFile file{"a: 1\n"};
   Document document = Document::load(file.path(), {"a=2"});
   EXPECT_EQ(document.root().number("a"), 2.0);
@@ -192,7 +190,7 @@ TEST(ConfigDocument, LoadsAFileAndKnowsItsDirectory) {
   EXPECT_NO_THROW(document.throw_if_errors());
 }
 
-TEST(ConfigDocument, SaysWhyAFileCannotBeRead) {
+TEST(ConfigDocument, ReportsWhyFileCannotBeRead) {
   try {
     (void)Document::load("no/such/file.yaml");
     FAIL() << "loaded";
@@ -202,7 +200,7 @@ TEST(ConfigDocument, SaysWhyAFileCannotBeRead) {
   EXPECT_THROW((void)Document::load(testing::TempDir()), ConfigError);
 }
 
-TEST(ConfigDocument, RefusesAnOversizedFileWithoutReadingAllOfIt) {
+TEST(ConfigDocument, RejectsOversizedFileBeforeReadingAll) {
   const TemporaryFile file{std::string((std::size_t{4} << 20U) + 1, '#')};
   try {
     (void)Document::load(file.path());
@@ -212,7 +210,7 @@ TEST(ConfigDocument, RefusesAnOversizedFileWithoutReadingAllOfIt) {
   }
 }
 
-TEST(ConfigDocument, SectionsOutliveAMoveOfTheirDocument) {
+TEST(ConfigDocument, SectionsRemainValidAfterDocumentMove) {
   Document first = Document::parse("a: {b: 5}\n", "test.yaml");
   Section section = first.root().section("a");
   Document second = std::move(first);
@@ -222,7 +220,7 @@ TEST(ConfigDocument, SectionsOutliveAMoveOfTheirDocument) {
   EXPECT_TRUE(second.has_errors());
 }
 
-TEST(ConfigDocument, ThrowsEveryErrorInOneMessage) {
+TEST(ConfigDocument, ThrowsAllErrorsInOneMessage) {
   Document document = Document::parse("a: x\n", "test.yaml");
   EXPECT_FALSE(document.has_errors());
   (void)document.root().number("a");

@@ -64,7 +64,7 @@ substructures:
 )");
 }
 
-TEST(ConfigOverride, TakesWholeMappingsAndLists) {
+TEST(ConfigOverride, AcceptsMappingsAndLists) {
   const std::string yaml =
       effective_with({"substructures=[{id: a, rig: {type: udp, rate_hz: 1}}]", "time={step_s: 5e-3}"});
   EXPECT_EQ(
@@ -72,16 +72,16 @@ TEST(ConfigOverride, TakesWholeMappingsAndLists) {
       "time:\n  step_s: 0.005\n  scale: 1\nsubstructures:\n  - id: a\n    rig:\n      type: udp\n      rate_hz: 1\n");
 }
 
-TEST(ConfigOverride, MayAddAKeyToAMappingThatIsThere) {
+TEST(ConfigOverride, AddsKeyToExistingMapping) {
   EXPECT_THAT(effective_with({"time.scale=2"}), HasSubstr("scale: 2\n"));
 }
 
-TEST(ConfigOverride, TheLaterOneWinsAndMayReachIntoTheEarlier) {
+TEST(ConfigOverride, LaterOverrideWinsAndMayChangeTheEarlier) {
   EXPECT_THAT(effective_with({"time.scale=2", "time.scale=3"}), HasSubstr("scale: 3\n"));
   EXPECT_THAT(effective_with({"time={step_s: 1}", "time.step_s=5"}), HasSubstr("step_s: 5\n"));
 }
 
-TEST(ConfigOverride, ErrorsOfItsValueNameTheOverrideAsTheirPlace) {
+TEST(ConfigOverride, ErrorsOfValueNameTheOverride) {
   EXPECT_THAT(
       errors_with({"substructures[0].rig.type=simulted", "time.step_s=-1", "time.scale='2'"}),
       ElementsAre("--set substructures[0].rig.type: unknown value 'simulted'; did you mean 'simulated'? Choices: "
@@ -91,7 +91,7 @@ TEST(ConfigOverride, ErrorsOfItsValueNameTheOverrideAsTheirPlace) {
                   "without quotes"));
 }
 
-TEST(ConfigOverride, ErrorsInsideItsValueNameTheirPathToo) {
+TEST(ConfigOverride, ErrorsInsideValueNameTheirPath) {
   EXPECT_THAT(errors_with({"substructures[storey_2].rig={type: udp, rte_hz: 5, rte_hz: 6}"}),
               ElementsAre("--set substructures[storey_2].rig: substructures[storey_2].rig.rte_hz: duplicate key",
                           "--set substructures[storey_2].rig: substructures[1].rig.rate_hz: missing; expected a number "
@@ -100,12 +100,12 @@ TEST(ConfigOverride, ErrorsInsideItsValueNameTheirPathToo) {
                           "'rate_hz'? Known here: type, rate_hz"));
 }
 
-TEST(ConfigOverride, AnUnknownNewKeyIsReportedLikeOneInTheFile) {
+TEST(ConfigOverride, ReportsUnknownNewKeyAsInFile) {
   EXPECT_THAT(errors_with({"time.stp_s=1"}),
               ElementsAre("--set time.stp_s: unknown key; did you mean 'step_s'? Known here: step_s, scale"));
 }
 
-TEST(ConfigOverride, PathsThatLeadNowhereSayWhereTheyEnd) {
+TEST(ConfigOverride, InvalidPathReportsWhereItEnds) {
   EXPECT_THAT(
       errors_with({"tme.step_s=1", "time.step_s.x=1", "substructures[storey_3].id=x", "substructures[2].id=x",
                    "substructures[99999999999999999999].id=x", "time[0]=1", "substructures.id=x"}),
@@ -121,13 +121,13 @@ TEST(ConfigOverride, PathsThatLeadNowhereSayWhereTheyEnd) {
                   "--set substructures.id: substructures is a list and has no key 'id'"));
 }
 
-TEST(ConfigOverride, MalformedOnesAreRefused) {
+TEST(ConfigOverride, RejectsMalformedOverride) {
   for (const char* const assignment :
        {"", "time", "=1", ".a=1", "a..b=1", "a.=1", "a[=1", "a[]=1", "a[0]b=1", "a]=1", "[0]=1", "a\n=1", "\xFF=1"})
     EXPECT_THAT(errors_with({assignment}), ElementsAre(HasSubstr("expected key.path=value"))) << assignment;
 }
 
-TEST(ConfigOverride, TheValueMustBeYaml) {
+TEST(ConfigOverride, RejectsValueThatIsNotYaml) {
   EXPECT_THAT(errors_with({"time.step_s="}), ElementsAre("--set time.step_s: expected a value after '='"));
   EXPECT_THAT(errors_with({"time.step_s=[1"}), ElementsAre(HasSubstr("--set time.step_s: not YAML")));
   EXPECT_THAT(errors_with({"time.step_s=null"}), ElementsAre(HasSubstr("found nothing")));
@@ -135,7 +135,7 @@ TEST(ConfigOverride, TheValueMustBeYaml) {
   EXPECT_THAT(errors_with({"time.step_s=\x01"}), ElementsAre("--set time.step_s: a control character"));
 }
 
-TEST(ConfigOverride, CannotNestDeeperThanAFile) {
+TEST(ConfigOverride, NestsNoDeeperThanAFile) {
   std::vector<std::string> overrides;
   std::string path = "time.x";
   for (int i = 0; i < 100; ++i) {
@@ -146,7 +146,7 @@ TEST(ConfigOverride, CannotNestDeeperThanAFile) {
   EXPECT_THAT(errors_with({"time.x={x: {x: 1}}"}), testing::Not(testing::Contains(HasSubstr("nested"))));
 }
 
-TEST(ConfigOverride, StandBehindTheErrorsOfTheFile) {
+TEST(ConfigOverride, ErrorsFollowThoseOfTheFile) {
   EXPECT_THAT(errors_of("time: {step_s: x}\n",
                         [](Section root) {
                           Section time = root.section("time");

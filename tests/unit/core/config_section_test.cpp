@@ -44,7 +44,7 @@ masses: {b: 2, a: 1}
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigSection, ListsEveryErrorOfAFileAtOnceInTheOrderOfTheFile) {
+TEST(ConfigSection, ListsAllErrorsInFileOrder) {
   const auto errors = errors_of(R"(nme: two_storey
 name: 5
 time: {mode: lokstep, step_s: "0.001", duration_s: -31.0, step_s: 2}
@@ -140,7 +140,7 @@ TEST(ConfigSection, BooleansAreTrueOrFalseOnly) {
                                   "test.yaml:4:4: d: expected true or false, found the text \"True\""));
 }
 
-TEST(ConfigSection, AbsentKeysTakeTheirFallback) {
+TEST(ConfigSection, AbsentKeysTakeTheirDefault) {
   const auto errors = errors_of("{}", [](Section root) {
     EXPECT_EQ(root.number("number", kPositive, 2.5), 2.5);
     EXPECT_EQ(root.integer("integer", 0, 5, 3), 3);
@@ -154,7 +154,7 @@ TEST(ConfigSection, AbsentKeysTakeTheirFallback) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigSection, WrongValuesTakeTheFallbackToo) {
+TEST(ConfigSection, WrongValuesTakeTheDefault) {
   const auto errors = errors_of("number: -1\ninteger: 9\ntext: 5\nchoice: c\n", [](Section root) {
     EXPECT_EQ(root.number("number", kPositive, 2.5), 2.5);
     EXPECT_EQ(root.integer("integer", 0, 5, 3), 3);
@@ -164,7 +164,7 @@ TEST(ConfigSection, WrongValuesTakeTheFallbackToo) {
   EXPECT_EQ(errors.size(), 4U);
 }
 
-TEST(ConfigSection, AFallbackOutsideTheRangeIsAnErrorOfTheFile) {
+TEST(ConfigSection, DefaultOutsideRangeIsAnErrorOfTheFile) {
   const auto errors = errors_of("{}", [](Section root) {
     (void)root.number("rate_hz", {.low = 1.0}, 0.5);
     (void)root.integer("order", 1, 4, 5);
@@ -174,7 +174,7 @@ TEST(ConfigSection, AFallbackOutsideTheRangeIsAnErrorOfTheFile) {
                           "test.yaml:1:1: order: missing; expected an integer from 1 to 4, the default is 5"));
 }
 
-TEST(ConfigSection, ValuesAfterAnErrorLieInTheRange) {
+TEST(ConfigSection, ValuesAfterAnErrorAreInRange) {
   const auto errors = errors_of("{}", [](Section root) {
     EXPECT_EQ(root.number("a", kPositive), 1.0);
     EXPECT_EQ(root.number("b", {.low = 0.0, .high = 0.5, .low_open = true}), 0.25);
@@ -231,7 +231,7 @@ TEST(ConfigSection, MatricesAreCheckedRowByRow) {
                           "test.yaml:5:5: e[0]: expected a list of 1 entry, each a finite number, found a list of 0"));
 }
 
-TEST(ConfigSection, NumbersByNameComeInTheOrderOfTheNames) {
+TEST(ConfigSection, NumbersByNameKeepOrderOfNames) {
   const std::vector<std::string> names = {"floor_1", "floor_2", "roof"};
   const auto errors = errors_of("mass_kg: {roof: 3, floor_2: 2, floor_1: 1}", [&](Section root) {
     EXPECT_EQ(root.numbers_by_name("mass_kg", names), Eigen::Vector3d(1.0, 2.0, 3.0));
@@ -239,7 +239,7 @@ TEST(ConfigSection, NumbersByNameComeInTheOrderOfTheNames) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigSection, NumbersByNameWantAMapping) {
+TEST(ConfigSection, NumbersByNameRequireAMapping) {
   const auto errors = errors_of("mass_kg: [1, 2]", [](Section root) {
     (void)root.numbers_by_name("mass_kg", {"a", "b"}, kPositive);
   });
@@ -247,7 +247,7 @@ TEST(ConfigSection, NumbersByNameWantAMapping) {
                                   "than 0, found a list"));
 }
 
-TEST(ConfigSection, SectionsKnowTheirPath) {
+TEST(ConfigSection, SectionsReportTheirPath) {
   const auto errors = errors_of("substructures:\n  - rig: {type: udp}\n  - id: b\n", [](Section root) {
     EXPECT_EQ(root.path(), "");
     auto list = root.sections("substructures");
@@ -258,7 +258,7 @@ TEST(ConfigSection, SectionsKnowTheirPath) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigSection, ASingleMappingIsAListOfOneWhereAllowed) {
+TEST(ConfigSection, SingleMappingIsAListOfOneWhereAllowed) {
   const auto read = [](bool or_single) {
     return [or_single](Section root) {
       for (Section section : root.sections("interface", or_single)) EXPECT_EQ(section.text("dof"), "floor_1");
@@ -269,7 +269,7 @@ TEST(ConfigSection, ASingleMappingIsAListOfOneWhereAllowed) {
               ElementsAre("test.yaml:1:1: interface: expected a list of mappings, found a mapping"));
 }
 
-TEST(ConfigSection, AMissingSectionNamesTheKeysItNeedsAndNoOthers) {
+TEST(ConfigSection, MissingSectionNamesItsRequiredKeys) {
   const auto errors = errors_of("a: {}\nrig: 5\n", [](Section root) {
     (void)root.section("a");
     Section time = root.section("time");
@@ -285,7 +285,7 @@ TEST(ConfigSection, AMissingSectionNamesTheKeysItNeedsAndNoOthers) {
                                   "test.yaml:2:6: rig: expected a mapping, found the number 5; required in it: type"));
 }
 
-TEST(ConfigSection, EveryHandleOnASectionSharesWhatIsKnown) {
+TEST(ConfigSection, HandlesOfOneSectionShareTheirState) {
   const auto errors = errors_of("rig: {type: udp, port: 5}\nlist: [{a: 1, b: 2}]\n", [](Section root) {
     (void)root.section("rig").text("type");
     (void)root.optional_section("rig")->integer("port", 0, 9);
@@ -298,7 +298,7 @@ TEST(ConfigSection, EveryHandleOnASectionSharesWhatIsKnown) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigSection, OwnErrorsStandAtTheKeyOrAtTheSection) {
+TEST(ConfigSection, CustomErrorsPointToKeyOrSection) {
   const auto errors = errors_of("a:\n  b: 5\n", [](Section root) {
     root.section("a").error("b", "must not be 5");
     root.section("a").error("b", "must not be 5");
@@ -310,7 +310,7 @@ TEST(ConfigSection, OwnErrorsStandAtTheKeyOrAtTheSection) {
                                   "test.yaml:1:1: the file is odd", "test.yaml:2:3: a.b: must not be 5"));
 }
 
-TEST(ConfigSection, UnknownKeysAreReportedEvenInAFullyReadFile) {
+TEST(ConfigSection, ReportsUnknownKeysInFullyReadFile) {
   EXPECT_THAT(errors_of("a: 1\nzebra: 2\n",
                         [](Section root) {
                           (void)root.number("a");
@@ -319,7 +319,7 @@ TEST(ConfigSection, UnknownKeysAreReportedEvenInAFullyReadFile) {
               ElementsAre("test.yaml:2:1: zebra: unknown key; known here: a"));
 }
 
-TEST(ConfigSection, ASectionOfFallbacksMayBeAbsentAndStandsInTheEffectiveConfiguration) {
+TEST(ConfigSection, AbsentSectionOfDefaultsIsWrittenToEffective) {
   Document document = Document::parse("a: 1\n", "test.yaml");
   Section root = document.root();
   EXPECT_EQ(root.number("a"), 1.0);
@@ -331,7 +331,7 @@ TEST(ConfigSection, ASectionOfFallbacksMayBeAbsentAndStandsInTheEffectiveConfigu
   EXPECT_THAT(document.effective(), HasSubstr("timeouts:\n  discovery_s: 30"));
 }
 
-TEST(ConfigSection, AListOfFallbacksMayBeAbsentAndReadsBackTheSame) {
+TEST(ConfigSection, AbsentListOfDefaultsRoundTrips) {
   const auto effective = [](const std::string& yaml) {
     Document document = Document::parse(yaml, "test.yaml");
     Section root = document.root();
@@ -351,7 +351,7 @@ TEST(ConfigSection, AListOfFallbacksMayBeAbsentAndReadsBackTheSame) {
   EXPECT_EQ(effective("a: 1\nparts: [{}]\n"), absent);
 }
 
-TEST(ConfigSection, VeryManyErrorsAreCutOff) {
+TEST(ConfigSection, LimitsTheNumberOfListedErrors) {
   std::string yaml;
   for (int i = 0; i < 5000; ++i) yaml += "key_" + std::to_string(i) + ": 1\n";
   const auto errors = errors_of(yaml, [](Section root) { root.finish(); });

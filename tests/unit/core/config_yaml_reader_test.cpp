@@ -18,7 +18,7 @@ std::string nested(int depth) {
   return yaml;
 }
 
-TEST(ConfigYamlReader, FindsDuplicateKeysAtEveryLevelAndKeepsTheFirst) {
+TEST(ConfigYamlReader, ReportsDuplicateKeysAndKeepsTheFirst) {
   const auto errors = errors_of("a: {b: 1, b: 2}\nc: [{d: 1, \"d\": 2}]\na: 3\n", [](Section root) {
     EXPECT_EQ(root.section("a").number("b"), 1.0);
     EXPECT_THAT(root.keys(), ElementsAre("a", "c"));
@@ -28,7 +28,7 @@ TEST(ConfigYamlReader, FindsDuplicateKeysAtEveryLevelAndKeepsTheFirst) {
                                   "test.yaml:3:1: a: duplicate key, first given at 1:1"));
 }
 
-TEST(ConfigYamlReader, RefusesAnchorsAliasesAndTags) {
+TEST(ConfigYamlReader, RejectsAnchorsAliasesAndTags) {
   const auto errors = errors_of("a: &x 1\nb: *x\nc: !!str 5\nd: [&y [], !t {}]\n", [](Section root) {
     EXPECT_EQ(root.number("a"), 1.0);
     EXPECT_EQ(root.number("b", kAnyNumber, 9.0), 9.0);
@@ -40,7 +40,7 @@ TEST(ConfigYamlReader, RefusesAnchorsAliasesAndTags) {
                                   "test.yaml:4:12: d[1]: a tag (!t) is not supported here; remove it"));
 }
 
-TEST(ConfigYamlReader, RefusesKeysThatAreNoNames) {
+TEST(ConfigYamlReader, RejectsKeysThatAreNotNames) {
   const std::string longest(200, 'k');
   const auto errors = errors_of("? [1]\n: 2\n~: 3\n\"\": 4\n" + longest + ": 5\n" + longest + "k: 6\n",
                                 [&](Section root) { EXPECT_THAT(root.keys(), ElementsAre(longest)); });
@@ -50,7 +50,7 @@ TEST(ConfigYamlReader, RefusesKeysThatAreNoNames) {
                                   HasSubstr("test.yaml:6:1: a key has at most 200 characters")));
 }
 
-TEST(ConfigYamlReader, RefusesWhatIsNotYaml) {
+TEST(ConfigYamlReader, RejectsInvalidYaml) {
   EXPECT_THAT(errors_of("a: 1\nb: [1, 2\n"),
               ElementsAre("test.yaml:2:9: not YAML: end of sequence flow not found; a list in brackets begins at 2:4"));
   EXPECT_THAT(errors_of("a: 1\n  b: 2\n"), ElementsAre(HasSubstr("test.yaml:2:4: not YAML")));
@@ -58,7 +58,7 @@ TEST(ConfigYamlReader, RefusesWhatIsNotYaml) {
   EXPECT_THAT(errors_of("a: &x 1\nb: {\n"), ElementsAre(HasSubstr("1:4: a: an anchor"), HasSubstr("2:5: not YAML")));
 }
 
-TEST(ConfigYamlReader, RefusesAQuoteThatNothingCloses) {
+TEST(ConfigYamlReader, RejectsUnclosedQuote) {
   for (const char* const yaml : {"a: \"x", "a: \"x\n", "a: \"x\nb: 5\n", "a: 'x\n\n\n", "a: 'x # c\n", "- \"x\n"})
     EXPECT_THAT(errors_of(yaml), ElementsAre(HasSubstr("not YAML: illegal EOF in scalar"))) << yaml;
 }
@@ -71,13 +71,13 @@ TEST(ConfigYamlReader, KeepsTheLinesOfBlockTexts) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigYamlReader, RefusesMoreThanOneDocument) {
+TEST(ConfigYamlReader, RejectsSecondDocument) {
   EXPECT_THAT(errors_of("a: 1\n---\nb: 2\n"),
               ElementsAre("test.yaml:2:1: a second YAML document, or text outside the first, begins here"));
   EXPECT_THAT(errors_of("---\na: 1\n...\n"), IsEmpty());
 }
 
-TEST(ConfigYamlReader, WantsAMappingAtTheTop) {
+TEST(ConfigYamlReader, RequiresMappingAtTopLevel) {
   EXPECT_THAT(errors_of(""), ElementsAre("test.yaml:1:1: expected a mapping (key: value) at the top, found nothing"));
   EXPECT_THAT(errors_of("# nothing\n"), ElementsAre(HasSubstr("found nothing")));
   EXPECT_THAT(errors_of("- 1\n"), ElementsAre(HasSubstr("found a list")));
@@ -85,7 +85,7 @@ TEST(ConfigYamlReader, WantsAMappingAtTheTop) {
   EXPECT_THAT(errors_of(","), ElementsAre(HasSubstr("test.yaml:1:1")));
 }
 
-TEST(ConfigYamlReader, RefusesBytesThatAreNoText) {
+TEST(ConfigYamlReader, RejectsInvalidUtf8) {
   EXPECT_THAT(errors_of("a: 1\nb: \xFF\n"), ElementsAre("test.yaml:2:4: not UTF-8 text"));
   EXPECT_THAT(errors_of("a: \xC0\xAF"), ElementsAre("test.yaml:1:4: not UTF-8 text"));
   EXPECT_THAT(errors_of("a: \xED\xA0\x80"), ElementsAre("test.yaml:1:4: not UTF-8 text"));
@@ -96,7 +96,7 @@ TEST(ConfigYamlReader, RefusesBytesThatAreNoText) {
   EXPECT_THAT(errors_of(std::string{"a: \0", 4}), ElementsAre("test.yaml:1:4: a control character"));
 }
 
-TEST(ConfigYamlReader, ReadsAnyUtf8AByteOrderMarkAndWindowsLines) {
+TEST(ConfigYamlReader, ReadsUtf8ByteOrderMarkAndCrLf) {
   const auto errors = errors_of(
       "\xEF\xBB\xBF"
       "a: Giuffr\xC3\xA9 \xF0\x9F\x8F\x97\r\nb: 1\r\n",
@@ -107,7 +107,7 @@ TEST(ConfigYamlReader, ReadsAnyUtf8AByteOrderMarkAndWindowsLines) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
-TEST(ConfigYamlReader, RefusesDeepNestingBeforeTheStackNotices) {
+TEST(ConfigYamlReader, RejectsDeepNestingBeforeStackOverflow) {
   EXPECT_THAT(errors_of(nested(64)), IsEmpty());
   EXPECT_THAT(errors_of(nested(65)), ElementsAre(HasSubstr("nested more than 64 levels deep")));
   EXPECT_THAT(errors_of(nested(200000)), ElementsAre(HasSubstr("nested more than 64 levels deep")));
@@ -116,13 +116,13 @@ TEST(ConfigYamlReader, RefusesDeepNestingBeforeTheStackNotices) {
   EXPECT_THAT(errors_of(blocks), ElementsAre(HasSubstr("nested more than 64 levels deep")));
 }
 
-TEST(ConfigYamlReader, RefusesAnOversizedFile) {
+TEST(ConfigYamlReader, RejectsOversizedFile) {
   const std::string comment(std::size_t{4} << 20U, '#');
   EXPECT_THAT(errors_of(comment + "\na: 1\n"), ElementsAre("test.yaml: larger than 4 MiB"));
   EXPECT_THAT(errors_of(comment.substr(6) + "\na: 1"), IsEmpty());
 }
 
-TEST(ConfigYamlReader, FindsDuplicatesAmongVeryManyKeysQuickly) {
+TEST(ConfigYamlReader, FindsDuplicatesAmongManyKeysQuickly) {
   std::string yaml;
   for (int i = 0; i < 100000; ++i) yaml += "k" + std::to_string(i) + ": 1\n";
   EXPECT_THAT(errors_of(yaml + "k7: 2\n"), ElementsAre("test.yaml:100001:1: k7: duplicate key, first given at 8:1"));

@@ -11,7 +11,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(DurationHistogramTest, EveryDurationFallsIntoTheBinThatHoldsIt) {
+TEST(DurationHistogramTest, PutsEachDurationIntoItsBin) {
   Random random{4};
   for (int i = 0; i < 100000; ++i) {
     const Duration duration{static_cast<std::int64_t>(std::exp2(random.uniform(0.0, 39.9)))};
@@ -26,7 +26,7 @@ TEST(DurationHistogramTest, EveryDurationFallsIntoTheBinThatHoldsIt) {
   }
 }
 
-TEST(DurationHistogramTest, QuantilesAreThoseOfTheSampleToASixteenth) {
+TEST(DurationHistogramTest, QuantilesAreExactToASixteenth) {
   Random random{5};
   DurationHistogram histogram;
   std::vector<std::int64_t> sample;
@@ -46,7 +46,7 @@ TEST(DurationHistogramTest, QuantilesAreThoseOfTheSampleToASixteenth) {
   EXPECT_EQ(histogram.count(), 10000);
 }
 
-TEST(DurationHistogramTest, WhatLiesOutsideCountsAtTheEnds) {
+TEST(DurationHistogramTest, CountsOutliersInTheEndBins) {
   DurationHistogram histogram;
   EXPECT_EQ(histogram.quantile(0.5), Duration{0});
   histogram.record(Duration{-5});

@@ -11,14 +11,14 @@ TEST(FixedText, IsEmptyAtFirst) {
   EXPECT_EQ(text.view(), "");
 }
 
-TEST(FixedText, KeepsWhatFitsExactly) {
+TEST(FixedText, KeepsTextThatFitsExactly) {
   const FixedText<4> text{"abcd"};
   EXPECT_FALSE(text.empty());
   EXPECT_EQ(text.view(), "abcd");
   EXPECT_EQ(text.text(), "abcd");
 }
 
-TEST(FixedText, CutsOffWhatIsLonger) {
+TEST(FixedText, TruncatesLongerText) {
   EXPECT_EQ(FixedText<4>{"abcde"}.view(), "abcd");
   EXPECT_EQ(FixedText<4>{std::string(1000, 'x')}.view(), "xxxx");
 }
@@ -30,7 +30,7 @@ TEST(FixedText, ComparesByContent) {
   EXPECT_NE(text, FixedText<8>{});
 }
 
-TEST(FixedText, ForgetsALongerTextThatItHeldBefore) {
+TEST(FixedText, AssigningShorterTextClearsTheRest) {
   FixedText<8> text{"storey_1"};
   text = "abc";
   EXPECT_EQ(text, FixedText<8>{"abc"});

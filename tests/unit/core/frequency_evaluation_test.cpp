@@ -32,7 +32,7 @@ class DelayedSine : public testing::TestWithParam<Case> {};
 // The taper makes a sine's side lobes fall with the cube of the distance in frequency. What is left
 // at zero frequency, where the negative frequencies' lobes overlap, is for the slowest sine here
 // (two periods in each taper) below 1e-6 of the power and enters amplitude and phase once.
-TEST_P(DelayedSine, HasItsAmplitudeAndDelayEvenForFractionsOfASampleAndOfAPeriod) {
+TEST_P(DelayedSine, RecoversAmplitudeAndFractionalDelay) {
   const Case& c = GetParam();
   constexpr std::size_t kSamples = 10'300;
   const auto result =
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Closed, DelayedSine,
                          testing::Values(Case{2.0, 1.0, 0.0}, Case{2.0, 0.9, 0.0204}, Case{2.13, 1.2, 0.00037},
                                          Case{3.3, 1.0, -0.0081}, Case{17.7, 0.5, 0.0123}));
 
-TEST(FrequencyEvaluation, ADelayedNarrowBandMotionHasTheDelay) {
+TEST(FrequencyEvaluation, DelayedNarrowBandMotionHasItsDelay) {
   // 1.9 to 2.1 Hz: the spread of (2π f delay) around its mean is 1 %, of which only the square enters.
   auto target = sine(1.9, 1.0, 0.0, 20'000);
   auto measured = sine(1.9, 1.0, 0.015, 20'000);
@@ -64,7 +64,7 @@ TEST(FrequencyEvaluation, ADelayedNarrowBandMotionHasTheDelay) {
   EXPECT_NEAR(result->delay_s, 0.015, 1e-4);
 }
 
-TEST(FrequencyEvaluation, MotionsThatTellNothingHaveNoDelay) {
+TEST(FrequencyEvaluation, UninformativeMotionsHaveNoDelay) {
   const std::vector<double> rest(1000, 0.01);
   const auto motion = sine(2.0, 0.01, 0.0, 1000);
   EXPECT_FALSE(evaluate_tracking_frequency(rest, motion, kPeriod_s).has_value());
@@ -73,7 +73,7 @@ TEST(FrequencyEvaluation, MotionsThatTellNothingHaveNoDelay) {
   EXPECT_FALSE(evaluate_tracking_frequency(few, few, kPeriod_s).has_value());
 }
 
-TEST(FrequencyEvaluation, NoiseAroundAMotionTooSmallHasNoDelayAndControlAroundALargerOneHas) {
+TEST(FrequencyEvaluation, NoiseAroundSmallMotionHasNoDelay) {
   Random random{5};
   std::vector<double> noise(4000);
   for (double& value : noise) value = 1e-5 * random.normal();

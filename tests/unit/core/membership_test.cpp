@@ -54,14 +54,14 @@ class MembershipTest : public testing::Test {
   Membership membership_{presence_, MembershipPorts{announcements_, control_, seconds{30}}};
 };
 
-TEST_F(MembershipTest, IsReadyOnceTheAnnouncedScenarioIsItsOwn) {
+TEST_F(MembershipTest, IsReadyWhenAnnouncedScenarioMatches) {
   announce();
   EXPECT_EQ(request_at(seconds{1}), Request::none);
   EXPECT_EQ(presence_.state(), LifecycleState::ready);
   EXPECT_EQ(membership_.coordinator(), kCoordinator);
 }
 
-TEST_F(MembershipTest, RefusesAnotherScenario) {
+TEST_F(MembershipTest, RefusesOtherScenario) {
   announce({1, 2, 3});
   EXPECT_EQ(request_at(seconds{1}), Request::stop);
   EXPECT_EQ(presence_.state(), LifecycleState::refused);
@@ -75,7 +75,7 @@ TEST_F(MembershipTest, LeavesWithoutACoordinatorAfterTheDiscoveryTimeout) {
   EXPECT_EQ(membership_.stop_reason(), StopReason::not_assembled);
 }
 
-TEST_F(MembershipTest, ObeysItsCoordinatorAndNoOther) {
+TEST_F(MembershipTest, ObeysOnlyItsCoordinator) {
   announce();
   static_cast<void>(request_at(seconds{1}));
   control(ControlVerb::arm, kCoordinator + 1);
@@ -84,7 +84,7 @@ TEST_F(MembershipTest, ObeysItsCoordinatorAndNoOther) {
   EXPECT_EQ(request_at(seconds{1}), Request::arm);
 }
 
-TEST_F(MembershipTest, DoesNotStartBeforeItIsArmed) {
+TEST_F(MembershipTest, DoesNotStartBeforeArming) {
   announce();
   static_cast<void>(request_at(seconds{1}));
   control(ControlVerb::start);
@@ -94,13 +94,13 @@ TEST_F(MembershipTest, DoesNotStartBeforeItIsArmed) {
   EXPECT_EQ(request_at(seconds{1}), Request::start);
 }
 
-TEST_F(MembershipTest, AnybodyCanStopItInAnEmergency) {
+TEST_F(MembershipTest, AcceptsEmergencyStopFromAnySender) {
   control(ControlVerb::emergency_stop, 1234, Role::operator_tool);
   EXPECT_EQ(request_at(seconds{1}), Request::emergency_stop);
   EXPECT_TRUE(any(presence_.faults() & FaultFlags::emergency_stop));
 }
 
-TEST_F(MembershipTest, NoticesThatTheCoordinatorIsGone) {
+TEST_F(MembershipTest, DetectsLossOfCoordinator) {
   announce();
   coordinator_is(LifecycleState::running);
   EXPECT_EQ(request_at(seconds{1}), Request::none);

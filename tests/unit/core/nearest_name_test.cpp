@@ -14,27 +14,27 @@ TEST(ConfigNearestName, FindsCommonMisspellings) {
   EXPECT_EQ(nearest_name("stiffness_n_m", known), "stiffness_n_per_m");
 }
 
-TEST(ConfigNearestName, AllowsAThirdOfTheLengthAndNoMore) {
+TEST(ConfigNearestName, AllowsEditsUpToAThirdOfTheLength) {
   EXPECT_EQ(nearest_name("abcdef", {"abcdxy"}), "abcdxy");
   EXPECT_EQ(nearest_name("abcdef", {"abcxyz"}), std::nullopt);
   EXPECT_EQ(nearest_name("ab", {"ax"}), "ax");
   EXPECT_EQ(nearest_name("ab", {"xy"}), std::nullopt);
 }
 
-TEST(ConfigNearestName, DoesNotGuessWhereNothingIsShared) {
+TEST(ConfigNearestName, ReturnsNothingForUnrelatedName) {
   EXPECT_EQ(nearest_name("a", {"b"}), std::nullopt);
   EXPECT_EQ(nearest_name("", {"a"}), std::nullopt);
   EXPECT_EQ(nearest_name("a", {}), std::nullopt);
   EXPECT_EQ(nearest_name("type", {""}), std::nullopt);
 }
 
-TEST(ConfigNearestName, TakesTheNearestAndOfEquallyNearTheFirst) {
+TEST(ConfigNearestName, ReturnsNearestAndFirstOfTies) {
   EXPECT_EQ(nearest_name("storey_3", {"storey_1", "storey_2"}), "storey_1");
   EXPECT_EQ(nearest_name("floor_12", {"floor_9", "floor_1"}), "floor_1");
   EXPECT_EQ(nearest_name("same", {"sane", "same"}), "same");
 }
 
-TEST(ConfigNearestName, CountsASwapOnceAndNoMoreThanNeeded) {
+TEST(ConfigNearestName, CountsSwapAsOneEdit) {
   // Six letters allow two edits: two swaps pass, a swap and two replacements do not.
   EXPECT_EQ(nearest_name("badcef", {"abcdef"}), "abcdef");
   EXPECT_EQ(nearest_name("baxyef", {"abcdef"}), std::nullopt);

@@ -29,7 +29,7 @@ class PresenceTest : public testing::Test {
   Presence presence_{Identity{"site", Role::experimental_site, 5, {}}, seconds{2}, inbox_, outbox_, events_};
 };
 
-TEST_F(PresenceTest, SendsAHeartbeatFourTimesALeaseAndAtOnceWhenTheStateChanges) {
+TEST_F(PresenceTest, SendsFourHeartbeatsPerLeaseAndOnStateChange) {
   ParticipantStatus sent;
   EXPECT_EQ(presence_.advance(at(seconds{0})), at(milliseconds{500}));
   EXPECT_TRUE(outbox_.take(sent));
@@ -45,7 +45,7 @@ TEST_F(PresenceTest, SendsAHeartbeatFourTimesALeaseAndAtOnceWhenTheStateChanges)
   EXPECT_EQ(sent.state, LifecycleState::ready);
 }
 
-TEST_F(PresenceTest, LosesAPeerThatIsSilentForTheLeaseAndNotBefore) {
+TEST_F(PresenceTest, LosesPeerSilentForTheLeaseAndNotBefore) {
   inbox_.send(status_of("coordinator", 9, LifecycleState::running));
   static_cast<void>(presence_.advance(at(seconds{1})));
   static_cast<void>(presence_.advance(at(milliseconds{2999})));
@@ -55,7 +55,7 @@ TEST_F(PresenceTest, LosesAPeerThatIsSilentForTheLeaseAndNotBefore) {
   EXPECT_EQ(presence_.find("coordinator")->status.state, LifecycleState::lost);
 }
 
-TEST_F(PresenceTest, AStatusThatWasOvertakenOnItsWayChangesNothing) {
+TEST_F(PresenceTest, IgnoresOvertakenStatus) {
   ParticipantStatus newer = status_of("coordinator", 9, LifecycleState::stopping, seconds{5});
   newer.faults = FaultFlags::force_limit;
   inbox_.send(newer);
@@ -70,7 +70,7 @@ TEST_F(PresenceTest, AStatusThatWasOvertakenOnItsWayChangesNothing) {
   EXPECT_FALSE(presence_.is_alive(9));
 }
 
-TEST_F(PresenceTest, ALostPeerThatIsHeardAgainIsBack) {
+TEST_F(PresenceTest, LostPeerReturnsWhenHeardAgain) {
   inbox_.send(status_of("coordinator", 9, LifecycleState::running));
   static_cast<void>(presence_.advance(at(seconds{0})));
   static_cast<void>(presence_.advance(at(seconds{5})));
@@ -80,14 +80,14 @@ TEST_F(PresenceTest, ALostPeerThatIsHeardAgainIsBack) {
   EXPECT_TRUE(presence_.is_alive(9));
 }
 
-TEST_F(PresenceTest, AStatusThatArrivesAfterTheFarewellChangesNothing) {
+TEST_F(PresenceTest, IgnoresStatusAfterFarewell) {
   inbox_.send(status_of("coordinator", 9, LifecycleState::finished));
   inbox_.send(status_of("coordinator", 9, LifecycleState::running));
   static_cast<void>(presence_.advance(at(seconds{0})));
   EXPECT_EQ(presence_.find("coordinator")->status.state, LifecycleState::finished);
 }
 
-TEST_F(PresenceTest, TheYoungerOfTwoWithOneIdIsTheDuplicate) {
+TEST_F(PresenceTest, YoungerOfTwoWithOneIdIsTheDuplicate) {
   static_cast<void>(presence_.advance(at(seconds{1})));
   inbox_.send(status_of("site", 4, LifecycleState::joining, milliseconds{700}));
   static_cast<void>(presence_.advance(at(seconds{1})));
@@ -97,7 +97,7 @@ TEST_F(PresenceTest, TheYoungerOfTwoWithOneIdIsTheDuplicate) {
   EXPECT_TRUE(presence_.is_duplicate());
 }
 
-TEST_F(PresenceTest, OfTwoThatStartTogetherOneLeavesWhateverTheirStatusesTakeOnTheirWay) {
+TEST_F(PresenceTest, OneOfTwoSimultaneousDuplicatesLeaves) {
   for (const Duration on_its_way : {Duration{0}, Duration{milliseconds{1}}, Duration{milliseconds{20}}}) {
     for (Duration younger_by{}; younger_by <= milliseconds{400}; younger_by += milliseconds{5}) {
       RingPort<ParticipantStatus> to_older{4};
@@ -120,7 +120,7 @@ TEST_F(PresenceTest, OfTwoThatStartTogetherOneLeavesWhateverTheirStatusesTakeOnT
   }
 }
 
-TEST_F(PresenceTest, OneThatIsArmedDoesNotLeaveForAnother) {
+TEST_F(PresenceTest, ArmedParticipantDoesNotLeaveForDuplicate) {
   presence_.set_state(LifecycleState::armed);
   inbox_.send(status_of("site", 6, LifecycleState::joining, seconds{100}));
   static_cast<void>(presence_.advance(at(seconds{1})));
@@ -130,13 +130,13 @@ TEST_F(PresenceTest, OneThatIsArmedDoesNotLeaveForAnother) {
   EXPECT_EQ(event.code, EventCode::duplicate_id);
 }
 
-TEST_F(PresenceTest, ANewcomerLeavesForOneThatIsArmedHoweverYoung) {
+TEST_F(PresenceTest, NewcomerLeavesForArmedDuplicate) {
   inbox_.send(status_of("site", 6, LifecycleState::running, milliseconds{1}));
   static_cast<void>(presence_.advance(at(seconds{50})));
   EXPECT_TRUE(presence_.is_duplicate());
 }
 
-TEST_F(PresenceTest, AYoungerProcessDoesNotTakeThePlaceOfALivingPeer) {
+TEST_F(PresenceTest, YoungerProcessDoesNotReplaceLivingPeer) {
   inbox_.send(status_of("other", 10, LifecycleState::running));
   inbox_.send(status_of("other", 11, LifecycleState::joining));
   static_cast<void>(presence_.advance(at(seconds{0})));

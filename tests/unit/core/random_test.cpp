@@ -16,7 +16,7 @@ const double kFourStandardErrors = 4.0 / std::sqrt(static_cast<double>(kDraws));
 /// First output of splitmix64 from state 0, which the class mixes into the seed of stream 0.
 constexpr std::uint64_t kStreamZero = 0xE220A8397B1DCDAFULL;
 
-TEST(Random, GivesThePublishedOutputsOfXoshiro256PlusPlus) {
+TEST(Random, MatchesPublishedXoshiro256PlusPlusOutputs) {
   // The outputs that the Rust crate rand pins for Xoshiro256PlusPlus seeded with 0 through splitmix64.
   constexpr std::array<std::uint64_t, 10> kPublished = {
       5987356902031041503ULL, 7051070477665621255ULL, 6633766593972829180ULL,  211316841551650330ULL,
@@ -26,7 +26,7 @@ TEST(Random, GivesThePublishedOutputsOfXoshiro256PlusPlus) {
   for (const std::uint64_t expected : kPublished) EXPECT_EQ(random.bits(), expected);
 }
 
-TEST(Random, RepeatsItselfForASeedAndOnlyForIt) {
+TEST(Random, SameSeedRepeatsAndOtherSeedDiffers) {
   Random first{7};
   Random again{7};
   Random other_seed{8};
@@ -51,7 +51,7 @@ TEST(Random, StreamsOfOneSeedAreUncorrelated) {
   EXPECT_NEAR(product / kDraws, 0.0, kFourStandardErrors);
 }
 
-TEST(Random, UniformHasTheMomentsOfTheUnitInterval) {
+TEST(Random, UniformHasUnitIntervalMoments) {
   Random random{11};
   double sum = 0.0;
   double squares = 0.0;
@@ -82,7 +82,7 @@ TEST(Random, UniformStaysInsideItsBounds) {
   EXPECT_GT(most, 5.0 - 0.007);
 }
 
-TEST(Random, BelowIsEvenOverItsValues) {
+TEST(Random, BelowIsUniform) {
   Random random{13};
   constexpr std::uint64_t kCount = 7;
   std::array<int, kCount> hits{};
@@ -103,7 +103,7 @@ TEST(Random, BelowOneIsZero) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(random.below(1), 0U);
 }
 
-TEST(Random, NormalHasTheMomentsAndTailsOfTheStandardNormal) {
+TEST(Random, NormalHasStandardMomentsAndTails) {
   Random random{15};
   double mean = 0.0;
   double second = 0.0;

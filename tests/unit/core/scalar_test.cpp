@@ -10,7 +10,7 @@
 namespace hybridtest::config {
 namespace {
 
-TEST(ConfigScalar, WritesTheShortestTextThatReadsBack) {
+TEST(ConfigScalar, WritesShortestRoundTrippingText) {
   EXPECT_EQ(written_number(0.1), "0.1");
   EXPECT_EQ(written_number(20.0e3), "20000");
   EXPECT_EQ(written_number(1e-5), "1.0e-05");
@@ -34,7 +34,7 @@ TEST(ConfigScalar, EveryDoubleReadsBackToItsBits) {
   EXPECT_GT(finite, 19000);
 }
 
-TEST(ConfigScalar, TellsTheFormsOfNumbersApart) {
+TEST(ConfigScalar, DistinguishesNumberFormats) {
   for (const char* const text : {"1", "-1.5", "+2", ".5", "5.", "1e5", "1.E-5", "007"})
     EXPECT_EQ(read_real(text).form, NumberForm::number) << text;
   for (const char* const text :
@@ -56,7 +56,7 @@ TEST(ConfigScalar, ReadsWholeNumbersOfSixtyFourBits) {
   EXPECT_EQ(read_whole(".inf").form, NumberForm::not_finite);
 }
 
-TEST(ConfigScalar, QuotesWhateverSomeReaderMightTakeForSomethingElse) {
+TEST(ConfigScalar, QuotesTextThatReadersCouldMisread) {
   EXPECT_EQ(written_text("hybridtest/1"), "hybridtest/1");
   EXPECT_EQ(written_text("floor_1"), "floor_1");
   for (const char* const text : {"", "true", "No", "null", "5", "a b", "a:", "-a", "~", "a,b", "[a", "#a"})

@@ -5,7 +5,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(SpscRing, GivesBackInTheOrderOfPushing) {
+TEST(SpscRing, PopsInOrderOfPushing) {
   SpscRing<int> ring{3};
   EXPECT_TRUE(ring.push(1));
   EXPECT_TRUE(ring.push(2));
@@ -16,14 +16,14 @@ TEST(SpscRing, GivesBackInTheOrderOfPushing) {
   EXPECT_EQ(value, 2);
 }
 
-TEST(SpscRing, LeavesTheValueAloneWhenEmpty) {
+TEST(SpscRing, PopFromEmptyLeavesValueUnchanged) {
   SpscRing<int> ring{2};
   int value = 42;
   EXPECT_FALSE(ring.pop(value));
   EXPECT_EQ(value, 42);
 }
 
-TEST(SpscRing, HoldsItsCapacityAndRefusesOneMore) {
+TEST(SpscRing, RejectsPushBeyondCapacity) {
   SpscRing<int> ring{3};
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(ring.push(i));
   EXPECT_FALSE(ring.push(99));
@@ -35,7 +35,7 @@ TEST(SpscRing, HoldsItsCapacityAndRefusesOneMore) {
   EXPECT_FALSE(ring.pop(value));
 }
 
-TEST(SpscRing, AcceptsAgainAfterOneIsTaken) {
+TEST(SpscRing, AcceptsPushAfterPop) {
   SpscRing<int> ring{1};
   int value = 0;
   for (int i = 0; i < 5; ++i) {
@@ -46,7 +46,7 @@ TEST(SpscRing, AcceptsAgainAfterOneIsTaken) {
   }
 }
 
-TEST(SpscRing, KeepsOrderOverManyTurnsAtEveryFillLevel) {
+TEST(SpscRing, KeepsOrderAcrossWrapAroundAtEveryFillLevel) {
   constexpr int kCapacity = 5;
   for (int level = 1; level <= kCapacity; ++level) {
     SpscRing<int> ring{kCapacity};

@@ -22,7 +22,7 @@ Shrink removing(Interval removed, double before = 0.1, double changed = 0.08) {
 
 Verdict carried_over(Verdict verdict, const Shrink& one) { return verdict_carried_over(verdict, std::array{one}); }
 
-TEST(CarryingOver, ACauseThatSurelyLeavesTheGapIsNotNamed) {
+TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
   for (const Verdict verdict : {Verdict::named, Verdict::set, Verdict::partial}) {
     EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2})), Verdict::unknown);
     EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2}, 0.015)), Verdict::none) << "there is hardly a gap";
@@ -36,7 +36,7 @@ TEST(CarryingOver, ACauseThatSurelyLeavesTheGapIsNotNamed) {
   EXPECT_EQ(carried_over(Verdict::unknown, removing({-0.4, 0.2}, 0.015)), Verdict::unknown);
 }
 
-TEST(CarryingOver, WhatExplainsOneChannelIsNotDroppedForSomethingNewInAnother) {
+TEST(CarryingOver, KeepsCauseOfOneChannelDespiteOtherChannel) {
   const Shrink explained = removing({0.98, 0.99});
   const Shrink not_explained = removing({0.1, 0.2});
   EXPECT_EQ(verdict_carried_over(Verdict::named, std::array{explained, not_explained}), Verdict::named);

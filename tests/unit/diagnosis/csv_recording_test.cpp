@@ -51,7 +51,7 @@ struct ExampleCsv {
   }
 };
 
-TEST(CsvRecording, HoldsWhatTheFileSays) {
+TEST(CsvRecording, HoldsTheValuesOfTheFile) {
   ExampleCsv csv;
   csv.row(1) += "\r";
   const Intake intake = read_csv_recording("\xEF\xBB\xBF" + csv.text() + "\n\n", "a.csv");
@@ -67,7 +67,7 @@ TEST(CsvRecording, HoldsWhatTheFileSays) {
   EXPECT_NEAR(recording.dofs[0].of(Channel::measured_force)[99], 1900.0 * std::sin(5.74), 0.5e-3);
 }
 
-TEST(CsvRecording, SuffixesCountDegreesOfFreedomAndTablesOfARunAreTaken) {
+TEST(CsvRecording, ReadsDofSuffixesAndExportedTables) {
   std::string text =
       "sample,time_s,model_time_s,target_displacement_m_1,measured_force_n_1,compensated_force_n_1,"
       "target_displacement_m_2,measured_force_n_2,compensated_force_n_2,energy_error_j,faults\n";
@@ -80,7 +80,7 @@ TEST(CsvRecording, SuffixesCountDegreesOfFreedomAndTablesOfARunAreTaken) {
   EXPECT_FALSE(intake.recording->dofs[1].has(Channel::measured_displacement));
 }
 
-TEST(CsvRecording, TimeStampsRoundedToMicrosecondsAreEven) {
+TEST(CsvRecording, TimeStampsRoundedToMicrosecondsAreAccepted) {
   std::string text = "time_s,measured_force_n\n";
   for (int i = 0; i < 28'000; ++i) text += fmt::format("{:.6f},1\n", i / 1024.0);
   const Intake intake = read_csv_recording(text, "a.csv");
@@ -98,7 +98,7 @@ struct Spoiled {
 
 class OneThingWrong : public testing::TestWithParam<Spoiled> {};
 
-TEST_P(OneThingWrong, IsNamedByRowColumnAndValue) {
+TEST_P(OneThingWrong, NamesRowColumnAndValue) {
   ExampleCsv csv;
   GetParam().spoil(csv);
   const auto complaints = csv.complaints();
@@ -204,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "in metres it would move at 18.8 m/s"}),
     [](const auto& param_info) { return param_info.param.name; });
 
-TEST(CsvRecording, RepeatedReversedAndUnevenTimeStampsAreNamedByRow) {
+TEST(CsvRecording, NamesRowsOfInvalidTimeStamps) {
   ExampleCsv csv;
   csv.row(10).replace(0, 5, "0.007");  // as the row before
   csv.row(20).replace(0, 5, "0.016");  // before the row before
@@ -216,7 +216,7 @@ TEST(CsvRecording, RepeatedReversedAndUnevenTimeStampsAreNamedByRow) {
   EXPECT_THAT(complaints, testing::Contains(HasSubstr("a.csv:30: column 'time_s': '0.0284': uneven sampling")));
 }
 
-TEST(CsvRecording, TheSameInManyRowsIsSaidOnce) {
+TEST(CsvRecording, RepeatedErrorIsReportedOnce) {
   ExampleCsv csv;
   for (const std::size_t row : {7, 9, 30}) csv.row(row) = "0.001,nan,0,0";
   const auto complaints = csv.complaints();
@@ -224,7 +224,7 @@ TEST(CsvRecording, TheSameInManyRowsIsSaidOnce) {
   EXPECT_THAT(complaints[0], HasSubstr("(and in 2 more rows, the last 30)"));
 }
 
-TEST(CsvRecording, ARestingChannelBesideAMovingOneIsNoWrongUnit) {
+TEST(CsvRecording, RestingChannelIsNotAWrongUnit) {
   std::string text = "time_s,command_displacement_m,measured_displacement_m\n";
   for (int i = 0; i < 1000; ++i) {
     // Noise of ±5 um under a motion of ±5 mm: 1000 times as wide, and nothing to do with it.
@@ -233,7 +233,7 @@ TEST(CsvRecording, ARestingChannelBesideAMovingOneIsNoWrongUnit) {
   EXPECT_THAT(ExampleCsv::complaints_about(text), SizeIs(0));
 }
 
-TEST(CsvRecording, TakesMeasuredRecordingsThatHaveATime) {
+TEST(CsvRecording, ReadsMeasuredRecordingsWithTime) {
   const std::filesystem::path folder = shared_data("measured");
   HYBRIDTEST_NEEDS_DATA(folder);
   int files = 0;

@@ -34,13 +34,13 @@ bool has_cause(const Diagnosis& diagnosis, std::string_view interface, std::stri
   });
 }
 
-TEST(Diagnose, FindsNothingWhereModelAndRecordingAgree) {
+TEST(Diagnose, FindsNothingWhenModelAndRecordingAgree) {
   const Diagnosis diagnosis = diagnosis_of(made_recording(made_motion_m, spring_n));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
   EXPECT_TRUE(diagnosis.causes.empty());
 }
 
-TEST(Diagnose, NamesAViscousForceAndPutsItAtTheSpecimen) {
+TEST(Diagnose, NamesViscousForceAtSpecimen) {
   const auto velocity = [](double t) { return (made_motion_m(t + 1e-5) - made_motion_m(t - 1e-5)) / 2e-5; };
   const Diagnosis diagnosis =
       diagnosis_of(made_recording(made_motion_m, [&](double t) { return spring_n(t) + 3.0e4 * velocity(t); }));
@@ -51,7 +51,7 @@ TEST(Diagnose, NamesAViscousForceAndPutsItAtTheSpecimen) {
   EXPECT_GT(diagnosis.report.interface_shrink->explainable_fraction.value(), 0.99);
 }
 
-TEST(Diagnose, NamesACoarseConverterBesideABias) {
+TEST(Diagnose, NamesCoarseConverterBesideBias) {
   Recording recording = made_recording(made_motion_m, [](double t) { return spring_n(t) + 900.0; });
   double largest = 0.0;
   for (const double force_n : recording.dofs[0].of(Channel::measured_force)) {
@@ -70,7 +70,7 @@ TEST(Diagnose, NamesACoarseConverterBesideABias) {
   EXPECT_NEAR(diagnosis.causes.back().values[0], step_n, 1e-3 * step_n) << "coarsened last";
 }
 
-TEST(Diagnose, AnswersWithTheSetWhereASpringCannotTell) {
+TEST(Diagnose, ReturnsCandidateSetForAnElasticSpecimen) {
   // Of a linear spring a load cell that reads a tenth too much and a spring that is a tenth stiffer are the same.
   const Diagnosis diagnosis = diagnosis_of(made_recording(made_motion_m, [](double t) { return 1.1 * spring_n(t); }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::set);
@@ -79,7 +79,7 @@ TEST(Diagnose, AnswersWithTheSetWhereASpringCannotTell) {
   EXPECT_FALSE(diagnosis.report.next_experiment.empty());
 }
 
-TEST(Diagnose, TellsADisplacementSensorFromAnActuatorByTheForce) {
+TEST(Diagnose, SeparatesSensorFromActuatorByForce) {
   // The transducer reads a tenth too much of a motion that is as commanded: the force knows.
   const Diagnosis diagnosis = diagnosis_of(made_recording([](double t) { return 1.1 * made_motion_m(t); }, spring_n));
   EXPECT_TRUE(has_cause(diagnosis, "displacement_sensor", "gain"));
@@ -96,7 +96,7 @@ TEST(Diagnose, TellsADisplacementSensorFromAnActuatorByTheForce) {
 }
 
 /// A force in which nothing but noise is seen says nothing of how well a cause does elsewhere.
-TEST(Diagnose, JudgesACauseWhereThereIsAGap) {
+TEST(Diagnose, JudgesCauseWhereThereIsAGap) {
   const auto read_m = [](double t) { return made_motion_m(t) + 0.002; };
   std::vector<Recording> recordings(2, made_recording(
                                            read_m, [](double) { return 0.0; }, 1.0));
@@ -111,7 +111,7 @@ TEST(Diagnose, JudgesACauseWhereThereIsAGap) {
 }
 
 /// 20 ms more than is believed: a first-order change of the command would be far off.
-TEST(Diagnose, FindsWhatACompensatorWasReallySetTo) {
+TEST(Diagnose, FindsActualCompensatorSetting) {
   const auto compensator = [](double delay_s) {
     return std::make_unique<PolynomialDisplacement>(PolynomialDisplacement::Parameters{.order = 2, .delay_s = delay_s},
                                                     kSitePeriod_s);
@@ -139,7 +139,7 @@ TEST(Diagnose, FindsWhatACompensatorWasReallySetTo) {
   EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
 }
 
-TEST(Diagnose, SaysUnknownWhereTheLibraryHasNothing) {
+TEST(Diagnose, SaysUnknownWhenNoEffectFits) {
   const Diagnosis diagnosis = diagnosis_of(
       made_recording(made_motion_m, [](double t) { return spring_n(t) + 2000.0 * std::sin(40.0 * t + std::sin(t)); }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
@@ -147,14 +147,14 @@ TEST(Diagnose, SaysUnknownWhereTheLibraryHasNothing) {
   EXPECT_FALSE(diagnosis.report.next_experiment.empty());
 }
 
-TEST(Diagnose, CannotTellFromAForceAlone) {
+TEST(Diagnose, ForceAloneIsNotSufficient) {
   Recording recording = made_recording(made_motion_m, spring_n);
   recording.dofs[0].of(Channel::command_displacement).clear();
   recording.dofs[0].of(Channel::measured_displacement).clear();
   EXPECT_EQ(diagnosis_of(recording).report.verdict, Verdict::not_excited);
 }
 
-TEST(Diagnose, GivesTheSameBytesOnOneThreadAndOnTwo) {
+TEST(Diagnose, ResultIsIndependentOfThreadCount) {
   const Recording recording = made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); });
   EXPECT_EQ(diagnosis_json(diagnosis_of(recording, 1)), diagnosis_json(diagnosis_of(recording, 2)));
 }

@@ -94,7 +94,7 @@ std::string first_imbalance(const std::string& html) {
   return open.empty() ? "" : "<" + open.back() + "> stays open";
 }
 
-TEST(DiagnosisPage, StandsAloneAndIsSmall) {
+TEST(DiagnosisPage, IsSelfContainedAndSmall) {
   const std::string page = diagnosis_page(example());
   EXPECT_LT(page.size(), 2'000'000U);
   for (const char* outside : {"<script", "<link", "<img", " src=", " href=", "@import", "url(http", "javascript:"}) {
@@ -104,7 +104,7 @@ TEST(DiagnosisPage, StandsAloneAndIsSmall) {
   EXPECT_EQ(first_imbalance("<p><b></p>"), "</p> closes b") << "control";
 }
 
-TEST(DiagnosisPage, SaysWhereWhichAndHowFar) {
+TEST(DiagnosisPage, ShowsInterfaceEffectAndShrink) {
   const std::string page = diagnosis_page(example());
   EXPECT_THAT(page, HasSubstr("The gap lies at the specimen (93.0\u00a0% of it); its cause is coulomb friction"));
   EXPECT_THAT(page, HasSubstr("<li class=\"fault main\"><b>specimen</b>"));
@@ -117,7 +117,7 @@ TEST(DiagnosisPage, SaysWhereWhichAndHowFar) {
   EXPECT_THAT(page, HasSubstr("the recording is a CSV"));
 }
 
-TEST(DiagnosisPage, ShowsWhatSensorsTellAndWhatDiffersBetweenRepetitions) {
+TEST(DiagnosisPage, ShowsSensorFactsAndRepeatability) {
   DiagnosisReport report = example();
   const std::string page = diagnosis_page(report);
   EXPECT_THAT(page, HasSubstr("(repeated cycles)"));
@@ -131,13 +131,13 @@ TEST(DiagnosisPage, ShowsWhatSensorsTellAndWhatDiffersBetweenRepetitions) {
   EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("What the sensors tell")));
 }
 
-TEST(DiagnosisPage, EscapesWhatTheUserNamed) {
+TEST(DiagnosisPage, EscapesUserText) {
   const std::string page = diagnosis_page(example());
   EXPECT_THAT(page, HasSubstr("storey &lt;1&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("storey <1>")));
 }
 
-TEST(DiagnosisPage, OfEveryVerdictIsWhole) {
+TEST(DiagnosisPage, PageOfEveryVerdictIsComplete) {
   DiagnosisReport report = example();
   for (const Verdict verdict :
        {Verdict::none, Verdict::named, Verdict::set, Verdict::partial, Verdict::unknown, Verdict::not_excited}) {
@@ -148,7 +148,7 @@ TEST(DiagnosisPage, OfEveryVerdictIsWhole) {
   EXPECT_EQ(first_imbalance(diagnosis_page({})), "") << "of nothing";
 }
 
-TEST(DiagnosisPage, OfASetNamesItsMembersAndTheNextExperiment) {
+TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {
   DiagnosisReport report = example();
   report.verdict = Verdict::set;
   report.ranking[1].is_cause = true;
@@ -158,7 +158,7 @@ TEST(DiagnosisPage, OfASetNamesItsMembersAndTheNextExperiment) {
   EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
 }
 
-TEST(Wording, QuantitiesHaveUnitsOfHandySize) {
+TEST(Wording, QuantitiesUseReadableUnits) {
   EXPECT_EQ(quantity(0.0166, "s"), "16.6\u00a0ms");
   EXPECT_EQ(quantity(-4.0e6, "N/m"), "-4.00\u00a0MN/m");
   EXPECT_EQ(quantity(999.9, "N"), "1.00\u00a0kN");
@@ -170,7 +170,7 @@ TEST(Wording, QuantitiesHaveUnitsOfHandySize) {
   EXPECT_EQ(plain_parameter("exponent", ""), "exponent");
 }
 
-TEST(Wording, PercentagesKeepDigitsWhereTheyMatter) {
+TEST(Wording, PercentagesKeepSignificantDigits) {
   EXPECT_EQ(percent(0.5), "50\u00a0%");
   EXPECT_EQ(percent(0.997), "99.70\u00a0%");
   EXPECT_EQ(percent(0.02), "2.0\u00a0%");

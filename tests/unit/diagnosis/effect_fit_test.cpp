@@ -15,7 +15,7 @@ IdentificationProblem problem_of(const Recording& recording) {
   return make_problem(made_model(), segments_of(recording, 0, 0));
 }
 
-TEST(FitEffects, FindsADelayOfTheActuator) {
+TEST(FitEffects, FindsActuatorDelay) {
   const double delay_s = 0.0137;
   const auto measured_m = [&](double t) { return t > delay_s ? made_motion_m(t - delay_s) : 0.0; };
   const auto problem =
@@ -26,7 +26,7 @@ TEST(FitEffects, FindsADelayOfTheActuator) {
   EXPECT_FALSE(fit.parameters[0][0].at_bound);
 }
 
-TEST(FitEffects, FindsADryFrictionMadeByTheSignOfTheVelocity) {
+TEST(FitEffects, FindsDryFriction) {
   const auto friction_n = [](double t) {
     const double velocity = made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4);
     return velocity == 0.0 ? 0.0 : std::copysign(3000.0, velocity);
@@ -38,7 +38,7 @@ TEST(FitEffects, FindsADryFrictionMadeByTheSignOfTheVelocity) {
   EXPECT_NEAR(fit.effects[0].values[0], 3000.0, 0.02 * 3000.0);
 }
 
-TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
+TEST(FitEffects, KeepsParameterInItsRange) {
   const auto problem = problem_of(made_recording(made_motion_m, [](double t) {
     const double velocity = made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4);
     return spring_n(t) - (velocity == 0.0 ? 0.0 : std::copysign(3000.0, velocity));
@@ -48,7 +48,7 @@ TEST(FitEffects, KeepsAParameterWithinWhatItMayBe) {
   EXPECT_TRUE(fit.parameters[0][0].at_bound);
 }
 
-TEST(FitEffects, TakesNoMoreOffAnAmountThanThereIs) {
+TEST(FitEffects, RemovesAtMostTheExistingAmount) {
   const EffectType* const damping = find_effect(specimen, "viscous_damping");
   const auto found = [&](double real_n_s_per_m, double known_n_s_per_m) {
     SiteModel model = made_model();
@@ -65,7 +65,7 @@ TEST(FitEffects, TakesNoMoreOffAnAmountThanThereIs) {
   EXPECT_NEAR(found(5.0e3, 8.0e3), -3.0e3, 15.0);
 }
 
-TEST(FitEffects, SolvesForEffectsThatAreNotLinearTogether) {
+TEST(FitEffects, SolvesNonlinearEffectsJointly) {
   const double gain = 0.2;
   const double damping_n_s_per_m = 4.0e4;
   const auto problem = problem_of(made_recording(made_motion_m, [&](double t) {
@@ -81,7 +81,7 @@ TEST(FitEffects, SolvesForEffectsThatAreNotLinearTogether) {
 }
 
 /// Cycles of growing amplitude: late instants weigh more than early ones.
-TEST(FitEffects, FindsTheInstantOfAFracture) {
+TEST(FitEffects, FindsTimeOfFracture) {
   const double lost = 0.3;
   const double instant_s = 8.371;
   const auto growing_m = [](double t) { return 0.002 * t * std::sin(2.0 * std::numbers::pi * 1.1 * t); };
@@ -99,7 +99,7 @@ TEST(FitEffects, FindsTheInstantOfAFracture) {
 
 /// Noise that is loud while the specimen moves far and quiet else: of one level it would be thought to be where it
 /// hardly hurts as well.
-TEST(FitEffects, IntervalsKnowWhereTheNoiseIs) {
+TEST(FitEffects, IntervalsReflectNoiseDistribution) {
   Random random{9};
   const auto motion_m = [](double t) { return std::fmod(t, 4.0) < 1.0 ? 5.0 * made_motion_m(t) : made_motion_m(t); };
   const auto level_n = [](double t) { return std::fmod(t, 4.0) < 1.0 ? 8000.0 : 0.0; };
@@ -126,7 +126,7 @@ TEST(FitEffects, IntervalsKnowWhereTheNoiseIs) {
   EXPECT_LT(std::sqrt(energy / static_cast<double>(segment.segment.input.size()) / squares), 0.67 * expected);
 }
 
-TEST(FitEffects, HeldOutBlocksAreThoseOfAFitWithoutThem) {
+TEST(FitEffects, HeldOutBlocksAreNotFitted) {
   const auto problem = problem_of(made_recording(
       made_motion_m, [](double t) { return spring_n(t) + 500.0 * std::sin(3.0 * t); }, 200.0));
   const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "cubic_stiffness")}, false);
@@ -148,7 +148,7 @@ TEST(FitEffects, HeldOutBlocksAreThoseOfAFitWithoutThem) {
   }
 }
 
-TEST(FitEffects, RandomStretchesAreNotFittedIntoADetection) {
+TEST(FitEffects, RandomStretchesAreNotDetected) {
   const auto problem = problem_of(made_recording(made_motion_m, spring_n));
   const FitOutcome nothing = fit_nothing(problem, false);
   for (const char* name : {"stiffness_error", "viscous_damping", "cubic_stiffness", "coulomb_friction"}) {

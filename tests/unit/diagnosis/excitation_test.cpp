@@ -51,14 +51,14 @@ const report::InterfaceGap& gap_at(const Diagnosis& diagnosis, std::string_view 
 // Motion of 0.015 m rms; 1e-5 of it is a seventh of the displacement sensor's noise.
 constexpr double kBelowNoise = 1e-5;
 
-TEST(NotExcited, WhereNothingMoved) {
+TEST(NotExcited, IsReportedWithoutMotion) {
   const Diagnosis diagnosis = diagnosis_of(scaled_recording(0.0, 1.0, {}));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited);
   EXPECT_TRUE(diagnosis.causes.empty());
   EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("Record a test that moves"));
 }
 
-TEST(NotExcited, WhereAWrongSpringCouldNotHaveBeenSeen) {
+TEST(NotExcited, IsReportedWhenWrongSpringWouldNotShow) {
   const Diagnosis diagnosis = diagnosis_of(scaled_recording(kBelowNoise, 1.5, {}));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited);
   EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("times the motion"));
@@ -72,7 +72,7 @@ TEST(NotExcited, WhereAWrongSpringCouldNotHaveBeenSeen) {
   EXPECT_THAT(json, HasSubstr("\"specimen\": \"measured_displacement_m moves by"));
 }
 
-TEST(NotExcited, IsAMatterOfNoiseAndNotOfSize) {
+TEST(NotExcited, DependsOnNoiseAndNotOnSize) {
   // The same motion before sensors that are 10 000 times quieter.
   const Noise quiet{.displacement_m = 1e-10, .force_n = 0.002};
   EXPECT_NE(diagnosis_of(scaled_recording(kBelowNoise, 1.5, quiet)).causes.size(), 0U);
@@ -81,7 +81,7 @@ TEST(NotExcited, IsAMatterOfNoiseAndNotOfSize) {
   EXPECT_TRUE(gap_at(agrees, "specimen").is_judged);
 }
 
-TEST(NotExcited, IsNotSaidOfAnOrdinaryTestWithoutAGap) {
+TEST(NotExcited, IsNotReportedForAnOrdinaryTestWithoutGap) {
   // A hundredth of the motion and noise: signals of 40 dB, as noisy as tests get.
   for (const double noise : {1.0, 100.0}) {
     const Diagnosis diagnosis =
@@ -93,7 +93,7 @@ TEST(NotExcited, IsNotSaidOfAnOrdinaryTestWithoutAGap) {
   }
 }
 
-TEST(NotExcited, AForceWithinItsNoiseLeavesTheSpecimenOutAndTheActuatorIn) {
+TEST(NotExcited, ForceWithinNoiseExcludesOnlyTheSpecimen) {
   SiteModel model = made_model();
   model.make_law = [] { return std::make_unique<Elastic>(100.0); };  // 1.5 N rms against 20 N
   const Diagnosis diagnosis = diagnosis_of(scaled_recording(1.0, 150.0 / kMadeStiffness_n_per_m, {}), model);

@@ -11,7 +11,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(FlatSmoother, TakesOfASineWhatItsGainSays) {
+TEST(FlatSmoother, AttenuatesSineByItsGain) {
   const FlatSmoother smoother{4.0};
   const double per_sample = 2.0 * std::numbers::pi * 0.04;
   std::vector<double> sine;
@@ -26,7 +26,7 @@ TEST(FlatSmoother, TakesOfASineWhatItsGainSays) {
   }
 }
 
-TEST(FlatSmoother, LeavesConstantsUpToTheEndsAndTheShareOfNoiseThatItSays) {
+TEST(FlatSmoother, KeepsConstantsAndItsStatedNoiseShare) {
   const FlatSmoother smoother{3.0};
   for (const double value : smoother.smooth(std::vector<double>(50, 2.5))) EXPECT_NEAR(value, 2.5, 1e-14);
   Random random{5};
@@ -48,7 +48,7 @@ TEST(FlatSmoother, LeavesConstantsUpToTheEndsAndTheShareOfNoiseThatItSays) {
   EXPECT_NEAR(squares, smoother.noise_share(), 0.03 * smoother.noise_share());
 }
 
-TEST(FlatSmoother, OfNoDeviationChangesNothing) {
+TEST(FlatSmoother, ZeroWidthChangesNothing) {
   const std::vector<double> values{1.0, -2.0, 4.0};
   EXPECT_EQ(FlatSmoother{0.0}.smooth(values), values);
   EXPECT_EQ(FlatSmoother{0.0}.noise_share(), 1.0);

@@ -19,7 +19,7 @@ std::vector<double> repeatable_gap(const std::vector<double>& motion, std::uint6
   return residual;
 }
 
-TEST(Floor, OfRepeatedCyclesIsTheNoiseAndNotTheGap) {
+TEST(Floor, RepeatedCyclesGiveNoiseWithoutGap) {
   const auto motion = sampled(kSamples, [](double t) { return sine(1.0, t); });
   const auto residual = repeatable_gap(motion, 1);
   const auto floor = floor_of_cycles({kMadePeriod_s, motion, residual, residual});
@@ -29,14 +29,14 @@ TEST(Floor, OfRepeatedCyclesIsTheNoiseAndNotTheGap) {
   EXPECT_EQ(floor->source, FloorSource::repeated_cycles);
 }
 
-TEST(Floor, OfCyclesNeedsCyclesThatRepeat) {
+TEST(Floor, CycleFloorNeedsRepeatedCycles) {
   const auto sweep = sampled(kSamples, [](double t) { return std::sin(t * t); });
   EXPECT_FALSE(floor_of_cycles({kMadePeriod_s, sweep, sweep, sweep}).has_value());
   const auto growing = sampled(kSamples, [](double t) { return t * sine(1.0, t); });
   EXPECT_FALSE(floor_of_cycles({kMadePeriod_s, growing, growing, growing}).has_value());
 }
 
-TEST(Floor, OfRepeatedRecordingsIsTheNoiseOfEither) {
+TEST(Floor, RepeatedRecordingsGiveTheirNoise) {
   const auto motion = sampled(kSamples, [](double t) { return std::sin(t * t); });
   const auto first = repeatable_gap(motion, 1);
   const auto second = repeatable_gap(motion, 2);
@@ -49,7 +49,7 @@ TEST(Floor, OfRepeatedRecordingsIsTheNoiseOfEither) {
       << "not a repetition";
 }
 
-TEST(Floor, AtRestAndOfHighFrequenciesIsTheNoise) {
+TEST(Floor, EqualsNoiseAtRestAndHighFrequencies) {
   const auto motion = sampled(kSamples, [](double t) { return t > 8.0 && t < 12.0 ? sine(0.25, t - 8.0) : 0.0; });
   const auto residual = repeatable_gap(motion, 1);
   const GapSignals signals{kMadePeriod_s, motion, residual, residual};

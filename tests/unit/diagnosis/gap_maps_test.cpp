@@ -18,7 +18,7 @@ double triangle(double time_s) {
   return phase < 1.0 ? 2.0 * phase - 1.0 : 3.0 - 2.0 * phase;
 }
 
-TEST(Reversals, OfATriangleAreItsCorners) {
+TEST(Reversals, TriangleHasItsCorners) {
   const auto motion = sampled(kSamples, triangle);
   const auto turns = reversals_of(motion, reversal_threshold_m(motion));
   ASSERT_EQ(turns.size(), 9U) << "at 1 s, 2 s ... 9 s";
@@ -36,7 +36,7 @@ TEST(Reversals, OfATriangleAreItsCorners) {
   EXPECT_EQ(cycles[9999], 4.0);
 }
 
-TEST(Reversals, NoiseIsNone) {
+TEST(Reversals, NoiseGivesNone) {
   auto motion = sampled(kSamples, triangle);
   const auto noise = white_noise(kSamples, 0.004, 3);
   for (std::size_t i = 0; i < kSamples; ++i) motion[i] += noise[i];
@@ -45,7 +45,7 @@ TEST(Reversals, NoiseIsNone) {
   EXPECT_TRUE(reversals_of({}, 0.1).empty());
 }
 
-TEST(GapOverTime, FindsTheStretch) {
+TEST(GapOverTime, FindsTheAffectedStretch) {
   const std::vector<double> motion = sampled(kSamples, [](double t) { return sine(1.0, t); });
   std::vector<double> residual(kSamples, 0.0);
   for (std::size_t i = 4000; i < 6000; ++i) residual[i] = 0.5;
@@ -61,7 +61,7 @@ TEST(GapOverTime, FindsTheStretch) {
   EXPECT_DOUBLE_EQ(main[0].share, 1.0);
 }
 
-TEST(GapOverMotion, FindsWhereItIsLargeAndWhereItIsFast) {
+TEST(GapOverMotion, SeparatesLargeFromFastMotion) {
   const auto motion = sampled(kSamples, [](double t) { return sine(1.0, t); });
   std::vector<double> beyond(kSamples, 0.0);
   std::vector<double> inside(kSamples, 0.0);
@@ -87,7 +87,7 @@ TEST(GapOverMotion, FindsWhereItIsLargeAndWhereItIsFast) {
   EXPECT_NEAR(regions[0].time_share, 2.0 / std::numbers::pi * std::asin(0.2), 0.003);
 }
 
-TEST(GapOver, ABinsRootMeanSquareIsThatOfItsSamples) {
+TEST(GapOver, BinRootMeanSquareIsThatOfItsSamples) {
   const auto motion = sampled(kSamples, triangle);
   const auto turns = reversals_of(motion, reversal_threshold_m(motion));
   const auto distance = distance_since_reversal_m(motion, turns);

@@ -22,7 +22,7 @@ TEST(Welch, DensityIntegratesToTheVariance) {
   EXPECT_NEAR(spectra.frequency_hz(spectra.output.size() - 1), 500.0, 1e-9);
 }
 
-TEST(Welch, CoherenceTellsWhatGoesWithTheInput) {
+TEST(Welch, CoherenceSeparatesInputFromNoise) {
   const auto input = white_noise(kSamples, 1.0, 1);
   const auto alien = white_noise(kSamples, 1.0, 2);
   std::vector<double> filtered(kSamples, 0.0);

@@ -33,7 +33,7 @@ TEST(LocalPolynomial, IsExactForAQuarticUpToBothEnds) {
   }
 }
 
-TEST(LocalPolynomial, LeavesTheShareOfWhiteNoiseThatItSays) {
+TEST(LocalPolynomial, PassesItsStatedNoiseShare) {
   const auto noise = white_noise(200000, 1.0);
   const LocalPolynomial polynomial{10, kPeriod_s};
   double squares = 0.0;
@@ -42,7 +42,7 @@ TEST(LocalPolynomial, LeavesTheShareOfWhiteNoiseThatItSays) {
   EXPECT_NEAR(squares / 200000.0, polynomial.noise_share(), 0.06 * polynomial.noise_share());
 }
 
-TEST(WhiteNoiseLevel, IsThatOfNoiseOnASlowMotion) {
+TEST(WhiteNoiseLevel, MatchesNoiseOnSlowMotion) {
   std::vector<double> values = white_noise(20000, 2e-5);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] += 0.03 * std::sin(2.0 * std::numbers::pi * 1.5 * kPeriod_s * static_cast<double>(i));
@@ -50,7 +50,7 @@ TEST(WhiteNoiseLevel, IsThatOfNoiseOnASlowMotion) {
   EXPECT_NEAR(white_noise_level(values), 2e-5, 0.03 * 2e-5);  // 1 / sqrt(2 N), and the window's own correlation
 }
 
-TEST(WidestFaithfulHalfWidth, GoesAsFarAsTheMotionAllows) {
+TEST(WidestFaithfulHalfWidth, IsLimitedByTheMotion) {
   const auto noisy_sine = [](double frequency_hz) {
     std::vector<double> values = white_noise(4000, 1e-5);
     for (std::size_t i = 0; i < values.size(); ++i) {

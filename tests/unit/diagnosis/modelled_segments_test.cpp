@@ -42,7 +42,7 @@ const Segment& of_force(const std::vector<Segment>& segments) {
   return *std::ranges::find(segments, Channel::measured_force, &Segment::to);
 }
 
-TEST(ModelledSegments, AMassIsRightWithinTheNoiseOfItsAcceleration) {
+TEST(ModelledSegments, MassIsCorrectWithinAccelerationNoise) {
   const Recording recording = made_recording(motion_m, [](double t) { return kMass_kg * acceleration_m_per_s2(t); });
   const SiteModel model = mass_only();
   const auto segments = modelled_segments(model, recording, 0, 0);
@@ -56,7 +56,7 @@ TEST(ModelledSegments, AMassIsRightWithinTheNoiseOfItsAcceleration) {
   EXPECT_LT(residual_n(model, smooth), 0.01 * root_mean_square(smooth.measured));
 }
 
-TEST(ModelledSegments, AWrongMassIsSeenInFull) {
+TEST(ModelledSegments, WrongMassIsDetected) {
   const Recording recording =
       made_recording(motion_m, [](double t) { return 1.1 * kMass_kg * acceleration_m_per_s2(t); });
   const auto segments = modelled_segments(mass_only(), recording, 0, 0);
@@ -72,7 +72,7 @@ TEST(ModelledSegments, AWrongMassIsSeenInFull) {
   EXPECT_NEAR(part / root_mean_square(judged(smooth.measured)), 0.1 / 1.1, 5e-4);
 }
 
-TEST(ModelledSegments, EndsThatAreNotJudgedArePredictedAsMeasured) {
+TEST(ModelledSegments, UnjudgedEndsEqualTheMeasurement) {
   const Recording recording = made_recording(motion_m, [](double t) { return kMass_kg * acceleration_m_per_s2(t); });
   const auto segments = modelled_segments(mass_only(), recording, 0, 0);
   const Segment& smooth = of_force(segments);
@@ -84,7 +84,7 @@ TEST(ModelledSegments, EndsThatAreNotJudgedArePredictedAsMeasured) {
   EXPECT_NE(predicted[smooth.unjudged], smooth.measured[smooth.unjudged]);
 }
 
-TEST(ModelledSegments, StepsOfAConverterAreSmoothedAway) {
+TEST(ModelledSegments, ConverterStepsAreSmoothed) {
   SiteModel coarse = mass_only();
   coarse.effects.push_back({find_effect(EffectInterface::force_sensor, "quantization"), {200.0}});
   const Recording recording = made_recording(
@@ -97,7 +97,7 @@ TEST(ModelledSegments, StepsOfAConverterAreSmoothedAway) {
   EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
 }
 
-TEST(ModelledSegments, ASpringIsJudgedByWhatWasRecorded) {
+TEST(ModelledSegments, SpringIsJudgedByTheRecordedForce) {
   const Recording recording = made_recording(motion_m, [](double t) { return 2e6 * motion_m(t); });
   for (const Segment& segment : modelled_segments(made_model(), recording, 0, 0)) {
     EXPECT_EQ(segment.measured, recording.dofs[0].of(segment.to));

@@ -33,7 +33,7 @@ std::string why_not(const SiteModel& model, const Recording& recording, std::str
   return std::ranges::find(where, interface, &report::InterfaceGap::interface)->why_not;
 }
 
-TEST(Unjudged, NamesTheColumnsThatAreMissing) {
+TEST(Unjudged, NamesMissingColumns) {
   const Recording recording = made_recording(made_motion_m, spring_n);
   EXPECT_EQ(why_not(made_model(), recording, "network"),
             "sent_displacement_m and target_displacement_m were not recorded");
@@ -44,7 +44,7 @@ TEST(Unjudged, NamesTheColumnsThatAreMissing) {
   EXPECT_THAT(why_not(made_model(), recording, "numerical_substructure"), HasSubstr("a run directory"));
 }
 
-TEST(Unjudged, SaysWhereItIsTheModelThatIsSilent) {
+TEST(Unjudged, ReportsMissingModel) {
   SiteModel actuator = made_model();
   actuator.make_law = nullptr;
   EXPECT_EQ(why_not(actuator, made_recording(made_motion_m, spring_n), "specimen"),
@@ -74,7 +74,7 @@ std::vector<report::InterfaceGap> with_repeatability(const std::vector<Recording
   return where;
 }
 
-TEST(Repeatability, OfCyclesHoldsWhatNoiseDoesNot) {
+TEST(Repeatability, CyclesShowMoreThanNoise) {
   const double output_n = kMadeStiffness_n_per_m * 0.02 / std::sqrt(2.0);
   const report::InterfaceGap steady = with_repeatability({cycles(0.0, 1)})[1];
   ASSERT_TRUE(steady.repeatability.has_value());
@@ -86,7 +86,7 @@ TEST(Repeatability, OfCyclesHoldsWhatNoiseDoesNot) {
   EXPECT_GT(wandering.repeatability->nrmse, 0.5 * 500.0 / output_n) << "eleven draws are seldom half as far apart";
 }
 
-TEST(Repeatability, OfRecordingsWithTheSameInput) {
+TEST(Repeatability, ComparesRecordingsWithTheSameInput) {
   const auto once = with_repeatability({made_recording(made_motion_m, spring_n)});
   EXPECT_FALSE(once[1].repeatability.has_value()) << "this motion has no cycles";
   const auto twice = with_repeatability({made_recording(made_motion_m, spring_n),
@@ -97,7 +97,7 @@ TEST(Repeatability, OfRecordingsWithTheSameInput) {
   EXPECT_NEAR(twice[1].repeatability->nrmse, 0.01 / std::sqrt(2.0), 2e-4);
 }
 
-TEST(SensorFacts, TellOfClippingStepsAndRest) {
+TEST(SensorFacts, ReportClippingStepsAndRest) {
   Recording recording = made_recording(
       [](double time_s) { return time_s < 2.0 ? 0.0 : made_motion_m(time_s - 2.0); },
       [](double time_s) { return std::clamp(time_s < 2.0 ? 0.0 : spring_n(time_s - 2.0), -3e4, 3e4) + 150.0; }, 0.0);
@@ -115,7 +115,7 @@ TEST(SensorFacts, TellOfClippingStepsAndRest) {
   EXPECT_NEAR(force.at_rest->first, 150.0, 1e-9);
 }
 
-TEST(SensorFacts, TellOfALoadCellThatIsLate) {
+TEST(SensorFacts, ReportLateLoadCell) {
   for (const double late_s : {0.0, 0.01}) {
     report::DiagnosisReport report;
     add_sensor_facts(made_recording(made_motion_m, [&](double t) { return spring_n(std::max(0.0, t - late_s)); }), 0,

@@ -22,7 +22,7 @@ double step(Law& law, double displacement_m) {
 
 double path_m(int i) { return 0.02 * std::sin(0.1 * i); }
 
-TEST(LawFromMemory, AnswersAsTheLawOnThePathAndBesideIt) {
+TEST(LawFromMemory, EqualsTheLawOnAndBesideThePath) {
   const auto memory = std::make_shared<LawMemory>();
   const auto first = remembering(yielding(), *memory);
   for (int i = 0; i < 200; ++i) step(*first, path_m(i));

@@ -43,7 +43,7 @@ SiteModel model(double delay_s, double stiffness_n_per_m) {
   return site;
 }
 
-TEST(Replay, OfTheTrueModelHasNoGap) {
+TEST(Replay, TrueModelHasNoGap) {
   const auto channels = replay(model(0.012, kStiffness_n_per_m), recording(), 0);
   ASSERT_EQ(channels.size(), 2U);
   EXPECT_EQ(channels[0].interface, "transfer_system");
@@ -54,7 +54,7 @@ TEST(Replay, OfTheTrueModelHasNoGap) {
   EXPECT_LT(channels[1].nrmse, 2e-3);
 }
 
-TEST(Replay, AGapIsThatOfItsOwnStageAlone) {
+TEST(Replay, GapIsLimitedToItsOwnStage) {
   const auto late = replay(model(0.0, kStiffness_n_per_m), recording(), 0);
   // Two sines 12 ms apart: 2 sin(w tau / 2), but for the first 12 ms.
   EXPECT_NEAR(late[0].nrmse, 2.0 * std::sin(std::numbers::pi * 0.012), 1e-3);
@@ -66,7 +66,7 @@ TEST(Replay, AGapIsThatOfItsOwnStageAlone) {
   EXPECT_GT(soft[1].share, 0.99);
 }
 
-TEST(Replay, AModelWithoutAForceSaysNothingOfTheSpecimen) {
+TEST(Replay, ModelWithoutForceDoesNotJudgeSpecimen) {
   SiteModel site = model(0.012, kStiffness_n_per_m);
   site.make_law = {};
   const auto channels = replay(site, recording(), 0);
@@ -74,7 +74,7 @@ TEST(Replay, AModelWithoutAForceSaysNothingOfTheSpecimen) {
   EXPECT_EQ(channels[0].interface, "transfer_system");
 }
 
-TEST(ReplayCsv, IsARecordingWithPredictionsBeside) {
+TEST(ReplayCsv, HoldsRecordingAndPredictions) {
   const Recording made = recording();
   const auto channels = replay(model(0.0, kStiffness_n_per_m), made, 0);
   const std::string csv = replay_csv(made, {channels});

@@ -39,7 +39,7 @@ TEST(ReadAtRest, FindsTareDriftAndNoise) {
   EXPECT_FALSE(read_at_rest(force, sampled(kSamples, [](double t) { return sine(1.0, t); }), kMadePeriod_s));
 }
 
-TEST(ForceLag, IsTheSkewBetweenForceAndDisplacement) {
+TEST(ForceLag, EqualsSkewBetweenForceAndDisplacement) {
   const auto shape = [](double t) { return 0.01 * (sine(1.3, t) + sine(3.7, t) + 0.5 * sine(9.1, t)); };
   const auto motion = sampled(kSamples, shape);
   for (const double skew_s : {-0.0044, 0.0, 0.0123}) {

@@ -78,7 +78,7 @@ double value_of(const StructureDiagnosis& diagnosis, std::string_view effect) {
   return std::nan("");
 }
 
-TEST(StructureDiagnosis, TheStructureThatRanGivesEveryBitOfItsCommands) {
+TEST(StructureDiagnosis, RecomputedCommandsAreBitIdentical) {
   const StructureRecording recording = tested({});
   EXPECT_EQ(recomputed_displacement_m(two_storeys(), recording), recording.displacement_m);
   const StructureDiagnosis diagnosis = diagnose_structure(two_storeys(), recording);
@@ -89,7 +89,7 @@ TEST(StructureDiagnosis, TheStructureThatRanGivesEveryBitOfItsCommands) {
 
 class WrongNumber : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(WrongNumber, IsNamedAloneWithItsValue) {
+TEST_P(WrongNumber, IsNamedWithItsValue) {
   const StructureEffect& effect = kStructureEffects[GetParam()];
   for (const double ratio : {0.05, -0.2}) {
     StructureErrors errors;
@@ -104,7 +104,7 @@ TEST_P(WrongNumber, IsNamedAloneWithItsValue) {
 
 INSTANTIATE_TEST_SUITE_P(Each, WrongNumber, testing::Range<std::size_t>(0, kStructureEffects.size()));
 
-TEST(StructureDiagnosis, TwoWrongNumbersAreFoundTogether) {
+TEST(StructureDiagnosis, FindsTwoWrongNumbersTogether) {
   const StructureDiagnosis diagnosis = diagnose_structure(two_storeys(), tested({.mass = 0.05, .damping = 0.5}));
   EXPECT_EQ(diagnosis.verdict, Verdict::named);
   ASSERT_EQ(diagnosis.fit.ratios.size(), 2U);
@@ -113,13 +113,13 @@ TEST(StructureDiagnosis, TwoWrongNumbersAreFoundTogether) {
   EXPECT_NEAR(diagnosis.shares[0] + diagnosis.shares[1], 1.0, 1e-12);
 }
 
-TEST(StructureDiagnosis, AMassThatIsWrongOnOneFloorOnlyIsNoRatioOfAll) {
+TEST(StructureDiagnosis, WrongMassOnOneFloorIsNotACommonRatio) {
   const StructureDiagnosis diagnosis = diagnose_structure(two_storeys(), tested({}, 1.4));
   EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
   EXPECT_TRUE(diagnosis.fit.ratios.empty());
 }
 
-TEST(StructureDiagnosis, WithoutRecordsOfNumericalSubstructuresStiffnessIsLeftOut) {
+TEST(StructureDiagnosis, SkipsStiffnessWithoutNumericalRecords) {
   StructureRecording recording = tested({.stiffness = 0.1});
   EXPECT_EQ(diagnose_structure(two_storeys(), recording).verdict, Verdict::named) << "with them it is found";
   recording.numerical_force_n.resize(2, 0);
@@ -144,7 +144,7 @@ Diagnosis of_site(Verdict verdict) {
   return diagnosis;
 }
 
-TEST(StructureDiagnosis, JoinsTheSitesVerdict) {
+TEST(StructureDiagnosis, IsMergedIntoTheSiteVerdict) {
   const StructureDiagnosis wrong_mass = diagnose_structure(two_storeys(), tested({.mass = 0.05}));
   const StructureDiagnosis right = diagnose_structure(two_storeys(), tested({}));
   const StructureDiagnosis strange{
@@ -167,7 +167,7 @@ TEST(StructureDiagnosis, JoinsTheSitesVerdict) {
   EXPECT_EQ(together(Verdict::unknown, strange), Verdict::unknown);
 }
 
-TEST(StructureDiagnosis, SharesTheGapWithTheSite) {
+TEST(StructureDiagnosis, DividesTheGapWithTheSite) {
   Diagnosis diagnosis = of_site(Verdict::named);
   add_structure(diagnose_structure(two_storeys(), tested({.mass = 0.05})), diagnosis);
   const report::DiagnosisReport& report = diagnosis.report;
@@ -178,7 +178,7 @@ TEST(StructureDiagnosis, SharesTheGapWithTheSite) {
   EXPECT_TRUE(diagnosis.causes.empty()) << "effects of the structure are not the site's";
 }
 
-TEST(StructureDiagnosis, AStructureInOrderIsJudgedCleanAndTakesNoShare) {
+TEST(StructureDiagnosis, CorrectStructureIsCleanWithoutShare) {
   Diagnosis diagnosis = of_site(Verdict::named);
   add_structure(diagnose_structure(two_storeys(), tested({})), diagnosis);
   ASSERT_EQ(diagnosis.report.where.size(), 2U);

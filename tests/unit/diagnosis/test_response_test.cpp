@@ -24,7 +24,7 @@ TestResponse steady(double speed_m_per_s, double force_n, Eigen::Index steps) {
 // What rounding leaves of a few hundred additions.
 constexpr double kRounding = 1e-12;
 
-TEST(TestResponse, OfTheSameTestHasNoError) {
+TEST(TestResponse, SameTestHasNoError) {
   const TestResponse test = steady(0.1, 1000.0, 101);
   const ResponseError error = response_error(test, test);
   EXPECT_EQ(error.nrmse, 0.0);
@@ -42,14 +42,14 @@ TEST(TestResponse, ErrorsAreRelativeToTheRecordedTest) {
   EXPECT_NEAR(error.energy_error, 0.05, kRounding);
 }
 
-TEST(TestResponse, PeaksAreOfTheWorstDegreeOfFreedom) {
+TEST(TestResponse, PeaksUseWorstDegreeOfFreedom) {
   const TestResponse real = steady(0.1, 1000.0, 101);
   TestResponse other = real;
   other.displacement_m.row(1) *= -1.3;
   EXPECT_NEAR(response_error(real, other).peak_error, 0.3, kRounding);
 }
 
-TEST(TestResponse, AnEarlyEndIsComparedUpToThere) {
+TEST(TestResponse, ComparesUpToAnEarlyEnd) {
   const TestResponse real = steady(0.1, 1000.0, 101);
   const ResponseError error = response_error(real, steady(0.1, 1000.0, 51));
   EXPECT_NEAR(error.nrmse, 0.0, kRounding);
@@ -57,7 +57,7 @@ TEST(TestResponse, AnEarlyEndIsComparedUpToThere) {
   EXPECT_NEAR(error.energy_error, 0.0, kRounding);
 }
 
-TEST(TestResponse, NothingComparedWithNothingIsNoError) {
+TEST(TestResponse, EmptyComparisonHasNoError) {
   const TestResponse still = steady(0.0, 0.0, 101);
   const ResponseError error = response_error(still, still);
   EXPECT_EQ(error.nrmse + error.peak_error + error.energy_error, 0.0);

@@ -39,7 +39,7 @@ double span_of(const std::vector<double>& values) {
   return *high - *low;
 }
 
-TEST(ReadingSteps, AreFoundBehindNoiseAndInFrontOfIt) {
+TEST(ReadingSteps, FoundWithNoiseBeforeOrAfterConverter) {
   const double step = span_of(motion_m()) / 73.4;
   for (const double noise : {0.0, 0.02, 0.1}) {
     const ReadingSteps behind = steps_of_readings(with_noise(in_steps(motion_m(), step), noise * step));
@@ -52,14 +52,14 @@ TEST(ReadingSteps, AreFoundBehindNoiseAndInFrontOfIt) {
   EXPECT_NEAR(steps_of_readings(in_steps(with_noise(motion_m(), 0.3 * step), step)).step, step, 0.01 * step / 73.4);
 }
 
-TEST(ReadingSteps, OfAnOffsetConverterAreTheSame) {
+TEST(ReadingSteps, FoundDespiteConverterOffset) {
   const double step = span_of(motion_m()) / 40.0;
   std::vector<double> values = in_steps(motion_m(), step);
   for (double& value : values) value += 0.37 * step;
   EXPECT_NEAR(steps_of_readings(values).step, step, 0.01 * step / 40.0);
 }
 
-TEST(ReadingSteps, AreNotSeenWhereThereAreNone) {
+TEST(ReadingSteps, NotFoundInSmoothSignal) {
   const double span = span_of(motion_m());
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     EXPECT_EQ(steps_of_readings(with_noise(motion_m(), 1e-4 * span, seed)).step, 0.0) << seed;
@@ -75,7 +75,7 @@ TEST(ReadingSteps, AreNotSeenWhereThereAreNone) {
   EXPECT_EQ(steps_of_readings(std::vector<double>(kSamples, 0.25)).step, 0.0);
 }
 
-TEST(ReadingSteps, AreNotSeenInAFewSpikes) {
+TEST(ReadingSteps, NotFoundInAFewSpikes) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random{seed};
     std::vector<double> spikes(kSamples, 0.0);
@@ -84,7 +84,7 @@ TEST(ReadingSteps, AreNotSeenInAFewSpikes) {
   }
 }
 
-TEST(ReadingSteps, ThatNoiseHidesAreLeftAlone) {
+TEST(ReadingSteps, NotFoundWhenHiddenByNoise) {
   const double step = span_of(motion_m()) / 50.0;
   EXPECT_EQ(steps_of_readings(with_noise(in_steps(motion_m(), step), 0.3 * step)).step, 0.0);
 }
@@ -99,7 +99,7 @@ std::vector<double> received(std::span<const int> lags) {
   return values;
 }
 
-TEST(NetworkTrace, TellsLossFromJitterAndBothFromADelay) {
+TEST(NetworkTrace, SeparatesLossJitterAndDelay) {
   Random random{3};
   std::vector<int> lost(kSamples, 4);
   std::size_t held = 0;
@@ -130,7 +130,7 @@ TEST(NetworkTrace, TellsLossFromJitterAndBothFromADelay) {
   EXPECT_FALSE(trace_of_network(motion_m(), with_noise(motion_m(), 1e-6), kPeriod_s)) << "not what was sent";
 }
 
-TEST(FindTraces, AddsUpRecordingsAndLeavesWhatTheModelHas) {
+TEST(FindTraces, SumsRecordingsAndSkipsEffectsOfTheModel) {
   const double step = span_of(motion_m()) / 60.0;
   Recording recording =
       made_recording(made_motion_m, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });

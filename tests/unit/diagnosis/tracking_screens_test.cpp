@@ -22,7 +22,7 @@ std::vector<double> wave(double amplitude, double phase) {
 }
 
 /// 1/2 (c[i-1] m[i] - c[i] m[i-1]) is 1/2 C M sin(phase) sin(step) at every sample of two sines.
-TEST(TrackingIndicator, OfASineThatLagsGrowsByTheAreaOfItsPolygon) {
+TEST(TrackingIndicator, LaggingSineAddsItsPolygonArea) {
   const auto indicator = tracking_indicator_m2(wave(kCommand_m, 0.0), wave(kMeasured_m, kPhase));
   const double each = 0.5 * kCommand_m * kMeasured_m * std::sin(kPhase) * std::sin(kStep);
   for (std::size_t i = 0; i < indicator.size(); i += 100) {
@@ -30,14 +30,14 @@ TEST(TrackingIndicator, OfASineThatLagsGrowsByTheAreaOfItsPolygon) {
   }
 }
 
-TEST(TrackingIndicator, FallsWhenTheMeasuredMotionIsAhead) {
+TEST(TrackingIndicator, DecreasesWhenMeasuredMotionLeads) {
   EXPECT_LT(tracking_indicator_m2(wave(kCommand_m, 0.0), wave(kMeasured_m, -kPhase)).back(), -1e-4);
   EXPECT_NEAR(tracking_indicator_m2(wave(kCommand_m, 0.0), wave(kMeasured_m, 0.0)).back(), 0.0, 1e-17);
 }
 
 /// Of an elastic specimen k the closed integral of f d(measured) vanishes; that of f d(command) is
 /// -1/2 k C M sin(phase) sin(step) per sample, over 1/2 k C^2.
-TEST(ErrorMonitor, OfALateElasticSpecimenIsTheEnergyOfItsLoop) {
+TEST(ErrorMonitor, LateElasticSpecimenGivesLoopEnergy) {
   constexpr double kStiffness_n_per_m = 3e6;
   auto measured = wave(kMeasured_m, kPhase);
   auto force = measured;

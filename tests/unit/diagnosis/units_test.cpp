@@ -56,7 +56,7 @@ TEST(AccelerationUnits, AreCheckedAgainstTheDisplacement) {
   EXPECT_THAT(complaints_of(raw_recording(1e-2)), ElementsAre(HasSubstr("seems to be in cm/s2: ")));
 }
 
-TEST(AccelerationUnits, AFindingNamesTheRowOfTheLargestValue) {
+TEST(AccelerationUnits, FindingNamesRowOfLargestValue) {
   const RawRecording raw = raw_recording(kStandardGravity_m_per_s2);
   const auto findings = check_recording(raw).findings;
   ASSERT_EQ(findings.size(), 1U);
@@ -66,12 +66,12 @@ TEST(AccelerationUnits, AFindingNamesTheRowOfTheLargestValue) {
   EXPECT_EQ(std::abs(raw.columns[1].values[findings[0].row - 2]), largest);
 }
 
-TEST(AccelerationUnits, TellTimeInMilliseconds) {
+TEST(AccelerationUnits, DetectTimeInMilliseconds) {
   EXPECT_THAT(complaints_of(raw_recording(1.0, 1e-3)),
               ElementsAre(testing::AllOf(HasSubstr("column 'time_s'"), HasSubstr("seems to be in milliseconds"))));
 }
 
-TEST(AccelerationUnits, OfASensorElsewhereAreNotGuessedAt) {
+TEST(AccelerationUnits, SkippedForSensorAtAnotherPlace) {
   // It does not go with this displacement, whatever its size.
   RawRecording raw = raw_recording(1.0);
   for (std::size_t i = 0; i < raw.columns[1].values.size(); ++i) {
@@ -108,12 +108,12 @@ TEST(ForceUnits, AreCheckedAgainstTheModel) {
   EXPECT_THAT(complaints_of(made_model(), with_force_unit(4.44822)), ElementsAre(HasSubstr("in pounds of force")));
 }
 
-TEST(ForceUnits, KilonewtonsShowBesideAWrongStiffness) {
+TEST(ForceUnits, DetectsKilonewtonsBesideWrongStiffness) {
   EXPECT_THAT(complaints_of(made_model(), with_force_unit(1e3, 2.0)), ElementsAre(HasSubstr("in kilonewtons")));
   EXPECT_THAT(complaints_of(made_model(), with_force_unit(1e3, 0.5)), ElementsAre(HasSubstr("in kilonewtons")));
 }
 
-TEST(ForceUnits, KilonewtonsShowBesideAFrictionThatTheModelLacks) {
+TEST(ForceUnits, DetectsKilonewtonsBesideMissingFriction) {
   // Most of what this specimen does: its force goes with the model's at a correlation of about a half.
   Recording recording = made_recording(made_motion_m, [](double time_s) {
     const double forward = made_motion_m(time_s + 1e-3) > made_motion_m(time_s - 1e-3) ? 1.0 : -1.0;
@@ -124,12 +124,12 @@ TEST(ForceUnits, KilonewtonsShowBesideAFrictionThatTheModelLacks) {
   EXPECT_THAT(complaints_of(made_model(), recording), ElementsAre(HasSubstr("in kilonewtons")));
 }
 
-TEST(ForceUnits, ALoadCellThatIsNotConnectedIsNoUnit) {
+TEST(ForceUnits, DisconnectedLoadCellIsNotAWrongUnit) {
   // Noise alone, a thousandth of what the model predicts.
   EXPECT_THAT(complaints_of(made_model(), made_recording(made_motion_m, [](double) { return 0.0; })), IsEmpty());
 }
 
-TEST(ForceUnits, AWrongStiffnessIsNoUnit) {
+TEST(ForceUnits, WrongStiffnessIsNotAWrongUnit) {
   for (const double softer : {0.1, 0.5, 2.0, 5.0, 9.0, 50.0, 200.0}) {
     EXPECT_THAT(complaints_of(made_model(), with_force_unit(1.0, softer)), IsEmpty()) << softer;
   }
@@ -152,13 +152,13 @@ Recording late_recording(double sample_period_s) {
   return recording;
 }
 
-TEST(TimeUnits, AreCheckedAgainstTheModelWhereSamplesAreFarApart) {
+TEST(TimeUnits, AreCheckedAgainstModelForCoarseSamples) {
   EXPECT_THAT(complaints_of(late_model(), late_recording(2.0)),
               ElementsAre(testing::AllOf(HasSubstr("column 'time_s': '2'"), HasSubstr("seems to be in milliseconds"))));
   EXPECT_THAT(complaints_of(late_model(), late_recording(2000.0)), ElementsAre(HasSubstr("in microseconds")));
 }
 
-TEST(TimeUnits, AreLeftAloneWhereTheModelFitsAsWritten) {
+TEST(TimeUnits, AreAcceptedWhenTheModelFits) {
   EXPECT_THAT(complaints_of(late_model(), late_recording(0.002)), IsEmpty());
   // A slow test, logged every other second: 20 ms are nothing to it.
   Recording slow = made_recording(made_motion_m, spring_n);

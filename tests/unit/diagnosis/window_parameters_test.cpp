@@ -21,7 +21,7 @@ GapSignals signals(const std::vector<double>& input, const std::vector<double>& 
   return {kMadePeriod_s, input, output, output};
 }
 
-TEST(ParametersOverTime, OfALinearSpecimenAreItsOwnEverywhere) {
+TEST(ParametersOverTime, LinearSpecimenHasConstantParameters) {
   const auto motion = sampled(kSamples, swelling);
   const auto velocity = velocity_of(motion, kMadePeriod_s, kVelocityReach_s);
   std::vector<double> force(kSamples);

@@ -26,7 +26,7 @@ std::vector<double> path(ClosingMotion& motion, double from_m, double velocity_m
   return path_m;
 }
 
-TEST(ClosingMotionTest, ComesToAStandHalfTheHaltFurtherOn) {
+TEST(ClosingMotionTest, StopsHalfTheHaltTimeFurther) {
   ClosingMotion motion{kSettings, 1};
   const auto path_m = path(motion, 0.03, 0.2, false);
   ASSERT_EQ(path_m.size(), 21U);
@@ -46,7 +46,7 @@ TEST(ClosingMotionTest, ReturnsToExactlyZero) {
   EXPECT_EQ(path(hurry, 0.0, 0.0, true).size(), 2U);
 }
 
-TEST(ClosingMotionTest, VelocityIsContinuousAndLimitsAreKeptFromAnywhere) {
+TEST(ClosingMotionTest, KeepsVelocityContinuousAndWithinLimits) {
   Random random{11};
   for (int i = 0; i < 1000; ++i) {
     ClosingMotion motion{kSettings, 1};

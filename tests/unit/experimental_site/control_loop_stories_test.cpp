@@ -65,7 +65,7 @@ double largest_velocity_change(const Bench& bench, std::size_t from, std::size_t
   return largest;
 }
 
-TEST(ControlLoopStories, AWarningIsSaidAndTheTestGoesOn) {
+TEST(ControlLoopStories, WarningIsReportedAndTestContinues) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   rule(settings, InterlockKind::force) = {SafetyAction::warn, ClearCondition::when_cleared};
   settings.limits.force_n = 3000.0;  // passed at 0.03 m, on each of the sine's crests
@@ -119,18 +119,18 @@ void expect_ten_holds_passed(bool compensates, double velocity_change_m_per_s) {
   EXPECT_GT(step, 600);
 }
 
-TEST(ControlLoopStories, AHoldThatClearsGoesOnFromRestWithoutAJumpAndLosesNoStep) {
+TEST(ControlLoopStories, ClearedHoldContinuesFromRestWithoutJump) {
   // The path picks up kRateRecovery of its rate in a step: at 0.08 m/s and four periods to a step
   // 0.04 m/s in a period.
   expect_ten_holds_passed(false, 0.041);
 }
 
-TEST(ControlLoopStories, SoItDoesWithACompensatorThatLooksAhead) {
+TEST(ControlLoopStories, ClearedHoldWithPredictiveCompensatorHasNoJump) {
   // A cubic predictor that looks as far ahead as its points are apart has weights 4, -6, 4, -1.
   expect_ten_holds_passed(true, 15.0 * 0.041);
 }
 
-TEST(ControlLoopStories, AHoldForTheOperatorGoesOnWhenHeResumes) {
+TEST(ControlLoopStories, OperatorHoldContinuesOnResume) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   rule(settings, InterlockKind::command_age) = {SafetyAction::hold, ClearCondition::operator_reset};
   Bench bench{settings, ideal_spring_rig(kStiffness_n_per_m)};
@@ -151,7 +151,7 @@ TEST(ControlLoopStories, AHoldForTheOperatorGoesOnWhenHeResumes) {
   EXPECT_EQ(reports[1].measurement.step, 2);
 }
 
-TEST(ControlLoopStories, ReleaseStopsTheRigInTheControlPeriodThatPassesTheLimit) {
+TEST(ControlLoopStories, ReleaseStopsRigInThePeriodOfTheTrip) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   rule(settings, InterlockKind::force).action = SafetyAction::release;
   settings.limits.force_n = 1000.0;
@@ -166,7 +166,7 @@ TEST(ControlLoopStories, ReleaseStopsTheRigInTheControlPeriodThatPassesTheLimit)
   EXPECT_LE(kStiffness_n_per_m * bench.rig.commands[count - 2].displacement_m[0], 1000.0) << "the one before";
 }
 
-TEST(ControlLoopStories, ASiteThatHoldsReturnsWhenSomethingGraverComes) {
+TEST(ControlLoopStories, HoldingSiteReturnsOnMoreSevereAction) {
   double extra_n = 0.0;
   const auto spring = ideal_spring_rig(kStiffness_n_per_m);
   Bench bench{Bench::settings(CouplingMode::paced), [&](const ActuatorCommand& command, RigFeedback& feedback) {
@@ -186,7 +186,7 @@ TEST(ControlLoopStories, ASiteThatHoldsReturnsWhenSomethingGraverComes) {
   EXPECT_GE(bench.rig.stops, 1);
 }
 
-TEST(ControlLoopStories, CapturesZeroOffsetsAtArmingAndTakesThemOff) {
+TEST(ControlLoopStories, SubtractsZeroOffsetsCapturedAtArming) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   settings.captures_zero_offsets = true;
   settings.limits.displacement_step_m = 0.001;
@@ -222,7 +222,7 @@ TEST(ControlLoopStories, CapturesZeroOffsetsAtArmingAndTakesThemOff) {
   EXPECT_NEAR(measured[0].measurement.force_n[0], 0.0, 2.0);
 }
 
-TEST(ControlLoopStories, ZeroOffsetsAreTakenOffOnceFromAReadingThatAFaultLeavesAsItWas) {
+TEST(ControlLoopStories, FaultDoesNotSubtractZeroOffsetsTwice) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   settings.captures_zero_offsets = true;
   bool is_silent = false;
@@ -244,7 +244,7 @@ TEST(ControlLoopStories, ZeroOffsetsAreTakenOffOnceFromAReadingThatAFaultLeavesA
   EXPECT_NEAR(bench.record.column_values("measured_force_n").back(), 0.0, 1e-10);
 }
 
-TEST(ControlLoopStories, OffsetsBeyondTheLimitsAreAFaultAndNotTakenOff) {
+TEST(ControlLoopStories, OffsetsBeyondLimitsAreAFaultAndNotApplied) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::lockstep);
   settings.captures_zero_offsets = true;
   Bench bench{settings, [](const ActuatorCommand&, RigFeedback& feedback) {
@@ -259,7 +259,7 @@ TEST(ControlLoopStories, OffsetsBeyondTheLimitsAreAFaultAndNotTakenOff) {
   EXPECT_EQ(reports[0].fault, FaultFlags::force_limit);
 }
 
-TEST(ControlLoopStories, FirstTargetsElsewhereAreBlendedInAndThenReachedExactly) {
+TEST(ControlLoopStories, BlendsIntoFirstTargetsAndThenReachesThem) {
   for (const double ramp_in_s : {0.0, 0.5}) {
     ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
     settings.ramp_in_s = ramp_in_s;
@@ -296,7 +296,7 @@ TEST(ControlLoopStories, FirstTargetsElsewhereAreBlendedInAndThenReachedExactly)
   }
 }
 
-TEST(ControlLoopStories, AtTheEndItComesToAStandAndHoldsOrReturnsAsTold) {
+TEST(ControlLoopStories, StopsAtTheEndAndHoldsOrReturnsAsConfigured) {
   for (const bool returns : {true, false}) {
     ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
     settings.returns_at_end = returns;

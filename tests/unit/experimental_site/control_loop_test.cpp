@@ -24,7 +24,7 @@ constexpr double kPeriod_s = Bench::kPeriod_s;
 constexpr int kPeriodsPerStep = Bench::kPeriodsPerStep;
 constexpr double kStep_s = Bench::kStep_s;
 
-TEST(ControlLoop, StandsAtZeroBetweenArmingAndTheStart) {
+TEST(ControlLoop, HoldsZeroBetweenArmingAndStart) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   EXPECT_EQ(bench.advance(), kNever);
   EXPECT_TRUE(bench.rig.commands.empty());
@@ -38,7 +38,7 @@ TEST(ControlLoop, StandsAtZeroBetweenArmingAndTheStart) {
   for (const ActuatorCommand& command : bench.rig.commands) EXPECT_EQ(command.displacement_m[0], 0.0);
 }
 
-TEST(ControlLoop, ReportsARigThatCannotBeArmedAndMovesNothing) {
+TEST(ControlLoop, ReportsRigThatCannotArmWithoutMotion) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.rig.on_arm = [] { throw std::runtime_error{"no pressure"}; };
   bench.ask(LoopRequest::Kind::arm);
@@ -52,7 +52,7 @@ TEST(ControlLoop, ReportsARigThatCannotBeArmedAndMovesNothing) {
   EXPECT_TRUE(bench.rig.commands.empty());
 }
 
-TEST(ControlLoop, MeasuresAtTheTargetItselfWithAnIdealRig) {
+TEST(ControlLoop, MeasuresExactlyAtTargetWithIdealRig) {
   Bench bench{Bench::settings(CouplingMode::lockstep), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   Random random{5};
@@ -75,7 +75,7 @@ TEST(ControlLoop, MeasuresAtTheTargetItselfWithAnIdealRig) {
   EXPECT_EQ(bench.rig.commands.size(), 1 + 200U * kPeriodsPerStep);
 }
 
-TEST(ControlLoop, MeasuresAtALateTargetBetweenTwoSamples) {
+TEST(ControlLoop, InterpolatesMeasurementAtLateTarget) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   constexpr double kVelocity_m_per_s = 0.1;
@@ -112,7 +112,7 @@ struct LimitCase {
 
 class EveryLimit : public testing::TestWithParam<LimitCase> {};
 
-TEST_P(EveryLimit, TripsInTheControlPeriodThatPassesIt) {
+TEST_P(EveryLimit, TripsInTheControlPeriodThatExceedsIt) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::paced);
   settings.limits.tracking_error_m = 0.02;
   settings.limits.energy_error_ratio = 0.5;
@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
                               [](RigFeedback&, RigStatus& status) { status = RigStatus::fault; }}),
     [](const auto& limit) { return limit.param.name; });
 
-TEST(ControlLoop, TargetsBeyondALimitTripAndTheCommandStaysInside) {
+TEST(ControlLoop, TargetBeyondLimitTripsAndCommandStaysInside) {
   Bench too_far{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   too_far.start();
   too_far.target(1, 0.2);
@@ -209,7 +209,7 @@ TEST(ControlLoop, TargetsBeyondALimitTripAndTheCommandStaysInside) {
   EXPECT_EQ(not_a_number.command_m(), 0.0);
 }
 
-TEST(ControlLoop, AfterValuesThatAreNotFiniteItHoldsAlsoWhenStopped) {
+TEST(ControlLoop, HoldsAfterNonFiniteValuesAlsoWhenStopped) {
   bool is_broken = false;
   const auto spring = ideal_spring_rig(kStiffness_n_per_m);
   Bench bench{Bench::settings(CouplingMode::paced), [&](const ActuatorCommand& command, RigFeedback& feedback) {
@@ -235,7 +235,7 @@ TEST(ControlLoop, AfterValuesThatAreNotFiniteItHoldsAlsoWhenStopped) {
   EXPECT_EQ(bench.command_m(), held_m);
 }
 
-TEST(ControlLoop, ReturnsToZeroAtHalfTheVelocityLimitAtMost) {
+TEST(ControlLoop, ReturnsToZeroAtMostAtHalfVelocityLimit) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::lockstep);
   settings.return_time_s = 0.0;  // as fast as the limit lets it
   Bench bench{settings, ideal_spring_rig(kStiffness_n_per_m)};
@@ -274,7 +274,7 @@ TEST(ControlLoop, ReturnsToZeroAtHalfTheVelocityLimitAtMost) {
             kHalt + static_cast<std::size_t>(std::ceil(std::numbers::pi * stand_m / 0.5 / kPeriod_s)));
 }
 
-TEST(ControlLoop, AReturnFromZeroInNoTimeSendsZeros) {
+TEST(ControlLoop, ReturnFromZeroSendsZeros) {
   ControlLoopSettings settings = Bench::settings(CouplingMode::lockstep);
   settings.return_time_s = 0.0;
   Bench bench{settings, ideal_spring_rig(kStiffness_n_per_m)};
@@ -287,7 +287,7 @@ TEST(ControlLoop, AReturnFromZeroInNoTimeSendsZeros) {
   for (const ActuatorCommand& command : bench.rig.commands) EXPECT_EQ(command.displacement_m[0], 0.0);
 }
 
-TEST(ControlLoop, AnEmergencyStopEndsAllMotionAtOnce) {
+TEST(ControlLoop, EmergencyStopEndsMotionAtOnce) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   bench.target(1, 0.001, 0.2);
@@ -304,7 +304,7 @@ TEST(ControlLoop, AnEmergencyStopEndsAllMotionAtOnce) {
   EXPECT_EQ(reports.back().kind, LoopReport::Kind::at_rest);
 }
 
-TEST(ControlLoop, HoldsWhenTheNextTargetIsOverdue) {
+TEST(ControlLoop, HoldsWhenNextTargetIsOverdue) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   bench.target(1, 0.0004, 0.1);
@@ -323,7 +323,7 @@ TEST(ControlLoop, HoldsWhenTheNextTargetIsOverdue) {
   EXPECT_EQ(bench.command_m(), held_m) << "a target that comes after all moves nothing";
 }
 
-TEST(ControlLoop, InLockstepWakesForAnOverdueTarget) {
+TEST(ControlLoop, LockstepWakesForOverdueTarget) {
   Bench bench{Bench::settings(CouplingMode::lockstep), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   const Instant overdue = bench.loop.advance(bench.now);
@@ -336,7 +336,7 @@ TEST(ControlLoop, InLockstepWakesForAnOverdueTarget) {
   EXPECT_EQ(fault->fault, FaultFlags::command_age);
 }
 
-TEST(ControlLoop, APauseIsNotOverdueAndTheAgeCountsFromTheResumption) {
+TEST(ControlLoop, CommandAgeCountsFromResumption) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   bench.target(1, 0.0004, 0.1);
@@ -351,7 +351,7 @@ TEST(ControlLoop, APauseIsNotOverdueAndTheAgeCountsFromTheResumption) {
   EXPECT_TRUE(bench.take_fault().has_value());
 }
 
-TEST(ControlLoop, MakesUpForControlPeriodsThatWereMissed) {
+TEST(ControlLoop, CatchesUpMissedControlPeriods) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.ask(LoopRequest::Kind::arm);
   bench.advance();
@@ -364,7 +364,7 @@ TEST(ControlLoop, MakesUpForControlPeriodsThatWereMissed) {
   }
 }
 
-TEST(ControlLoop, RecordsEveryPeriodUnderTheNamesOfItsColumns) {
+TEST(ControlLoop, RecordsEveryPeriodInNamedColumns) {
   Bench bench{Bench::settings(CouplingMode::lockstep, 2), [](const ActuatorCommand& command, RigFeedback& feedback) {
                 feedback.displacement_m = 0.5 * command.displacement_m;
                 feedback.force_n = InterfaceVector::Constant(2, 7.0);

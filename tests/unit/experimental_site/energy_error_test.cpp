@@ -44,7 +44,7 @@ TEST(EnergyErrorTest, IsZeroWithoutTrackingError) { EXPECT_NEAR(after_cycles(0.0
 
 TEST(EnergyErrorTest, IsPositiveWhenTheActuatorLeads) { EXPECT_GT(after_cycles(-0.02, 3).ratio(), 1.0); }
 
-TEST(EnergyErrorTest, RefusesAStiffnessThatCannotScaleIt) {
+TEST(EnergyErrorTest, RejectsStiffnessThatCannotScale) {
   EXPECT_THROW((EnergyErrorMonitor{InterfaceMatrix::Zero(1, 1), 1e-3}), ConfigError);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
 
-TEST(FadingOffsetTest, GoesFromItsBeginningToZeroWithTheVelocitiesItSays) {
+TEST(FadingOffsetTest, FadesToZeroWithReportedVelocity) {
   constexpr double kDuration_s = 0.5;
   constexpr double kInterval_s = 1e-4;
   FadingOffset offset{1};
@@ -36,7 +36,7 @@ TEST(FadingOffsetTest, GoesFromItsBeginningToZeroWithTheVelocitiesItSays) {
   EXPECT_EQ(offset.velocity_m_per_s()[0], 0.0);
 }
 
-TEST(FadingOffsetTest, NothingToFadeIsOverAtOnce) {
+TEST(FadingOffsetTest, ZeroOffsetEndsAtOnce) {
   FadingOffset offset{2};
   offset.begin(InterfaceVector::Zero(2), InterfaceVector::Zero(2), 1.0);
   EXPECT_TRUE(offset.is_over());

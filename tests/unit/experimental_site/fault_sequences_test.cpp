@@ -257,7 +257,7 @@ Count run_sequences(std::uint64_t sequences, Sabotage sabotage = nothing) {
   return count;
 }
 
-TEST(FaultSequencesTest, InTenThousandNoCommandLeavesTheLimitsAndEveryTripReachesItsActionWithinAPeriod) {
+TEST(FaultSequencesTest, CommandsStayInLimitsAndTripsActWithinAPeriod) {
   const Count count = run_sequences(10000);
   EXPECT_EQ(count.wrong, 0) << count.first;
   EXPECT_GE(count.ended, 3000) << "the sequences must provoke faults";
@@ -265,7 +265,7 @@ TEST(FaultSequencesTest, InTenThousandNoCommandLeavesTheLimitsAndEveryTripReache
   EXPECT_GE(count.cleared, 500) << "some of them holds that clear";
 }
 
-TEST(FaultSequencesTest, WouldShowAnInterlockThatIsMissing) {
+TEST(FaultSequencesTest, DetectsMissingInterlock) {
   for (const InterlockKind kind : {InterlockKind::not_finite, InterlockKind::rig_status, InterlockKind::displacement,
                                    InterlockKind::force, InterlockKind::displacement_step, InterlockKind::force_step}) {
     static InterlockKind missing;
@@ -277,13 +277,13 @@ TEST(FaultSequencesTest, WouldShowAnInterlockThatIsMissing) {
   }
 }
 
-TEST(FaultSequencesTest, WouldShowALimitThatIsTooWide) {
+TEST(FaultSequencesTest, DetectsLimitThatIsTooWide) {
   EXPECT_GE(run_sequences(500, [](ControlLoopSettings& settings) { settings.limits.displacement_m *= 3.0; }).wrong, 1);
   EXPECT_GE(run_sequences(500, [](ControlLoopSettings& settings) { settings.limits.velocity_m_per_s *= 3.0; }).wrong,
             1);
 }
 
-TEST(FaultSequencesTest, WouldShowAnActionThatIsTooMild) {
+TEST(FaultSequencesTest, DetectsActionThatIsTooMild) {
   const Count count = run_sequences(200, [](ControlLoopSettings& settings) {
     for (InterlockRule& rule : settings.rules) {
       if (rule.action == SafetyAction::release) rule.action = SafetyAction::hold;

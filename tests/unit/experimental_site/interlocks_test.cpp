@@ -70,7 +70,7 @@ class Story {
   std::vector<InterlockTrip> trips;
 };
 
-TEST(InterlocksTest, LetPassWhatIsWithinEveryLimit) {
+TEST(InterlocksTest, DoNotTripWithinLimits) {
   Story story;
   for (int i = 0; i < 1000; ++i) {
     story.measured[0] += 1e-9;  // a live sensor is never quite still
@@ -90,7 +90,7 @@ struct Case {
 
 class InterlockCases : public testing::TestWithParam<Case> {};
 
-TEST_P(InterlockCases, TripWithTheSampleThatPassesTheirLimit) {
+TEST_P(InterlockCases, TripAtTheSampleThatExceedsTheLimit) {
   Story story;
   story.sample();
   GetParam().change(story);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
              [](Story& s) { s.measured = one(std::numeric_limits<double>::infinity()); }, SafetyAction::hold, kNan}),
     [](const auto& test) { return test.param.what; });
 
-TEST(InterlocksTest, EveryoneHasANameAndAFaultOfItsOwn) {
+TEST(InterlocksTest, EachHasItsOwnNameAndFault) {
   std::set<std::string_view> names;
   std::set<std::uint32_t> faults;
   for (std::size_t i = 0; i < kInterlockCount; ++i) {
@@ -179,14 +179,14 @@ TEST(InterlocksTest, EveryoneHasANameAndAFaultOfItsOwn) {
   EXPECT_EQ(faults.size(), kInterlockCount);
 }
 
-TEST(InterlocksTest, DoNotMindSilenceWhileNoCommandIsExpected) {
+TEST(InterlocksTest, IgnoreCommandAgeWhenNoCommandIsExpected) {
   Story story;
   story.age_s = 100.0;
   story.expects_commands = false;
   EXPECT_EQ(story.sample().action, SafetyAction::none);
 }
 
-TEST(InterlocksTest, ALimitThatIsNotSetDoesNotTrip) {
+TEST(InterlocksTest, UnsetLimitDoesNotTrip) {
   Story story{{.displacement_m = 0.1, .velocity_m_per_s = 1.0, .force_n = 1e5, .command_age_s = 1.0}};
   story.sample();
   story.measured = one(-0.05);
@@ -199,7 +199,7 @@ TEST(InterlocksTest, ALimitThatIsNotSetDoesNotTrip) {
   }
 }
 
-TEST(InterlocksTest, WhatIsNoNumberHidesNothingElse) {
+TEST(InterlocksTest, NonFiniteValueDoesNotHideOtherTrips) {
   Story story;
   story.rule(InterlockKind::force).action = SafetyAction::release;
   story.limits.force_step_n.reset();
@@ -218,7 +218,7 @@ TEST(InterlocksTest, WhatIsNoNumberHidesNothingElse) {
   EXPECT_EQ(two.verdict.trips[1].kind, InterlockKind::not_finite);
 }
 
-TEST(InterlocksTest, SeveralTripWithTheGravestFirst) {
+TEST(InterlocksTest, ListSeveralTripsMostSevereFirst) {
   Story story;
   story.age_s = 2.0;            // hold
   story.velocity = one(3.0);    // ramp
@@ -233,7 +233,7 @@ TEST(InterlocksTest, SeveralTripWithTheGravestFirst) {
   EXPECT_EQ(verdict.action, SafetyAction::release);
 }
 
-TEST(InterlocksTest, AStuckSensorIsOneThatStandsStillUnderAMovingCommand) {
+TEST(InterlocksTest, StuckSensorTripsUnderMovingCommand) {
   for (const bool is_force : {false, true}) {
     Story story;
     double command_m = 0.012;
@@ -275,7 +275,7 @@ TEST(InterlocksTest, AStuckSensorIsOneThatStandsStillUnderAMovingCommand) {
   EXPECT_EQ(samples, 20);
 }
 
-TEST(InterlocksTest, AStepIsNotSeenAcrossAValueThatIsNoNumber) {
+TEST(InterlocksTest, StepLimitIgnoresNonFiniteNeighbours) {
   Story story;
   story.rule(InterlockKind::not_finite) = {SafetyAction::warn, ClearCondition::when_cleared};
   story.sample();
@@ -291,7 +291,7 @@ TEST(InterlocksTest, AStepIsNotSeenAcrossAValueThatIsNoNumber) {
   EXPECT_EQ(story.trips[1].kind, InterlockKind::force_step);
 }
 
-TEST(InterlocksTest, AHoldThatClearsLetsGoOnceItsConditionHasBeenAbsentForATenthOfASecond) {
+TEST(InterlocksTest, HoldClearsAfterTenthOfASecondWithoutCause) {
   Story story;
   story.rule(InterlockKind::tracking_error) = {SafetyAction::hold, ClearCondition::when_cleared};
   story.limits.displacement_step_m.reset();
@@ -312,7 +312,7 @@ TEST(InterlocksTest, AHoldThatClearsLetsGoOnceItsConditionHasBeenAbsentForATenth
   EXPECT_EQ(story.trips.size(), 1U);
 }
 
-TEST(InterlocksTest, TheOperatorResetsWhatWaitsForHimAndItTripsAgainIfItsCauseIsThere) {
+TEST(InterlocksTest, OperatorResetTripsAgainWhileCausePersists) {
   Story story;
   story.rule(InterlockKind::energy_error) = {SafetyAction::hold, ClearCondition::operator_reset};
   story.rule(InterlockKind::tracking_indicator) = {SafetyAction::warn, ClearCondition::never};
@@ -333,7 +333,7 @@ TEST(InterlocksTest, TheOperatorResetsWhatWaitsForHimAndItTripsAgainIfItsCauseIs
   EXPECT_EQ(story.trips.size(), 4U);
 }
 
-TEST(InterlocksTest, WhatRampsOrReleasesNeverClears) {
+TEST(InterlocksTest, RampAndReleaseNeverClear) {
   Story story;
   story.rule(InterlockKind::velocity) = {SafetyAction::ramp_to_zero, ClearCondition::when_cleared};
   story.velocity = one(1.1);
@@ -345,7 +345,7 @@ TEST(InterlocksTest, WhatRampsOrReleasesNeverClears) {
   EXPECT_TRUE(story.verdict.is_final);
 }
 
-TEST(InterlocksTest, AtRestTheTargetIsNotHeldAgainstLimitsButTheMeasurementIs) {
+TEST(InterlocksTest, AtRestLimitsApplyToMeasurementOnly) {
   Story story;
   story.phase = SitePhase::resting;
   story.target = one(3.0);
@@ -358,7 +358,7 @@ TEST(InterlocksTest, AtRestTheTargetIsNotHeldAgainstLimitsButTheMeasurementIs) {
   EXPECT_EQ(story.sample().action, SafetyAction::ramp_to_zero);
 }
 
-TEST(InterlocksTest, ARuleWithoutActionJudgesNothing) {
+TEST(InterlocksTest, RuleWithoutActionDoesNotTrip) {
   Story story;
   story.rule(InterlockKind::velocity).action = SafetyAction::none;
   story.velocity = one(9.0);

@@ -34,7 +34,7 @@ struct Replay {
   RigFeedback feedback{InterfaceVector::Zero(1), InterfaceVector::Zero(1)};
 };
 
-TEST(ReplayRig, TellsTheRecordWhateverIsCommandedStraightBetweenItsRows) {
+TEST(ReplayRig, InterpolatesTheRecordForAnyCommand) {
   Replay replay{ReplayRig::AtEnd::fault};
   ASSERT_EQ(replay.at(0.0), RigStatus::healthy);
   EXPECT_EQ(replay.feedback.displacement_m[0], 0.0);
@@ -48,7 +48,7 @@ TEST(ReplayRig, TellsTheRecordWhateverIsCommandedStraightBetweenItsRows) {
   EXPECT_NEAR(replay.feedback.force_n[0], 0.0, 1e-11);
 }
 
-TEST(ReplayRig, BehindItsEndItIsInFaultOrHoldsAsItWasTold) {
+TEST(ReplayRig, FaultsOrHoldsAtEndAsConfigured) {
   Replay fault{ReplayRig::AtEnd::fault};
   EXPECT_EQ(fault.at(0.29), RigStatus::healthy);
   EXPECT_EQ(fault.at(0.31), RigStatus::fault);
@@ -58,7 +58,7 @@ TEST(ReplayRig, BehindItsEndItIsInFaultOrHoldsAsItWasTold) {
   EXPECT_EQ(hold.feedback.force_n[0], -200.0);
 }
 
-TEST(ReplayRig, StandsAtItsBeginUntilArmedAndWhereItIsOnceStopped) {
+TEST(ReplayRig, HoldsStartUntilArmedAndPositionWhenStopped) {
   ReplayRig rig{three_rows(), ReplayRig::AtEnd::fault};
   rig.connect();
   ActuatorCommand command;
@@ -78,7 +78,7 @@ TEST(ReplayRig, StandsAtItsBeginUntilArmedAndWhereItIsOnceStopped) {
   EXPECT_EQ(feedback.displacement_m[0], stopped_m);
 }
 
-TEST(ReplayRig, RefusesWhatIsNoRecord) {
+TEST(ReplayRig, RejectsInvalidRecord) {
   const auto refused = [](auto change, const char* why) {
     RecordedMeasurement record = three_rows();
     change(record);

@@ -41,13 +41,13 @@ InterfaceVector strokes_of(const SetupGeometry& geometry, const InterfaceVector&
   return stroke_m;
 }
 
-TEST(RigidBeam, DisplacementAloneMovesBothActuatorsByIt) {
+TEST(RigidBeam, TranslationMovesBothActuatorsEqually) {
   const InterfaceVector stroke_m = strokes_of(upright_beam(), InterfaceVector{{0.25, 0.0}});
   EXPECT_DOUBLE_EQ(stroke_m[0], 0.25);
   EXPECT_DOUBLE_EQ(stroke_m[1], 0.25);
 }
 
-TEST(RigidBeam, RotationIsThatOfTheClosedForm) {
+TEST(RigidBeam, RotationMatchesClosedForm) {
   // The upper attachment goes to 0.6 (-sin, cos): law of cosines by hand.
   const double theta = 0.4;
   const InterfaceVector stroke_m = strokes_of(upright_beam(), InterfaceVector{{0.0, theta}});
@@ -57,7 +57,7 @@ TEST(RigidBeam, RotationIsThatOfTheClosedForm) {
   EXPECT_LT(stroke_m[0], 0.0) << "positive from x to y: the upper end goes back";
 }
 
-TEST(RigidBeam, PosesComeBackFromTheirStrokes) {
+TEST(RigidBeam, PoseRoundTripsThroughStrokes) {
   Random random{11};
   for (int i = 0; i < 10'000; ++i) {
     const RigidBeam beam = drawn_beam(random);
@@ -99,7 +99,7 @@ TEST(RigidBeam, ForcesDoTheSameVirtualWork) {
   EXPECT_GT(largest_work_difference(1e-5, false), 0.1);
 }
 
-TEST(RigidBeam, StrokesThatNoPoseHasAreNotFound) {
+TEST(RigidBeam, StrokesWithoutPoseAreNotFound) {
   const RigidBeam beam = upright_beam();
   InterfaceVector pose{{0.1, 0.05}};
   const InterfaceVector before = pose;
@@ -109,7 +109,7 @@ TEST(RigidBeam, StrokesThatNoPoseHasAreNotFound) {
   EXPECT_EQ(pose, before);
 }
 
-TEST(RigidBeam, RefusesActuatorsThatDoNotHoldIt) {
+TEST(RigidBeam, RejectsActuatorsThatDoNotHoldTheBeam) {
   const Eigen::Vector2d point{0.0, 0.5};
   EXPECT_THROW((RigidBeam{{{{point, point}, {{0.0, -0.5}, {-2.0, -0.5}}}}}), ConfigError) << "no length";
   EXPECT_THROW((RigidBeam{{{{point, {-2.0, 0.5}}, {{0.3, 0.5}, {2.0, 0.5}}}}}), ConfigError) << "one line";
@@ -117,7 +117,7 @@ TEST(RigidBeam, RefusesActuatorsThatDoNotHoldIt) {
       << "both across the displacement";
 }
 
-TEST(LinearGeometry, IsItsMatrix) {
+TEST(LinearGeometry, MapsByItsMatrix) {
   const LinearGeometry geometry{Eigen::MatrixXd{{1.0, 0.5}, {1.0, -0.5}}};
   EXPECT_EQ(strokes_of(geometry, InterfaceVector{{0.25, 0.75}}), (InterfaceVector{{0.625, -0.125}}));
   InterfaceVector dof_force{2};
@@ -125,7 +125,7 @@ TEST(LinearGeometry, IsItsMatrix) {
   EXPECT_EQ(dof_force, (InterfaceVector{{14.0, 3.0}}));
 }
 
-TEST(LinearGeometry, WithMoreActuatorsThanDofsThePoseIsTheOneOfLeastSquares) {
+TEST(LinearGeometry, RedundantActuatorsGiveLeastSquaresPose) {
   const LinearGeometry geometry{Eigen::MatrixXd{{1.0}, {1.0}, {2.0}}};
   InterfaceVector pose = InterfaceVector::Zero(1);
   ASSERT_TRUE(find_pose(geometry, InterfaceVector{{0.1, 0.2, 0.3}}, pose));
@@ -133,14 +133,14 @@ TEST(LinearGeometry, WithMoreActuatorsThanDofsThePoseIsTheOneOfLeastSquares) {
   EXPECT_NEAR(pose[0], 0.15, 1e-16);
 }
 
-TEST(LinearGeometry, RefusesWhatDoesNotHoldEveryDegreeOfFreedom) {
+TEST(LinearGeometry, RejectsUnheldDegreeOfFreedom) {
   EXPECT_THROW(LinearGeometry{(Eigen::MatrixXd{{1.0, 2.0}})}, ConfigError) << "fewer actuators than dofs";
   EXPECT_THROW(LinearGeometry{(Eigen::MatrixXd{{1.0, 2.0}, {2.0, 4.0}, {3.0, 6.0}})}, ConfigError) << "rank";
   EXPECT_THROW(LinearGeometry{Eigen::MatrixXd::Ones(13, 1)}, ConfigError);
   EXPECT_NO_THROW(LinearGeometry{Eigen::MatrixXd::Ones(12, 1)});
 }
 
-TEST(SetupGeometry, AllocatesNothing) {
+TEST(SetupGeometry, DoesNotAllocate) {
   const RigidBeam beam = upright_beam();
   const LinearGeometry full{Eigen::MatrixXd::Identity(12, 12)};
   InterfaceVector pose = InterfaceVector::Zero(2);

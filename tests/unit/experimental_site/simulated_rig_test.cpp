@@ -82,7 +82,7 @@ TEST(SimulatedRig, MovesTheSpecimenByItsTransferSystem) {
   EXPECT_EQ(feedback.force_n[0], 0.01 * kStiffness_n_per_m);
 }
 
-TEST(SimulatedRig, ActuatorsAreTheirOwnButShareTheSpecimen) {
+TEST(SimulatedRig, ActuatorsAreIndependentAndShareTheSpecimen) {
   SimulatedRig rig{transfer_systems(std::make_unique<Ideal>(), std::make_unique<Delay>(1ms, 1ms)),
                    std::make_unique<ElasticSpecimen>(Eigen::MatrixXd{{2.0, -1.0}, {-1.0, 3.0}}),
                    {},
@@ -97,7 +97,7 @@ TEST(SimulatedRig, ActuatorsAreTheirOwnButShareTheSpecimen) {
   EXPECT_EQ(feedback.force_n, (InterfaceVector{{3.0, -6.5}}));
 }
 
-TEST(SimulatedRig, TellsTheSpecimenItsVelocityOncePerExchange) {
+TEST(SimulatedRig, PassesVelocityToSpecimenOncePerExchange) {
   auto dashpot = std::make_unique<Dashpot>();
   const Dashpot& seen = *dashpot;
   SimulatedRig rig{transfer_systems(std::make_unique<Ideal>()), specimen_of(std::move(dashpot)), {}, 1ms};
@@ -114,7 +114,7 @@ TEST(SimulatedRig, TellsTheSpecimenItsVelocityOncePerExchange) {
   EXPECT_EQ(seen.commits, 3);
 }
 
-TEST(SimulatedRig, DoesNotMoveBeforeItIsArmed) {
+TEST(SimulatedRig, DoesNotMoveBeforeArming) {
   const auto rig = one_actuator_rig();
   RigFeedback feedback = feedback_for(1);
   EXPECT_EQ(rig->exchange(command_of(0.01), feedback), RigStatus::fault);
@@ -129,7 +129,7 @@ TEST(SimulatedRig, DoesNotMoveBeforeItIsArmed) {
   EXPECT_EQ(feedback.displacement_m[0], 0.0);  // the delay begins with the motion
 }
 
-TEST(SimulatedRig, HoldsWhereItWasStoppedAndStillMeasures) {
+TEST(SimulatedRig, HoldsAndMeasuresAfterStop) {
   const auto rig = one_actuator_rig({.displacement_noise_m = 1e-6, .force_noise_n = 5.0, .seed = 3});
   rig->connect();
   rig->arm();
@@ -149,7 +149,7 @@ TEST(SimulatedRig, HoldsWhereItWasStoppedAndStillMeasures) {
   EXPECT_THROW(rig->arm(), std::runtime_error);
 }
 
-TEST(SimulatedRig, StoppedWhileStillDisarmedItCannotBeArmed) {
+TEST(SimulatedRig, CannotArmAfterStop) {
   const auto rig = one_actuator_rig();
   rig->connect();
   rig->stop_motion();
@@ -159,7 +159,7 @@ TEST(SimulatedRig, StoppedWhileStillDisarmedItCannotBeArmed) {
   EXPECT_NO_THROW(rig->arm());  // already is
 }
 
-TEST(SimulatedRig, ConnectingAnewRepeatsTheRun) {
+TEST(SimulatedRig, ReconnectingRepeatsTheRun) {
   SimulatedRig rig{transfer_systems(std::make_unique<SecondOrder>(
                        SecondOrder::Parameters{.natural_frequency_hz = 15.0, .damping_ratio = 0.9, .delay = 4ms}, 1ms)),
                    specimen_of(std::make_unique<Bilinear>(Bilinear::Parameters{
@@ -183,7 +183,7 @@ TEST(SimulatedRig, ConnectingAnewRepeatsTheRun) {
   EXPECT_EQ(run(), first);
 }
 
-TEST(SimulatedRig, EveryChannelHasItsOwnNoise) {
+TEST(SimulatedRig, ChannelsHaveIndependentNoise) {
   const SimulatedRig::SensorNoise noise{.displacement_noise_m = 1.0, .force_noise_n = 1.0, .seed = 7};
   SimulatedRig rig{transfer_systems(std::make_unique<Ideal>(), std::make_unique<Ideal>()),
                    std::make_unique<ElasticSpecimen>(Eigen::MatrixXd::Identity(2, 2)), noise, 1ms};
@@ -197,7 +197,7 @@ TEST(SimulatedRig, EveryChannelHasItsOwnNoise) {
   EXPECT_EQ(feedback.force_n[1], (Random{7, 3}.normal()));
 }
 
-TEST(SimulatedRig, CommandsThatAreNoNumbersAreFaultsAndMoveNothing) {
+TEST(SimulatedRig, NonFiniteCommandIsAFaultWithoutMotion) {
   const auto rig = one_actuator_rig();
   rig->connect();
   rig->arm();
@@ -213,7 +213,7 @@ TEST(SimulatedRig, CommandsThatAreNoNumbersAreFaultsAndMoveNothing) {
   EXPECT_EQ(feedback.displacement_m[0], 0.02);
 }
 
-TEST(SimulatedRig, CommandsAndFeedbackOfTheWrongSizeAreFaults) {
+TEST(SimulatedRig, WrongCommandOrFeedbackSizeIsAFault) {
   const auto rig = one_actuator_rig();
   rig->connect();
   rig->arm();
@@ -224,7 +224,7 @@ TEST(SimulatedRig, CommandsAndFeedbackOfTheWrongSizeAreFaults) {
   EXPECT_EQ(rig->exchange(command_of(0.0), too_small), RigStatus::fault);
 }
 
-TEST(SimulatedRig, ForceBeyondAllNumbersIsAFault) {
+TEST(SimulatedRig, NonFiniteForceIsAFault) {
   const auto rig = one_actuator_rig();
   rig->connect();
   rig->arm();
@@ -234,7 +234,7 @@ TEST(SimulatedRig, ForceBeyondAllNumbersIsAFault) {
   EXPECT_TRUE(feedback.force_n.allFinite());
 }
 
-TEST(SimulatedRig, RefusesOtherThanOneTransferSystemPerDof) {
+TEST(SimulatedRig, RequiresOneTransferSystemPerDof) {
   EXPECT_THROW((SimulatedRig{transfer_systems(std::make_unique<Ideal>()),
                              std::make_unique<ElasticSpecimen>(Eigen::MatrixXd::Identity(2, 2)),
                              {},
@@ -242,7 +242,7 @@ TEST(SimulatedRig, RefusesOtherThanOneTransferSystemPerDof) {
                ConfigError);
 }
 
-TEST(SimulatedRig, RefusesParametersOutOfRange) {
+TEST(SimulatedRig, RejectsParametersOutOfRange) {
   const auto make = [](const SimulatedRig::SensorNoise& noise, Duration period) {
     SimulatedRig{transfer_systems(std::make_unique<Ideal>()), specimen_of(std::make_unique<Elastic>(1.0)), noise,
                  period};
@@ -291,7 +291,7 @@ TEST(SimulatedRig, ExchangeAllocatesNothing) {
   }
 }
 
-TEST(SimulatedRig, TheAllocationCounterCounts) {
+TEST(SimulatedRig, AllocationCounterCounts) {
   const std::size_t before = allocation_count();
   const std::vector<double> allocated(100);
   EXPECT_EQ(allocation_count(), before + 1);

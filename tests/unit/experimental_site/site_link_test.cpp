@@ -132,7 +132,7 @@ class SiteLinkTest : public testing::Test {
   Instant now_{};
 };
 
-TEST_F(SiteLinkTest, IsArmedOnceItsLoopIs) {
+TEST_F(SiteLinkTest, IsArmedWhenItsLoopIsArmed) {
   join();
   EXPECT_EQ(presence_.state(), LifecycleState::ready);
   control(ControlVerb::arm);
@@ -146,7 +146,7 @@ TEST_F(SiteLinkTest, IsArmedOnceItsLoopIs) {
   EXPECT_EQ(presence_.state(), LifecycleState::armed);
 }
 
-TEST_F(SiteLinkTest, ALoopThatCannotArmIsAFault) {
+TEST_F(SiteLinkTest, LoopThatCannotArmIsAFault) {
   join();
   control(ControlVerb::arm);
   advance();
@@ -160,14 +160,14 @@ TEST_F(SiteLinkTest, ALoopThatCannotArmIsAFault) {
   EXPECT_EQ(events[0].code, EventCode::interlock_tripped);
 }
 
-TEST_F(SiteLinkTest, PassesEveryTargetOnOnceAndInOrder) {
+TEST_F(SiteLinkTest, PassesEachTargetOnceInOrder) {
   start();
   for (const Step step : {0, 1, 1, 0, 2, 1, 2}) commands_.send(command(step));
   advance();
   EXPECT_EQ(take_targets(), (std::vector<Step>{0, 1, 2}));
 }
 
-TEST_F(SiteLinkTest, FindsLostTargetsAmongThePointsOfTheNextCommand) {
+TEST_F(SiteLinkTest, RecoversLostTargetsFromNextCommand) {
   start();
   commands_.send(command(0));
   commands_.send(command(4));  // 1, 2 and 3 were lost
@@ -178,7 +178,7 @@ TEST_F(SiteLinkTest, FindsLostTargetsAmongThePointsOfTheNextCommand) {
   EXPECT_TRUE(take_targets().empty());
 }
 
-TEST_F(SiteLinkTest, ACommandThatOvertakesTheStartStartsTheLoop) {
+TEST_F(SiteLinkTest, CommandBeforeStartStartsTheLoop) {
   join();
   control(ControlVerb::arm);
   advance();
@@ -194,7 +194,7 @@ TEST_F(SiteLinkTest, ACommandThatOvertakesTheStartStartsTheLoop) {
   EXPECT_EQ(presence_.state(), LifecycleState::running);
 }
 
-TEST_F(SiteLinkTest, ObeysNoCommandBeforeItIsArmedOfAnotherCoordinatorOrOfAnotherSize) {
+TEST_F(SiteLinkTest, IgnoresCommandsUnarmedForeignOrOfWrongSize) {
   join();
   commands_.send(command(0));
   advance();
@@ -206,7 +206,7 @@ TEST_F(SiteLinkTest, ObeysNoCommandBeforeItIsArmedOfAnotherCoordinatorOrOfAnothe
   EXPECT_TRUE(take_requests().empty());
 }
 
-TEST_F(SiteLinkTest, AnswersWithWhatTheLoopMeasured) {
+TEST_F(SiteLinkTest, AnswersWithMeasurementOfTheLoop) {
   start();
   commands_.send(command(0));
   advance(milliseconds{10});
@@ -228,7 +228,7 @@ TEST_F(SiteLinkTest, AnswersWithWhatTheLoopMeasured) {
   EXPECT_EQ(steps_.at(0, steps_.column("flags")), static_cast<double>(MeasurementFlags::saturated));
 }
 
-TEST_F(SiteLinkTest, ARepeatedCommandIsAnsweredFromMemoryAndMovesNothing) {
+TEST_F(SiteLinkTest, AnswersRepeatedCommandFromMemory) {
   start();
   commands_.send(command(0));
   advance();
@@ -253,7 +253,7 @@ TEST_F(SiteLinkTest, ARepeatedCommandIsAnsweredFromMemoryAndMovesNothing) {
   EXPECT_EQ(steps_.size(), 1U);
 }
 
-TEST_F(SiteLinkTest, AFaultOfTheLoopIsRaisedAndTold) {
+TEST_F(SiteLinkTest, ReportsFaultOfTheLoop) {
   start();
   take_events();
   loop_says(LoopReport::Kind::fault, FaultFlags::force_limit);
@@ -287,7 +287,7 @@ TEST_F(SiteLinkTest, IsFinishedWhenTheRigIsAtRest) {
   EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::finished);
 }
 
-TEST_F(SiteLinkTest, WhatIsMeasuredWhileStoppingIsRecordedAndNotSent) {
+TEST_F(SiteLinkTest, RecordsMeasurementsWhileStoppingWithoutSending) {
   start();
   commands_.send(command(0));
   advance();
@@ -320,7 +320,7 @@ TEST_F(SiteLinkTest, StopsOnRequest) {
   EXPECT_EQ(link_.stop_reason(), StopReason::interrupted);
 }
 
-TEST_F(SiteLinkTest, AnEmergencyStopGoesToTheLoopFirst) {
+TEST_F(SiteLinkTest, PassesEmergencyStopToLoopFirst) {
   start();
   control(ControlVerb::emergency_stop, StopReason::none, Role::operator_tool);
   advance();
@@ -331,7 +331,7 @@ TEST_F(SiteLinkTest, AnEmergencyStopGoesToTheLoopFirst) {
   EXPECT_EQ(presence_.faults(), FaultFlags::emergency_stop);
 }
 
-TEST_F(SiteLinkTest, PassesPauseAndResumptionOn) {
+TEST_F(SiteLinkTest, PassesPauseAndResume) {
   start();
   control(ControlVerb::pause, StopReason::none, Role::operator_tool);
   control(ControlVerb::resume, StopReason::none, Role::operator_tool);

@@ -25,7 +25,7 @@ double settled_lag_sine(double amplitude_m, double frequency_hz, double phase_la
   return indicator.lag_sine();
 }
 
-TEST(TrackingIndicatorTest, IsTheSineOfTheLagOfASineWhateverItsAmplitudeAndFrequency) {
+TEST(TrackingIndicatorTest, EqualsSineOfTheLagForAnySine) {
   for (const double frequency_hz : {2.0, 5.0, 20.0}) {
     for (const double lag : {-0.3, 0.05, 0.4}) {
       for (const double amplitude_m : {1e-3, 0.1}) {
@@ -41,13 +41,13 @@ TEST(TrackingIndicatorTest, IsTheSineOfTheLagOfASineWhateverItsAmplitudeAndFrequ
   }
 }
 
-TEST(TrackingIndicatorTest, ADelayShowsAsItsPhaseAndAGainMultiplies) {
+TEST(TrackingIndicatorTest, DelayGivesPhaseAndGainMultiplies) {
   const double lag = 2.0 * std::numbers::pi * 5.0 * 0.010;  // 10 ms at 5 Hz
   EXPECT_NEAR(settled_lag_sine(0.01, 5.0, lag, 2.0) / settled_lag_sine(0.01, 5.0, lag), 2.0, 1e-12);
   EXPECT_EQ(settled_lag_sine(0.01, 5.0, 0.0), 0.0) << "a perfect actuator: both products are the same";
 }
 
-TEST(TrackingIndicatorTest, ForgetsALagThatIsOver) {
+TEST(TrackingIndicatorTest, ForgetsPastLag) {
   TrackingIndicator indicator{1, kPeriod_s, kWindow_s, 0.0};
   const auto shake = [&](double lag, int from, int to) {
     for (int i = from; i < to; ++i) {
@@ -62,7 +62,7 @@ TEST(TrackingIndicatorTest, ForgetsALagThatIsOver) {
   EXPECT_LT(std::abs(indicator.lag_sine()), 0.01);
 }
 
-TEST(TrackingIndicatorTest, NoiseAtRestIsNoLag) {
+TEST(TrackingIndicatorTest, NoiseAtRestGivesNoLag) {
   TrackingIndicator indicator{1, kPeriod_s, kWindow_s, 0.005};
   Random random{3};
   double worst = 0.0;
@@ -76,7 +76,7 @@ TEST(TrackingIndicatorTest, NoiseAtRestIsNoLag) {
   EXPECT_GT(worst, 0.0);
 }
 
-TEST(TrackingIndicatorTest, TakesTheWorstDegreeOfFreedom) {
+TEST(TrackingIndicatorTest, ReturnsWorstDegreeOfFreedom) {
   TrackingIndicator both{2, kPeriod_s, kWindow_s, 0.0};
   TrackingIndicator second{1, kPeriod_s, kWindow_s, 0.0};
   for (int i = 0; i < 5000; ++i) {

@@ -44,7 +44,7 @@ TEST(TrajectoryTest, ReachesEachTargetExactlyAtItsTime) {
   }
 }
 
-TEST(TrajectoryTest, IsACubicBetweenTargetsThatAreKnown) {
+TEST(TrajectoryTest, IsCubicBetweenKnownTargets) {
   // The error of cubic Hermite interpolation is at most h^4/384 max|x''''|.
   Trajectory trajectory{1, kStep, 1.0};
   ReachedTarget reached;
@@ -65,7 +65,7 @@ TEST(TrajectoryTest, IsACubicBetweenTargetsThatAreKnown) {
   EXPECT_GE(worst, 0.5 * bound) << "the bound is sharp; a smaller error means that nothing was measured";
 }
 
-TEST(TrajectoryTest, SlowsDownAndWaitsShortOfTheStepsEndWhenTheTargetIsLate) {
+TEST(TrajectoryTest, SlowsDownAndWaitsForLateTarget) {
   Trajectory trajectory{1, kStep, 1.0};
   ReachedTarget reached;
   trajectory.set_target(sine_target(0));
@@ -136,7 +136,7 @@ Roughness roughness(std::uint64_t seed, double period_s, const TrajectorySetting
 
 class EveryPath : public testing::TestWithParam<PathCase> {};
 
-TEST_P(EveryPath, PositionAndVelocityAreContinuousWheneverTargetsArrive) {
+TEST_P(EveryPath, PositionAndVelocityStayContinuous) {
   // A continuous position has a velocity that stays bounded as the sampling gets finer, a
   // continuous velocity an acceleration; a jump would make it eight times as large here.
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -148,7 +148,7 @@ TEST_P(EveryPath, PositionAndVelocityAreContinuousWheneverTargetsArrive) {
   }
 }
 
-TEST_P(EveryPath, EveryTargetIsReachedExactlyWhenItComesInTime) {
+TEST_P(EveryPath, ReachesTimelyTargetsExactly) {
   Trajectory trajectory{1, kStep, 1.0, GetParam().settings};
   ReachedTarget reached;
   trajectory.set_target(sine_target(0));
@@ -169,7 +169,7 @@ TEST_P(EveryPath, EveryTargetIsReachedExactlyWhenItComesInTime) {
 
 INSTANTIATE_TEST_SUITE_P(Paths, EveryPath, testing::ValuesIn(kPaths), [](const auto& path) { return path.param.name; });
 
-TEST(TrajectoryTest, PredictsMotionsOfItsOrderExactlyAndNotThoseOfTheNext) {
+TEST(TrajectoryTest, PredictsPolynomialsOfItsOrderOnlyExactly) {
   for (int order = 1; order <= 3; ++order) {
     for (int degree = 1; degree <= 4; ++degree) {
       // x = t^degree; the velocity and acceleration that go with it are sent.
@@ -206,7 +206,7 @@ TEST(TrajectoryTest, PredictsMotionsOfItsOrderExactlyAndNotThoseOfTheNext) {
   }
 }
 
-TEST(TrajectoryTest, RampAndHoldStandsStillInTheLastShareOfTheStepAndUntilTheNextTarget) {
+TEST(TrajectoryTest, RampAndHoldRestsUntilNextTarget) {
   Trajectory trajectory{1, kStep, 1.0, {.type = TrajectoryType::ramp_and_hold, .hold_share = 0.25}};
   ReachedTarget reached;
   trajectory.set_target(sine_target(0));
@@ -225,7 +225,7 @@ TEST(TrajectoryTest, RampAndHoldStandsStillInTheLastShareOfTheStepAndUntilTheNex
   EXPECT_EQ(reached.flags, MeasurementFlags::none) << "to wait is what it is for";
 }
 
-TEST(TrajectoryTest, AfterAHaltItPicksUpFromRestWhereItStood) {
+TEST(TrajectoryTest, ContinuesFromRestAfterHalt) {
   constexpr double kPeriod = kStep / 100;
   for (const PathCase& path : kPaths) {
     Trajectory trajectory{1, kStep, 1.0, path.settings};

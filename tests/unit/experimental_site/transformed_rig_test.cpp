@@ -55,7 +55,7 @@ TEST(TransformedRig, CommandsInActuatorsAndMeasuresInDofs) {
   EXPECT_NEAR(bench.feedback.force_n[1], 0.5 * kStiffness_n_per_m * 0.75, 1e-9);
 }
 
-TEST(TransformedRig, MeasuresWhereTheBeamIsAndNotWhereItShouldBe) {
+TEST(TransformedRig, MeasuresActualPoseOfTheBeam) {
   // Actuators that go half of the way: neither half the displacement nor half the rotation.
   Bench bench{std::make_unique<RigidBeam>(std::array<RigidBeam::Actuator, 2>{
                   RigidBeam::Actuator{{0.0, 0.6}, {-2.0, 0.6}}, RigidBeam::Actuator{{0.0, -0.6}, {-2.0, -0.6}}}),
@@ -74,7 +74,7 @@ TEST(TransformedRig, MeasuresWhereTheBeamIsAndNotWhereItShouldBe) {
   EXPECT_EQ(bench.feedback.force_n, expected) << "forces act at the measured pose";
 }
 
-TEST(TransformedRig, AStrokeBeyondTheLimitIsClippedAndAFault) {
+TEST(TransformedRig, StrokeBeyondLimitIsClippedAndAFault) {
   Bench bench{two_beside_each_other(), 0.3};
   EXPECT_EQ(bench.exchange(0.3, 0.0), RigStatus::healthy);
   EXPECT_EQ(bench.exchange(0.2, 0.5), RigStatus::fault);
@@ -84,7 +84,7 @@ TEST(TransformedRig, AStrokeBeyondTheLimitIsClippedAndAFault) {
   EXPECT_EQ(bench.exchange(0.1, 0.0), RigStatus::healthy);
 }
 
-TEST(TransformedRig, AMeasurementThatNoPoseHasIsAFaultAndLeavesTheLastGoodOne) {
+TEST(TransformedRig, MeasurementWithoutPoseIsAFaultAndKeepsLastGood) {
   bool is_broken = false;
   Bench bench{two_beside_each_other(), 1.0, [&](const ActuatorCommand& command, RigFeedback& feedback) {
                 feedback.displacement_m = command.displacement_m;
@@ -101,7 +101,7 @@ TEST(TransformedRig, AMeasurementThatNoPoseHasIsAFaultAndLeavesTheLastGoodOne) {
   EXPECT_EQ(bench.exchange(0.3, 0.0), RigStatus::healthy);
 }
 
-TEST(TransformedRig, PassesOnStopsAndFaults) {
+TEST(TransformedRig, ForwardsStopsAndFaults) {
   Bench bench{two_beside_each_other(), 1.0, [](const ActuatorCommand&, RigFeedback&) { return RigStatus::fault; }};
   EXPECT_EQ(bench.exchange(0.1, 0.0), RigStatus::fault);
   bench.rig->stop_motion();

@@ -48,7 +48,7 @@ MeasurementDatagram kept_measurement() {
   return measurement;
 }
 
-TEST(UdpDatagram, TheKeptCommandIsReadAndWrittenByteByByte) {
+TEST(UdpDatagram, StoredCommandRoundTripsByteByByte) {
   const auto bytes = kept("command_v1.bin");
   CommandDatagram command;
   ASSERT_EQ(decode(bytes, command), DatagramDefect::none);
@@ -58,7 +58,7 @@ TEST(UdpDatagram, TheKeptCommandIsReadAndWrittenByteByByte) {
   EXPECT_TRUE(std::ranges::equal(written, bytes));
 }
 
-TEST(UdpDatagram, TheKeptMeasurementIsReadAndWrittenByteByByte) {
+TEST(UdpDatagram, StoredMeasurementRoundTripsByteByByte) {
   const auto bytes = kept("measurement_v1.bin");
   MeasurementDatagram measurement;
   ASSERT_EQ(decode(bytes, measurement), DatagramDefect::none);
@@ -68,7 +68,7 @@ TEST(UdpDatagram, TheKeptMeasurementIsReadAndWrittenByteByByte) {
   EXPECT_TRUE(std::ranges::equal(written, bytes));
 }
 
-TEST(UdpDatagram, WithEveryNumberOfActuatorsItComesBackAsItWas) {
+TEST(UdpDatagram, RoundTripsForEveryActuatorCount) {
   Random random{3};
   for (int actuators = 1; actuators <= kMaxInterfaceDofs; ++actuators) {
     MeasurementDatagram measurement = kept_measurement();
@@ -101,7 +101,7 @@ DatagramDefect defect_with(std::size_t place, std::byte value, bool is_sealed = 
   return defect;
 }
 
-TEST(UdpDatagram, EveryDefectIsTold) {
+TEST(UdpDatagram, ReportsEveryDefect) {
   EXPECT_EQ(defect_with(0, std::byte{'H'}), DatagramDefect::none);
   EXPECT_EQ(defect_with(3, std::byte{'M'}), DatagramDefect::magic);
   EXPECT_EQ(defect_with(4, std::byte{2}), DatagramDefect::version);
@@ -114,7 +114,7 @@ TEST(UdpDatagram, EveryDefectIsTold) {
   EXPECT_EQ(decode(kept("command_v1.bin"), measurement), DatagramDefect::magic);
 }
 
-TEST(UdpDatagram, NoLengthIsReadBeyondItsEnd) {
+TEST(UdpDatagram, ReadsNothingBeyondItsEnd) {
   auto bytes = kept("measurement_v1.bin");
   bytes.push_back(std::byte{0});
   MeasurementDatagram measurement;
@@ -125,7 +125,7 @@ TEST(UdpDatagram, NoLengthIsReadBeyondItsEnd) {
   }
 }
 
-TEST(UdpDatagram, TheChecksumIsThatOfTheStandard) {
+TEST(UdpDatagram, ChecksumMatchesTheStandard) {
   const std::string text = "123456789";
   EXPECT_EQ(crc32(std::as_bytes(std::span{text})), 0xCBF43926U);
   EXPECT_EQ(crc32({}), 0U);

@@ -86,7 +86,7 @@ TEST(UdpRig, SendsTheCommandAndReturnsItsMeasurement) {
   EXPECT_EQ(bench.controller.commands.back().sequence, sent.sequence + 1);
 }
 
-TEST(UdpRig, DoesNotWaitOnceItsOwnCommandIsAnswered) {
+TEST(UdpRig, DoesNotWaitAfterItsCommandIsAnswered) {
   Bench bench;
   bench.arm();
   bench.port->waited = {};
@@ -97,7 +97,7 @@ TEST(UdpRig, DoesNotWaitOnceItsOwnCommandIsAnswered) {
   EXPECT_EQ(bench.port->waited, 500us);
 }
 
-TEST(UdpRig, NothingMovesBeforeArmingAndAfterAStop) {
+TEST(UdpRig, CausesNoMotionBeforeArmingOrAfterStop) {
   Bench bench;
   EXPECT_EQ(bench.exchange(0.01), RigStatus::fault) << "not connected";
   bench.rig->connect();
@@ -118,7 +118,7 @@ TEST(UdpRig, NothingMovesBeforeArmingAndAfterAStop) {
   EXPECT_EQ(bench.feedback.displacement_m[0], 0.05);
 }
 
-TEST(UdpRig, SaysStopSeveralTimesInAnyState) {
+TEST(UdpRig, SendsStopRepeatedlyInAnyState) {
   Bench bench;
   bench.rig->stop_motion();  // nothing is open yet
   EXPECT_TRUE(bench.controller.commands.empty());
@@ -133,7 +133,7 @@ TEST(UdpRig, SaysStopSeveralTimesInAnyState) {
   EXPECT_EQ(bench.controller.state, ControllerState::stopped);
 }
 
-TEST(UdpRig, TheLoopCountStandsStillUnlessTheLoopRuns) {
+TEST(UdpRig, LoopCountAdvancesOnlyWhileLoopRuns) {
   Bench bench;
   bench.arm();
   static_cast<void>(bench.exchange(0.0));
@@ -146,7 +146,7 @@ TEST(UdpRig, TheLoopCountStandsStillUnlessTheLoopRuns) {
   EXPECT_EQ(counts.back(), 2U);
 }
 
-TEST(UdpRig, ASilentControllerIsAFaultAfterTheWatchdogTimeAndNotBefore) {
+TEST(UdpRig, SilentControllerIsAFaultAfterWatchdogTime) {
   Bench bench;
   bench.arm();
   ASSERT_EQ(bench.exchange(0.01), RigStatus::healthy);
@@ -160,7 +160,7 @@ TEST(UdpRig, ASilentControllerIsAFaultAfterTheWatchdogTimeAndNotBefore) {
   EXPECT_EQ(bench.exchange(0.02), RigStatus::healthy) << "whether to go on is not the rig's to decide";
 }
 
-TEST(UdpRig, AControllerThatHearsNothingIsSilentThoughItMeasures) {
+TEST(UdpRig, ControllerWithoutCommandsCountsAsSilent) {
   Bench bench;
   bench.arm();
   MeasurementDatagram free_running;
@@ -180,7 +180,7 @@ TEST(UdpRig, AControllerThatHearsNothingIsSilentThoughItMeasures) {
   EXPECT_EQ(samples, kWatchdogSamples + 1);
 }
 
-TEST(UdpRig, AControllerThatLeavesTheActiveStateIsAFault) {
+TEST(UdpRig, LeavingActiveStateIsAFault) {
   for (const ControllerState state : {ControllerState::inactive, ControllerState::stopped, ControllerState::fault}) {
     Bench bench;
     bench.arm();
@@ -192,7 +192,7 @@ TEST(UdpRig, AControllerThatLeavesTheActiveStateIsAFault) {
   }
 }
 
-TEST(UdpRig, RefusesWhatIsNoCommand) {
+TEST(UdpRig, RejectsInvalidCommand) {
   Bench bench;
   bench.arm();
   const auto sent = bench.controller.commands.size();
@@ -202,7 +202,7 @@ TEST(UdpRig, RefusesWhatIsNoCommand) {
   EXPECT_EQ(bench.controller.commands.size(), sent);
 }
 
-TEST(UdpRig, HandsOnNumbersThatAreNoneForTheInterlocksToSee) {
+TEST(UdpRig, PassesNonFiniteValuesToInterlocks) {
   Bench bench;
   bench.arm();
   bench.controller.deliver = [](auto answer, auto& arriving) {
@@ -217,7 +217,7 @@ TEST(UdpRig, HandsOnNumbersThatAreNoneForTheInterlocksToSee) {
 
 // Every way to be refused says what to do about it.
 
-TEST(UdpRig, ConnectSaysThatNobodyAnswers) {
+TEST(UdpRig, ConnectReportsNoAnswer) {
   Bench bench;
   bench.controller.is_alive = false;
   EXPECT_THAT([&] { bench.rig->connect(); },
@@ -226,7 +226,7 @@ TEST(UdpRig, ConnectSaysThatNobodyAnswers) {
   EXPECT_EQ(bench.exchange(0.0), RigStatus::fault);
 }
 
-TEST(UdpRig, ConnectSaysWhatItDoesNotUnderstand) {
+TEST(UdpRig, ConnectReportsUnknownDatagrams) {
   Bench bench;
   bench.controller.deliver = [](auto answer, auto& arriving) {
     answer[4] = std::byte{9};
@@ -235,7 +235,7 @@ TEST(UdpRig, ConnectSaysWhatItDoesNotUnderstand) {
   EXPECT_THAT([&] { bench.rig->connect(); }, ThrowsMessage<std::runtime_error>(HasSubstr("another protocol version")));
 }
 
-TEST(UdpRig, ConnectSaysThatTheControllerHasAnotherNumberOfActuators) {
+TEST(UdpRig, ConnectReportsOtherActuatorCount) {
   Bench bench;
   bench.controller.deliver = [](const auto&, auto& arriving) {
     MeasurementDatagram one;
@@ -247,7 +247,7 @@ TEST(UdpRig, ConnectSaysThatTheControllerHasAnotherNumberOfActuators) {
               ThrowsMessage<std::runtime_error>(HasSubstr("another number of actuators, expected 2")));
 }
 
-TEST(UdpRig, ConnectSaysThatTheControllerIsInFault) {
+TEST(UdpRig, ConnectReportsControllerInFault) {
   Bench bench;
   bench.controller.state = ControllerState::fault;
   bench.controller.status = kEmergencyStopped;
@@ -255,7 +255,7 @@ TEST(UdpRig, ConnectSaysThatTheControllerIsInFault) {
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("its state is 3"), HasSubstr("status bits 8"))));
 }
 
-TEST(UdpRig, ConnectSaysWhenTheControllerKeepsTimeInAnotherWay) {
+TEST(UdpRig, ConnectReportsOtherPace) {
   Bench bench;
   bench.controller.status = kFollowsDatagrams;
   EXPECT_THAT([&] { bench.rig->connect(); },
@@ -267,7 +267,7 @@ TEST(UdpRig, ConnectSaysWhenTheControllerKeepsTimeInAnotherWay) {
               ThrowsMessage<std::runtime_error>(HasSubstr("has a clock of its own; expected one that moves on")));
 }
 
-TEST(UdpRig, ArmStopsTheControllerThatDoesNotBecomeActive) {
+TEST(UdpRig, ArmStopsControllerThatStaysInactive) {
   Bench bench;
   bench.rig->connect();
   bench.controller.refuses_to_move = true;
@@ -275,13 +275,13 @@ TEST(UdpRig, ArmStopsTheControllerThatDoesNotBecomeActive) {
   EXPECT_EQ(bench.controller.commands.back().request, ControllerRequest::stop);
 }
 
-TEST(UdpRig, APortThatCannotBeOpenedSaysSo) {
+TEST(UdpRig, ReportsPortThatCannotBeOpened) {
   Bench bench;
   bench.port->on_open = [] { throw std::runtime_error{"udp rig.example:5000: no way there"}; };
   EXPECT_THAT([&] { bench.rig->connect(); }, ThrowsMessage<std::runtime_error>(HasSubstr("no way there")));
 }
 
-TEST(UdpRig, RefusesSettingsThatCannotWork) {
+TEST(UdpRig, RejectsInvalidSettings) {
   const auto make = [](auto change) {
     UdpRig::Settings changed = settings();
     change(changed);
@@ -328,7 +328,7 @@ class UnreliableNetwork {
   std::deque<std::pair<ScriptedPort::Datagram, std::uint64_t>> held_;
 };
 
-TEST(UdpRig, TimeNeverRunsBackwardsWhateverTheNetworkDoes) {
+TEST(UdpRig, TimeNeverRunsBackwards) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     Bench bench;
@@ -355,7 +355,7 @@ TEST(UdpRig, TimeNeverRunsBackwardsWhateverTheNetworkDoes) {
   }
 }
 
-TEST(UdpRig, DamagedAndForeignDatagramsAreCountedAndChangeNothing) {
+TEST(UdpRig, CountsAndIgnoresDamagedAndForeignDatagrams) {
   Bench bench;
   bench.arm();
   ASSERT_EQ(bench.exchange(0.01), RigStatus::healthy);
@@ -373,7 +373,7 @@ TEST(UdpRig, DamagedAndForeignDatagramsAreCountedAndChangeNothing) {
   EXPECT_EQ(bench.rig->counts().invalid, static_cast<std::uint32_t>(kDamaged));
 }
 
-TEST(UdpRig, AnAnswerToACommandNeverSentIsNone) {
+TEST(UdpRig, RejectsAnswerToCommandNeverSent) {
   Bench bench;
   bench.arm();
   MeasurementDatagram foreign;
@@ -387,7 +387,7 @@ TEST(UdpRig, AnAnswerToACommandNeverSentIsNone) {
   EXPECT_EQ(bench.rig->counts().invalid, 1U);
 }
 
-TEST(UdpRig, ABacklogIsPassedOverInOneExchange) {
+TEST(UdpRig, SkipsBacklogInOneExchange) {
   Bench bench;
   bench.arm();
   MeasurementDatagram old;
@@ -402,7 +402,7 @@ TEST(UdpRig, ABacklogIsPassedOverInOneExchange) {
   EXPECT_EQ(bench.feedback.displacement_m[0], 0.5);
 }
 
-TEST(UdpRig, RecordsWhatTheLinkDid) {
+TEST(UdpRig, RecordsLinkStatistics) {
   Bench bench;
   KeptRows rows{UdpRig::link_layout()};
   bench.rig->record_to([&](std::string_view table) -> RowSink& {
@@ -422,7 +422,7 @@ TEST(UdpRig, RecordsWhatTheLinkDid) {
   EXPECT_EQ(value(1, "controller_state"), 1.0);
 }
 
-TEST(UdpRig, AllocatesNothingOnceItIsArmed) {
+TEST(UdpRig, DoesNotAllocateWhenArmed) {
   UdpRig rig{settings(), std::make_unique<EchoPort>(kStiffness_n_per_m)};
   rig.connect();
   rig.arm();

@@ -31,7 +31,7 @@ TEST(Bilinear, FollowsItsBackboneAndUnloadsElastically) {
   EXPECT_EQ(spring.initial_stiffness_n_per_m(), 4.0e6);
 }
 
-TEST(Bilinear, DoesNotDependOnHowAMotionOneWayIsCut) {
+TEST(Bilinear, MonotonicMotionIsIndependentOfStepCount) {
   Bilinear in_one{kColumn};
   Bilinear in_many{kColumn};
   for (const double target_m : {0.03, -0.05, 0.04}) {
@@ -43,7 +43,7 @@ TEST(Bilinear, DoesNotDependOnHowAMotionOneWayIsCut) {
   }
 }
 
-TEST(Bilinear, ElasticMotionLeavesNoTraceAtAll) {
+TEST(Bilinear, ElasticMotionLeavesNoResidual) {
   Bilinear shaken{kColumn};
   Bilinear still{kColumn};
   impose(shaken, 0.010013);  // plastic by 13 micrometres,
@@ -54,7 +54,7 @@ TEST(Bilinear, ElasticMotionLeavesNoTraceAtAll) {
     EXPECT_EQ(shaken.trial(displacement_m, 0.0), still.trial(displacement_m, 0.0));
 }
 
-TEST(Bilinear, DissipatesTheAreaOfItsLoop) {
+TEST(Bilinear, DissipatedEnergyEqualsLoopArea) {
   Bilinear spring{kColumn};
   constexpr double kAmplitude_m = 0.03;
   constexpr int kQuarter = 300;  // corners of the loop fall on samples, so the trapezoids are exact
@@ -90,7 +90,7 @@ TEST(Bilinear, AgreesWithOpenSees) {
   }
 }
 
-TEST(Bilinear, RefusesParametersOutOfRange) {
+TEST(Bilinear, RejectsParametersOutOfRange) {
   const auto with = [](auto change) {
     Bilinear::Parameters parameters = kColumn;
     change(parameters);

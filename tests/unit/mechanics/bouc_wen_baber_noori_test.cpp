@@ -22,7 +22,7 @@ double impose(Law& law, double displacement_m) {
   return force_n;
 }
 
-TEST(BoucWenBaberNoori, WithoutDegradationAndPinchingIsBoucWen) {
+TEST(BoucWenBaberNoori, EqualsBoucWenWithoutDegradationAndPinching) {
   for (const double n : {1.0, 2.0}) {
     auto parameters = without_memory();
     parameters.n = n;
@@ -42,7 +42,7 @@ TEST(BoucWenBaberNoori, WithoutDegradationAndPinchingIsBoucWen) {
   }
 }
 
-TEST(BoucWenBaberNoori, SlidesAtTheStrengthThatTheDissipatedEnergyLeaves) {
+TEST(BoucWenBaberNoori, StrengthFollowsDissipatedEnergy) {
   // n = 1: far along one way z follows zu = 1 / (1 + d e) / (beta + gamma), so d(e) = k z dx gives
   // (1 + d e)^2 = 1 + 2 d k zu0 x, but for the beginning.
   auto parameters = without_memory();
@@ -92,7 +92,7 @@ TEST(BoucWenBaberNoori, PinchesWhereItsForceChangesSign) {
   EXPECT_NEAR(slope_at_zero, 0.1 * kStiffness_n_per_m, 0.01 * kStiffness_n_per_m);
 }
 
-TEST(BoucWenBaberNoori, RefusesParametersOutOfRange) {
+TEST(BoucWenBaberNoori, RejectsParametersOutOfRange) {
   auto parameters = without_memory();
   parameters.pinching = 1.0;
   EXPECT_THROW(BoucWenBaberNoori{parameters}, ConfigError);

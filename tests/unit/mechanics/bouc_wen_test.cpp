@@ -37,7 +37,7 @@ TEST(BoucWen, LoadingWithExponentOneIsExponential) {
     EXPECT_NEAR(law.trial(x, 0.0), ultimate_m * (1.0 - std::exp(-100.0 * x)), kIntegration * ultimate_m);
 }
 
-TEST(BoucWen, UnloadingWithExponentOneIsExponentialAboutItsOwnLimit) {
+TEST(BoucWen, UnloadingWithExponentOneIsExponential) {
   constexpr double kGamma = 30.0;
   constexpr double kBeta = 70.0;
   BoucWen law = hysteretic_part(1.0, kGamma, kBeta);
@@ -56,7 +56,7 @@ TEST(BoucWen, UnloadingWithExponentOneIsExponentialAboutItsOwnLimit) {
               kIntegration * law.ultimate_m());
 }
 
-TEST(BoucWen, ExponentTwoFollowsTheHyperbolicTangentAndTheTangent) {
+TEST(BoucWen, ExponentTwoMatchesClosedForm) {
   constexpr double kGamma = 1000.0;
   constexpr double kBeta = 9000.0;
   BoucWen law = hysteretic_part(2.0, kGamma, kBeta);
@@ -70,7 +70,7 @@ TEST(BoucWen, ExponentTwoFollowsTheHyperbolicTangentAndTheTangent) {
               kIntegration * ultimate_m);
 }
 
-TEST(BoucWen, LargeExponentsSatisfyTheInvertedEquation) {
+TEST(BoucWen, LargeExponentsMatchInvertedEquation) {
   for (const double n : {3.0, 20.0, 100.0}) {
     BoucWen law = hysteretic_part(n, 0.5, 0.5);  // ultimate z is 1 m
     for (const double x : {0.5, 0.9, 1.0, 1.02}) {
@@ -85,7 +85,7 @@ TEST(BoucWen, LargeExponentsSatisfyTheInvertedEquation) {
   }
 }
 
-TEST(BoucWen, DoesNotDependOnHowAMotionOneWayIsCut) {
+TEST(BoucWen, MonotonicMotionIsIndependentOfStepCount) {
   for (const double n : {1.0, 1.1, 1.4, 2.0, 3.5, 20.0, 100.0}) {
     BoucWen in_one = hysteretic_part(n, 0.2, 0.8);
     BoucWen in_many = hysteretic_part(n, 0.2, 0.8);
@@ -99,14 +99,14 @@ TEST(BoucWen, DoesNotDependOnHowAMotionOneWayIsCut) {
   }
 }
 
-TEST(BoucWen, NeverExceedsItsUltimate) {
+TEST(BoucWen, NeverExceedsUltimateForce) {
   BoucWen law = hysteretic_part(1.7, -0.2, 0.8);
   Random random{3};
   for (int i = 0; i < 2000; ++i)
     ASSERT_LE(std::abs(impose(law, random.uniform(-10.0, 10.0))), law.ultimate_m() * (1.0 + kIntegration));
 }
 
-TEST(BoucWen, InitialStiffnessCountsAo) {
+TEST(BoucWen, InitialStiffnessIncludesAo) {
   const BoucWen law{
       {.stiffness_n_per_m = 100.0, .alpha = 0.25, .n = 2.0, .gamma_per_m = 1.0, .beta_per_m = 1.0, .ao = 2.0}};
   EXPECT_DOUBLE_EQ(law.initial_stiffness_n_per_m(), 25.0 + 75.0 * 2.0);
@@ -130,7 +130,7 @@ class BackwardEuler {
   double z_m_ = 0.0;
 };
 
-TEST(BoucWen, AgreesWithOpenSeesButForTheErrorOfItsStep) {
+TEST(BoucWen, AgreesWithOpenSeesWithinItsStepError) {
   const auto file = shared_data("reference/two_storey_boucwen.csv");
   HYBRIDTEST_NEEDS_DATA(file);
   const ReferenceHistory reference = read_reference(file);
@@ -161,7 +161,7 @@ TEST(BoucWen, AgreesWithOpenSeesButForTheErrorOfItsStep) {
   }
 }
 
-TEST(BoucWen, RefusesParametersOutOfRange) {
+TEST(BoucWen, RejectsParametersOutOfRange) {
   const auto with = [](auto change) {
     BoucWen::Parameters parameters{
         .stiffness_n_per_m = 1.0, .alpha = 0.1, .n = 1.0, .gamma_per_m = 1.0, .beta_per_m = 1.0};

@@ -23,13 +23,13 @@ std::string complaint(const Action& action) {
   return {};
 }
 
-TEST(RayleighDamping, HasTheCoefficientsOfTheReference) {
+TEST(RayleighDamping, MatchesReferenceCoefficients) {
   const RayleighCoefficients coefficients = rayleigh_coefficients(0.02, 1, 2, vibration_modes(test::two_storeys()));
   EXPECT_NEAR(coefficients.mass_per_s, 0.23813881290184155, 1e-14);
   EXPECT_NEAR(coefficients.stiffness_s, 0.0013748950773337615, 1e-16);
 }
 
-TEST(RayleighDamping, GivesBothModesTheRatioAndLessInBetween) {
+TEST(RayleighDamping, GivesRatioAtBothModesAndLessBetween) {
   LinearStructure structure = test::shear_building(6, 2.0e4, 8.0e6);
   const VibrationModes modes = vibration_modes(structure);
   structure.damping_n_s_per_m = rayleigh_damping(structure, rayleigh_coefficients(0.05, 1, 4, modes));
@@ -42,7 +42,7 @@ TEST(RayleighDamping, GivesBothModesTheRatioAndLessInBetween) {
   EXPECT_EQ(swapped.mass_per_s, rayleigh_coefficients(0.05, 1, 4, modes).mass_per_s);
 }
 
-TEST(RayleighDamping, RefusesModesThatDetermineNothing) {
+TEST(RayleighDamping, RejectsInvalidModesAndRatios) {
   const LinearStructure structure = test::two_storeys();
   const VibrationModes modes = vibration_modes(structure);
   EXPECT_THAT(complaint([&] { return rayleigh_coefficients(0.02, 1, 1, modes); }), HasSubstr("different frequency"));
@@ -73,7 +73,7 @@ TEST(ModalDamping, GivesEachModeItsRatioAndCouplesNone) {
   EXPECT_LT((modal - expected_modal).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());
 }
 
-TEST(ModalDamping, ReproducesThePublishedMatrixOfTheBenchmarkFrame) {
+TEST(ModalDamping, ReproducesPublishedBenchmarkMatrix) {
   // Virtual RTHS benchmark (Silva et al., 2020), case 1: 1000 kg per floor, 5 % in all modes.
   Eigen::MatrixXd stiffness(3, 3);
   stiffness << 26054883.879603837, -23133938.877108198, 5937035.463339146, -23133938.877108198, 32560774.186380334,
@@ -88,7 +88,7 @@ TEST(ModalDamping, ReproducesThePublishedMatrixOfTheBenchmarkFrame) {
   EXPECT_LT((damping - published).cwiseAbs().maxCoeff(), 2e-5 * published.maxCoeff());
 }
 
-TEST(ModalDamping, RefusesRatiosThatDoNotFit) {
+TEST(ModalDamping, RejectsWrongNumberOfRatios) {
   const LinearStructure structure = test::two_storeys();
   const VibrationModes modes = vibration_modes(structure);
   EXPECT_THAT(complaint([&] { return modal_damping(structure, modes, Eigen::Vector3d::Constant(0.02)); }),

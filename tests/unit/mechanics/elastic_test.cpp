@@ -30,7 +30,7 @@ TEST(Elastic, AgreesWithOpenSees) {
   }
 }
 
-TEST(Elastic, RefusesStiffnessOutOfRange) {
+TEST(Elastic, RejectsStiffnessOutOfRange) {
   EXPECT_THROW(Elastic{0.0}, ConfigError);
   EXPECT_THROW(Elastic{-1.0}, ConfigError);
   EXPECT_THROW(Elastic{std::nan("")}, ConfigError);

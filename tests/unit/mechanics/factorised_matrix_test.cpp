@@ -49,7 +49,7 @@ TEST(FactorisedMatrix, SolvesSymmetricMatricesSparseAndFull) {
   EXPECT_LE(backward_error(effective), rounding(3));
 }
 
-TEST(FactorisedMatrix, SolvesSparseMatricesThatReorderingChanges) {
+TEST(FactorisedMatrix, SolvesReorderedSparseMatrices) {
   // An arrow pointing the wrong way fills in completely unless its rows are reordered.
   Eigen::MatrixXd arrow = 10.0 * Eigen::MatrixXd::Identity(9, 9);
   arrow.row(0).setConstant(1.0);
@@ -66,7 +66,7 @@ TEST(FactorisedMatrix, SolvesUnsymmetricMatrices) {
   EXPECT_LE(backward_error(needs_pivots), rounding(3));
 }
 
-TEST(FactorisedMatrix, RefusesSingularMatrices) {
+TEST(FactorisedMatrix, RejectsSingularMatrices) {
   const auto complaint = [](const Eigen::MatrixXd& matrix) -> std::string {
     try {
       const FactorisedMatrix factorised{matrix.sparseView(), "effective mass"};
@@ -97,7 +97,7 @@ TEST(FactorisedMatrix, DoesNotAllocateWhileSolving) {
   }
 }
 
-TEST(FactorisedMatrix, CountingSeesTheMatrixLibraryAllocate) {
+TEST(FactorisedMatrix, AllocationCountDetectsLibraryAllocations) {
   if (!counts_mallocs()) GTEST_SKIP() << "a sanitizer owns the allocator";
   const Eigen::SparseMatrix<double> matrix = test::shear_building(80, 1.0, 1.0).initial_stiffness_n_per_m;
   const std::size_t before = malloc_count();

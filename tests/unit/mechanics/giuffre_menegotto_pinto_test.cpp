@@ -49,7 +49,7 @@ TEST(GiuffreMenegottoPinto, CurvatureFollowsThePlasticExcursion) {
   EXPECT_NEAR(spring.trial(corner_m, 0.0), turning_n + drop_n, 1e-9 * 4.0e4);
 }
 
-TEST(GiuffreMenegottoPinto, ReversalOnTheAsymptoteItselfStaysFinite) {
+TEST(GiuffreMenegottoPinto, ReversalOnAsymptoteStaysFinite) {
   GiuffreMenegottoPinto spring{kColumn};
   impose(spring, 1.0);  // on the asymptote to rounding
   impose(spring, std::nextafter(1.0, 0.0));
@@ -73,7 +73,7 @@ TEST(GiuffreMenegottoPinto, AgreesWithOpenSees) {
   }
 }
 
-TEST(GiuffreMenegottoPinto, RefusesParametersOutOfRange) {
+TEST(GiuffreMenegottoPinto, RejectsParametersOutOfRange) {
   const auto with = [](auto change) {
     GiuffreMenegottoPinto::Parameters parameters = kColumn;
     change(parameters);

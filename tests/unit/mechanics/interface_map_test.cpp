@@ -110,7 +110,7 @@ TEST(InterfaceMap, ProductsDoNotAllocate) {
   EXPECT_GT(malloc_count(), before) << "the count must see an allocation of Eigen, control";
 }
 
-TEST(InterfaceMap, RefusesDofsThatTheStructureDoesNotHave) {
+TEST(InterfaceMap, RejectsDofsThatTheStructureDoesNotHave) {
   EXPECT_THROW((InterfaceMap{3, {{3}}}), ConfigError);
   EXPECT_THROW((InterfaceMap{3, {{-1}}}), ConfigError);
   EXPECT_THROW((InterfaceMap{3, {{0, 3}}}), ConfigError);
@@ -119,7 +119,7 @@ TEST(InterfaceMap, RefusesDofsThatTheStructureDoesNotHave) {
   EXPECT_NO_THROW((InterfaceMap{3, {{2, 0}}}));
 }
 
-TEST(InterfaceMap, RefusesMoreDofsThanAMessageHolds) {
+TEST(InterfaceMap, RejectsMoreDofsThanAMessageHolds) {
   EXPECT_NO_THROW((InterfaceMap{1, std::vector<InterfaceDof>(kMaxInterfaceDofs)}));
   EXPECT_THROW((InterfaceMap{1, std::vector<InterfaceDof>(kMaxInterfaceDofs + 1)}), ConfigError);
 }

@@ -57,7 +57,7 @@ TEST_P(EveryLaw, StartsWithItsInitialStiffness) {
               1e-6 * law->initial_stiffness_n_per_m());
 }
 
-TEST_P(EveryLaw, TrialsLeaveNoTrace) {
+TEST_P(EveryLaw, TrialsDoNotChangeCommittedState) {
   const auto tried = GetParam().make();
   const auto straight = GetParam().make();
   Random random{5};
@@ -67,7 +67,7 @@ TEST_P(EveryLaw, TrialsLeaveNoTrace) {
   }
 }
 
-TEST_P(EveryLaw, TheSameTrialTwiceGivesTheSameForce) {
+TEST_P(EveryLaw, SameTrialTwiceGivesSameForce) {
   const auto law = GetParam().make();
   for (const double displacement_m : wandering_path(2000)) {
     const double force_n = law->trial(displacement_m, 0.0);
@@ -78,7 +78,7 @@ TEST_P(EveryLaw, TheSameTrialTwiceGivesTheSameForce) {
   }
 }
 
-TEST_P(EveryLaw, RevertForgetsTheTrial) {
+TEST_P(EveryLaw, RevertDiscardsTheTrial) {
   const auto law = GetParam().make();
   const auto other = GetParam().make();
   for (const double displacement_m : wandering_path(500)) {
@@ -92,7 +92,7 @@ TEST_P(EveryLaw, RevertForgetsTheTrial) {
   EXPECT_EQ(impose(*law, -0.02), impose(*other, -0.02));
 }
 
-TEST_P(EveryLaw, ResetMakesItVirgin) {
+TEST_P(EveryLaw, ResetRestoresInitialState) {
   const auto law = GetParam().make();
   for (const double displacement_m : wandering_path(500)) impose(*law, displacement_m);
   static_cast<void>(law->trial(0.2, 0.0));
@@ -110,7 +110,7 @@ TEST_P(EveryLaw, IsOddInDisplacement) {
     ASSERT_EQ(impose(*law, displacement_m), -impose(*mirrored, -displacement_m));
 }
 
-TEST_P(EveryLaw, ReturnsNotANumberForOneRatherThanAForce) {
+TEST_P(EveryLaw, ReturnsNotANumberForNotANumber) {
   const auto law = GetParam().make();
   EXPECT_TRUE(std::isnan(law->trial(std::nan(""), 0.0)));
   law->revert();

@@ -64,14 +64,14 @@ TEST(MatrixMarket, ReadsArraysColumnByColumn) {
             (Eigen::MatrixXd{{1.0, 3.0, 5.0}, {2.0, 4.0, -6.0}}));
 }
 
-TEST(MatrixMarket, TakesFilesAsTheyOccur) {
+TEST(MatrixMarket, AcceptsCommonFileVariants) {
   // Upper case, carriage returns, tabs, blank lines, no final newline.
   EXPECT_EQ(parse("%%MATRIXMARKET Matrix Coordinate Integer General\r\n\r\n1\t1 1\r\n\r\n1 1 7"),
             (Eigen::MatrixXd{{7.0}}));
   EXPECT_EQ(parse("%%MatrixMarket matrix coordinate real general\n2 1 0\n"), (Eigen::MatrixXd{{0.0}, {0.0}}));
 }
 
-TEST(MatrixMarket, SaysWhatIsWrongWithTheFirstLine) {
+TEST(MatrixMarket, ReportsErrorsOfFirstLine) {
   EXPECT_THAT(issues(""), ElementsAre(HasSubstr("empty")));
   EXPECT_THAT(issues("1 1 1\n1 1 1\n"), ElementsAre(HasSubstr("k.mtx:1: found '1 1 1'; expected '%%MatrixMarket")));
   EXPECT_THAT(issues("%%MatrixMarket matrix coordinate complex hermitian\n1 1 1\n"),
@@ -79,7 +79,7 @@ TEST(MatrixMarket, SaysWhatIsWrongWithTheFirstLine) {
                           "k.mtx:1: 'hermitian' is not read; expected symmetric or general"));
 }
 
-TEST(MatrixMarket, SaysWhatIsWrongWithTheSizeLine) {
+TEST(MatrixMarket, ReportsErrorsOfSizeLine) {
   const std::string banner = "%%MatrixMarket matrix coordinate real symmetric\n% comment\n";
   EXPECT_THAT(issues(banner), ElementsAre(HasSubstr("k.mtx:2: the file ends here")));
   EXPECT_THAT(issues(banner + "2 2\n"), ElementsAre(HasSubstr("k.mtx:3: found '2 2'; expected the numbers of rows")));
@@ -110,12 +110,12 @@ TEST(MatrixMarket, ListsEveryWrongEntryAtOnce) {
           "k.mtx:9: found '2 2 1 oops' after the last entry; expected the end of the file"));
 }
 
-TEST(MatrixMarket, RefusesAnEntryGivenTwice) {
+TEST(MatrixMarket, RejectsDuplicateEntry) {
   EXPECT_THAT(issues("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 2 5\n1 2 5\n"),
               ElementsAre("k.mtx:4: row and column were given in line 3 already; expected each entry once"));
 }
 
-TEST(MatrixMarket, RefusesMissingEntries) {
+TEST(MatrixMarket, RejectsMissingEntries) {
   EXPECT_THAT(issues("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 2 5\n"),
               ElementsAre("k.mtx:3: the file ends after 1 entries; expected 2"));
   EXPECT_THAT(
@@ -123,7 +123,7 @@ TEST(MatrixMarket, RefusesMissingEntries) {
       ElementsAre("k.mtx:5: found '3 4'; expected one value", "k.mtx:5: the file ends after 3 entries; expected 4"));
 }
 
-TEST(MatrixMarket, RefusesRealsInAnIntegerFile) {
+TEST(MatrixMarket, RejectsRealsInAnIntegerFile) {
   EXPECT_THAT(issues("%%MatrixMarket matrix array integer general\n1 1\n1.5\n"),
               ElementsAre("k.mtx:3: '1.5'; expected an integer"));
 }
@@ -134,7 +134,7 @@ TEST(MatrixMarket, StopsListingAtTwenty) {
   EXPECT_EQ(issues(text).size(), 20U);
 }
 
-TEST(MatrixMarket, RefusesFilesThatAreNone) {
+TEST(MatrixMarket, RejectsFilesOfOtherFormats) {
   EXPECT_THROW(static_cast<void>(read_matrix_market("no_such_file.mtx")), ConfigError);
   EXPECT_THROW(static_cast<void>(read_matrix_market(".")), ConfigError);
 }

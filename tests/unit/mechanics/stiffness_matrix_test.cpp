@@ -20,7 +20,7 @@ std::string refusal(const Eigen::MatrixXd& stiffness) {
   return {};
 }
 
-TEST(StiffnessMatrix, AveragesWhatTheDigitsOfAFileLeave) {
+TEST(StiffnessMatrix, SymmetrisesRoundingErrors) {
   Eigen::MatrixXd stiffness{{2.0e6, -1.0e6}, {-1.0e6 - 1.0e-4, 1.0e6}};
   const InterfaceMatrix checked = checked_stiffness(stiffness);
   EXPECT_EQ(checked(0, 1), checked(1, 0));
@@ -28,19 +28,19 @@ TEST(StiffnessMatrix, AveragesWhatTheDigitsOfAFileLeave) {
   EXPECT_EQ(checked(0, 0), 2.0e6);
 }
 
-TEST(StiffnessMatrix, RefusesWhatIsNotSymmetric) {
+TEST(StiffnessMatrix, RejectsUnsymmetricMatrix) {
   EXPECT_EQ(refusal(Eigen::MatrixXd{{2.0, -1.0}, {-1.5, 1.0}}),
             "stiffness entry (2, 1) is -1.5 and entry (1, 2) is -1; expected a symmetric matrix");
 }
 
-TEST(StiffnessMatrix, RefusesOtherShapes) {
+TEST(StiffnessMatrix, RejectsOtherShapes) {
   EXPECT_THAT(refusal(Eigen::MatrixXd(2, 3)), testing::HasSubstr("2 rows and 3 columns"));
   EXPECT_THAT(refusal(Eigen::MatrixXd(0, 0)), testing::HasSubstr("1 to 12"));
   EXPECT_THAT(refusal(Eigen::MatrixXd::Identity(13, 13)), testing::HasSubstr("1 to 12"));
   EXPECT_EQ(refusal(Eigen::MatrixXd::Identity(12, 12)), "");
 }
 
-TEST(StiffnessMatrix, RefusesWhatIsNotFinite) {
+TEST(StiffnessMatrix, RejectsNonFiniteEntries) {
   EXPECT_THAT(refusal(Eigen::MatrixXd{{1.0, 0.0}, {0.0, std::nan("")}}), testing::HasSubstr("(2, 2)"));
 }
 

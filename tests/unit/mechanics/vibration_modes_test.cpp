@@ -11,7 +11,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(VibrationModes, OfAnEqualStoreyBuildingAreKnown) {
+TEST(VibrationModes, EqualStoreyBuildingMatchesClosedForm) {
   // omega_j = 2 sqrt(k/m) sin((2j - 1) pi / (4n + 2)), phi_j(i) ~ sin(i (2j - 1) pi / (2n + 1)).
   constexpr int kStoreys = 40;
   const VibrationModes modes = vibration_modes(test::shear_building(kStoreys, 2.0e4, 5.0e6));
@@ -25,7 +25,7 @@ TEST(VibrationModes, OfAnEqualStoreyBuildingAreKnown) {
   }
 }
 
-TEST(VibrationModes, OfTheReferenceBuilding) {
+TEST(VibrationModes, MatchReferenceBuilding) {
   // 8.35 and 20.74 rad/s; the closed form of a two-storey building to the last digits.
   const VibrationModes modes = vibration_modes(test::two_storeys());
   const double mean = (7.0e6 + 3.0e6) / 2.0;
@@ -49,7 +49,7 @@ TEST(VibrationModes, AreMassNormalisedAndOrthogonalWithFullMatrices) {
   EXPECT_LT((squares - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());
 }
 
-TEST(VibrationModes, EffectiveMassesSumToTheMassThatTheGroundMoves) {
+TEST(VibrationModes, EffectiveMassesSumToTotalMass) {
   LinearStructure structure = test::shear_building(7, 3.0e3, 1.0e6);
   EXPECT_NEAR(vibration_modes(structure).effective_mass_kg.sum(), 7 * 3.0e3, 1e-8);
   structure.influence[6] = 0.0;
@@ -63,7 +63,7 @@ TEST(VibrationModes, LargestEntryOfEachShapeIsPositive) {
   }
 }
 
-TEST(VibrationModes, AMotionWithoutStiffnessHasFrequencyZero) {
+TEST(VibrationModes, MotionWithoutStiffnessHasZeroFrequency) {
   Eigen::MatrixXd free(2, 2);
   free << 5.0, -5.0, -5.0, 5.0;
   const VibrationModes modes =
@@ -73,7 +73,7 @@ TEST(VibrationModes, AMotionWithoutStiffnessHasFrequencyZero) {
   EXPECT_NEAR(modes.highest_frequency_rad_per_s(), std::sqrt(10.0), 1e-14);
 }
 
-TEST(VibrationModes, RefusesNegativeStiffness) {
+TEST(VibrationModes, RejectsNegativeStiffness) {
   EXPECT_THROW(static_cast<void>(vibration_modes(test::oscillator(1.0, 0.0, -1.0))), ConfigError);
 }
 

@@ -17,7 +17,7 @@ TEST(ElasticMatrix, ForceIsStiffnessTimesDisplacement) {
   EXPECT_EQ(model.initial_stiffness_n_per_m(), (InterfaceMatrix{{2.0, -1.0}, {-1.0, 3.0}}));
 }
 
-TEST(ElasticMatrix, TakesAsManyDegreesOfFreedomAsAnInterfaceHas) {
+TEST(ElasticMatrix, AcceptsLargestInterface) {
   Random random{4};
   Eigen::MatrixXd half(kMaxInterfaceDofs, kMaxInterfaceDofs);
   for (double& entry : half.reshaped()) entry = random.normal();
@@ -30,7 +30,7 @@ TEST(ElasticMatrix, TakesAsManyDegreesOfFreedomAsAnInterfaceHas) {
   }
 }
 
-TEST(ElasticMatrix, RefusesWhatIsNoStiffness) {
+TEST(ElasticMatrix, RejectsInvalidStiffness) {
   EXPECT_THROW((ElasticMatrix{Eigen::MatrixXd{{1.0, 2.0}, {0.0, 1.0}}}), ConfigError);
   EXPECT_THROW((ElasticMatrix{Eigen::MatrixXd::Ones(2, 3)}), ConfigError);
 }

@@ -113,7 +113,7 @@ TEST_F(NumericalNodeTest, AnswersACommandWithTheForceOfItsModel) {
   EXPECT_EQ(steps_.at(1, steps_.column("force_floor_n")), 100.0);
 }
 
-TEST_F(NumericalNodeTest, ARepeatedCommandDoesNotChangeTheModel) {
+TEST_F(NumericalNodeTest, RepeatedCommandDoesNotChangeTheModel) {
   start();
   give(command(0));
   give(command(1));
@@ -133,7 +133,7 @@ TEST_F(NumericalNodeTest, ARepeatedCommandDoesNotChangeTheModel) {
   EXPECT_EQ(steps_.size(), 2U);
 }
 
-TEST_F(NumericalNodeTest, StepsThatWereLostAreTakenFromTheNextCommandInOrder) {
+TEST_F(NumericalNodeTest, RecoversLostStepsFromNextCommand) {
   start();
   give(command(0));
   give(command(4));
@@ -144,7 +144,7 @@ TEST_F(NumericalNodeTest, StepsThatWereLostAreTakenFromTheNextCommandInOrder) {
   EXPECT_EQ(take_measurements().size(), 2U);
 }
 
-TEST_F(NumericalNodeTest, WhateverTheNetworkDoesEachStepIsTakenOnce) {
+TEST_F(NumericalNodeTest, TakesEachStepOnceUnderNetworkFaults) {
   start();
   Random random{3};
   Step newest = 0;
@@ -164,7 +164,7 @@ TEST_F(NumericalNodeTest, WhateverTheNetworkDoesEachStepIsTakenOnce) {
   }
 }
 
-TEST_F(NumericalNodeTest, ServesNobodyElseNorCommandsOfAnotherSize) {
+TEST_F(NumericalNodeTest, IgnoresForeignCommandsAndWrongSizes) {
   start();
   give(command(0, kCoordinator + 1));
   give(command(0, kCoordinator, 2));
@@ -172,12 +172,12 @@ TEST_F(NumericalNodeTest, ServesNobodyElseNorCommandsOfAnotherSize) {
   EXPECT_TRUE(take_measurements().empty());
 }
 
-TEST_F(NumericalNodeTest, ServesNothingBeforeItIsArmed) {
+TEST_F(NumericalNodeTest, IgnoresCommandsBeforeArming) {
   give(command(0, 0));
   EXPECT_EQ(calls_.trials, 0);
 }
 
-TEST_F(NumericalNodeTest, ACommandThatOvertakesTheStartIsServed) {
+TEST_F(NumericalNodeTest, AnswersCommandThatArrivesBeforeStart) {
   TestAnnouncement announcement;
   announcement.coordinator = kCoordinator;
   announcements_.send(announcement);
@@ -209,7 +209,7 @@ TEST_F(NumericalNodeTest, LeavesWhenTheCoordinatorIsLost) {
   EXPECT_EQ(node_.stop_reason(), StopReason::coordinator_lost);
 }
 
-TEST_F(NumericalNodeTest, LeavesOnRequestAndSaysWhy) {
+TEST_F(NumericalNodeTest, LeavesOnRequestWithReason) {
   start();
   node_.request_stop(StopReason::interrupted);
   EXPECT_EQ(advance(), kNever);

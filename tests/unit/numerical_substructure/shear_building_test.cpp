@@ -16,14 +16,14 @@ std::vector<std::unique_ptr<Law>> elastic_storeys(const std::vector<double>& sti
   return storeys;
 }
 
-TEST(ShearBuilding, OnTheGroundHasTheTextbookStiffness) {
+TEST(ShearBuilding, FixedBuildingHasTextbookStiffness) {
   ShearBuilding building{elastic_storeys({4.0, 3.0, 2.0}), ShearBuilding::Base::ground};
   const InterfaceMatrix expected{{7.0, -3.0, 0.0}, {-3.0, 5.0, -2.0}, {0.0, -2.0, 2.0}};
   ASSERT_EQ(building.interface_dofs(), 3);
   EXPECT_EQ(building.initial_stiffness_n_per_m(), expected);
 }
 
-TEST(ShearBuilding, OnItsFirstDegreeOfFreedomIsFreeToMoveAsAWhole) {
+TEST(ShearBuilding, UnfixedBuildingAllowsRigidBodyMotion) {
   ShearBuilding building{elastic_storeys({4.0, 3.0}), ShearBuilding::Base::first_dof};
   const InterfaceMatrix expected{{4.0, -4.0, 0.0}, {-4.0, 7.0, -3.0}, {0.0, -3.0, 3.0}};
   ASSERT_EQ(building.interface_dofs(), 3);
@@ -46,7 +46,7 @@ TEST(ShearBuilding, ElasticForceIsStiffnessTimesDisplacement) {
   }
 }
 
-TEST(ShearBuilding, StoreyYieldsByItsDriftAndKeepsItsHistory) {
+TEST(ShearBuilding, StoreyYieldsByDriftAndKeepsHistory) {
   std::vector<std::unique_ptr<Law>> storeys = elastic_storeys({4.0e6});
   storeys.push_back(std::make_unique<Bilinear>(
       Bilinear::Parameters{.stiffness_n_per_m = 4.0e6, .yield_force_n = 4.0e4, .hardening_ratio = 0.0}));
@@ -68,7 +68,7 @@ TEST(ShearBuilding, StoreyYieldsByItsDriftAndKeepsItsHistory) {
   EXPECT_EQ(force_n, at_rest);
 }
 
-TEST(ShearBuilding, RefusesNoneAndTooMany) {
+TEST(ShearBuilding, RejectsNoStoreyAndTooMany) {
   const auto make = [](std::size_t count, ShearBuilding::Base base) {
     return ShearBuilding{elastic_storeys(std::vector<double>(count, 1.0)), base};
   };

@@ -44,7 +44,7 @@ TEST(Springs, CommitRevertAndResetReachEveryLaw) {
   EXPECT_EQ(force_n[1], 0.0);
 }
 
-TEST(Springs, RefusesNoneAndTooMany) {
+TEST(Springs, RejectsNoSpringAndTooMany) {
   const auto make = [](int count) {
     std::vector<std::unique_ptr<Law>> laws;
     for (int i = 0; i < count; ++i) laws.push_back(std::make_unique<Elastic>(1.0));

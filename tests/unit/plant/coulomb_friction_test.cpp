@@ -21,7 +21,7 @@ TEST(CoulombFriction, DissipatesFourTimesForceTimesAmplitudePerCycle) {
   EXPECT_NEAR(work_j, 4.0 * kForce_n * (kAmplitude_m - kPresliding_m), 2.0 * kForce_n * kPresliding_m);
 }
 
-TEST(CoulombFriction, HoldsAtRestAndSlidesAsymmetrically) {
+TEST(CoulombFriction, SticksAtRestAndSlidesAsymmetrically) {
   const auto effect = made(EffectInterface::specimen, "coulomb_friction", {100.0, 0.2, 1e-3});
   const auto forces = along(*effect, {0.0, 0.5e-3, 0.5e-3, 5e-3, 4.5e-3, 4e-3, 0.0});
   EXPECT_NEAR(forces[1], 60.0, 1e-9);   // half of the way to 100 (1 + 0.2)

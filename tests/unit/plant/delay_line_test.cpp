@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(DelayLine, GivesWhatWasPushedWholeIntervalsAgo) {
+TEST(DelayLine, ReturnsValueOfWholeIntervalsAgo) {
   DelayLine line{3ms, 1ms};
   EXPECT_EQ(line.corner_fraction(), 0.0);
   for (int i = 0; i < 20; ++i) {
@@ -21,7 +21,7 @@ TEST(DelayLine, GivesWhatWasPushedWholeIntervalsAgo) {
   }
 }
 
-TEST(DelayLine, DrawsStraightLinesBetweenSamples) {
+TEST(DelayLine, InterpolatesLinearly) {
   DelayLine line{2250us, 1ms};
   EXPECT_DOUBLE_EQ(line.corner_fraction(), 0.25);
   line.push(8.0);
@@ -34,13 +34,13 @@ TEST(DelayLine, DrawsStraightLinesBetweenSamples) {
   EXPECT_DOUBLE_EQ(line.corner(), 8.0);
 }
 
-TEST(DelayLine, PassesOnAtOnceWithoutDelay) {
+TEST(DelayLine, ZeroDelayPassesAtOnce) {
   DelayLine line{0ms, 1ms};
   line.push(2.5);
   EXPECT_EQ(line.delayed(), 2.5);
 }
 
-TEST(DelayLine, ResetMakesItZero) {
+TEST(DelayLine, ResetSetsZero) {
   DelayLine line{2ms, 1ms};
   for (int i = 0; i < 5; ++i) line.push(1.0);
   line.reset();
@@ -52,7 +52,7 @@ TEST(DelayLine, ResetMakesItZero) {
   EXPECT_EQ(line.delayed(), 7.0);
 }
 
-TEST(DelayLine, RefusesParametersOutOfRange) {
+TEST(DelayLine, RejectsParametersOutOfRange) {
   EXPECT_THROW((DelayLine{-1ms, 1ms}), ConfigError);
   EXPECT_THROW((DelayLine{1ms, 0ms}), ConfigError);
   EXPECT_NO_THROW((DelayLine{100s, 1ms}));

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Delay, RepeatsARampLater) {
+TEST(Delay, DelaysRampExactly) {
   // 20 ms at 1024 Hz are 20.48 periods.
   const Duration period = from_seconds(1.0 / 1024.0);
   Delay actuator{20ms, period};
@@ -21,7 +21,7 @@ TEST(Delay, RepeatsARampLater) {
   }
 }
 
-TEST(Delay, RepeatsASineLaterToTheErrorOfStraightLines) {
+TEST(Delay, DelaysSineWithinInterpolationError) {
   Delay actuator{12300us, 1ms};
   constexpr double kOmega = 2.0 * 3.14159265358979 * 5.0;
   for (int i = 0; i < 1000; ++i) {
@@ -32,7 +32,7 @@ TEST(Delay, RepeatsASineLaterToTheErrorOfStraightLines) {
   }
 }
 
-TEST(Delay, ResetForgetsTheCommand) {
+TEST(Delay, ResetClearsTheCommand) {
   Delay actuator{2ms, 1ms};
   for (int i = 0; i < 10; ++i) static_cast<void>(actuator.step(1.0));
   actuator.reset();

@@ -124,7 +124,7 @@ TEST(EffectLibrary, FindsEffectsByWhatTheyCorrectOrLeave) {
   EXPECT_EQ(find_effect(compensator, ModelNumber::offset), nullptr);
 }
 
-TEST(EffectLibrary, ParametersHaveSoundRanges) {
+TEST(EffectLibrary, ParametersHaveValidRanges) {
   for (const EffectType& type : effect_library()) {
     std::set<std::string_view> names;
     for (const EffectParameter& parameter : type.parameters) {
@@ -158,14 +158,14 @@ TEST_P(EveryEffect, IsAbsentAtItsNeutralValue) {
   }
 }
 
-TEST_P(EveryEffect, ShowsAwayFromItsNeutralValue) {
+TEST_P(EveryEffect, ChangesTheSignalAwayFromNeutral) {
   const EffectType& type = *GetParam();
   Unchanged none;
   const auto effect = type.make(some_values(type), kPeriod_s);
   EXPECT_NE(driven(*effect), driven(none));
 }
 
-TEST_P(EveryEffect, BeginsAnewAfterReset) {
+TEST_P(EveryEffect, ResetRestoresInitialState) {
   const EffectType& type = *GetParam();
   const auto effect = type.make(some_values(type), kPeriod_s);
   const std::vector<double> first = driven(*effect);

@@ -15,7 +15,7 @@ TEST(ElasticSpecimen, CouplesItsActuators) {
   EXPECT_EQ(force_n, (InterfaceVector{{3.0, -6.5}}));
 }
 
-TEST(ElasticSpecimen, RefusesWhatIsNoStiffness) {
+TEST(ElasticSpecimen, RejectsInvalidStiffness) {
   EXPECT_THROW((ElasticSpecimen{Eigen::MatrixXd{{1.0, 2.0}, {0.0, 1.0}}}), ConfigError);
 }
 

@@ -23,7 +23,7 @@ double ramp_response(double time_constant_s, double time_s) {
   return time_s + time_constant_s * std::expm1(-time_s / time_constant_s);
 }
 
-TEST(FirstOrder, AnswersARampByItsClosedForm) {
+TEST(FirstOrder, RampResponseMatchesClosedForm) {
   for (const double time_constant_s : {1e-4, 5e-3, 2.0}) {
     FirstOrder actuator{time_constant_s, 1ms};
     for (int i = 0; i < 1000; ++i) {
@@ -33,7 +33,7 @@ TEST(FirstOrder, AnswersARampByItsClosedForm) {
   }
 }
 
-TEST(FirstOrder, TendsToAStepByItsTimeConstant) {
+TEST(FirstOrder, StepResponseHasItsTimeConstant) {
   constexpr double kTimeConstant_s = 0.02;
   FirstOrder actuator{kTimeConstant_s, 1ms};
   double displacement_m = actuator.step(1.0);  // rises over the period before
@@ -55,7 +55,7 @@ TEST(FirstOrder, IsExactForAnyPiecewiseLinearCommand) {
     ASSERT_NEAR(actuator.step(command[i]), expected[i], 1e-10);  // the sum of ramps cancels some digits
 }
 
-TEST(FirstOrder, IsDownByThreeDecibelAtItsBandwidth) {
+TEST(FirstOrder, IsThreeDecibelsDownAtBandwidth) {
   constexpr double kBandwidth_hz = 10.0;
   const double omega = 2.0 * std::numbers::pi * kBandwidth_hz;
   FirstOrder actuator{FirstOrder::time_constant_s_at(kBandwidth_hz), 1ms};
@@ -69,7 +69,7 @@ TEST(FirstOrder, IsDownByThreeDecibelAtItsBandwidth) {
   }
 }
 
-TEST(FirstOrder, ResetPutsItToRest) {
+TEST(FirstOrder, ResetSetsRest) {
   FirstOrder actuator{0.01, 1ms};
   FirstOrder fresh{0.01, 1ms};
   for (int i = 0; i < 10; ++i) static_cast<void>(actuator.step(1.0));
@@ -77,7 +77,7 @@ TEST(FirstOrder, ResetPutsItToRest) {
   for (int i = 0; i < 10; ++i) ASSERT_EQ(actuator.step(0.5), fresh.step(0.5));
 }
 
-TEST(FirstOrder, RefusesParametersOutOfRange) {
+TEST(FirstOrder, RejectsParametersOutOfRange) {
   EXPECT_THROW((FirstOrder{0.0, 1ms}), ConfigError);
   EXPECT_THROW((FirstOrder{-1.0, 1ms}), ConfigError);
   EXPECT_THROW((FirstOrder{std::nan(""), 1ms}), ConfigError);

@@ -9,7 +9,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(LawSpecimen, KeepsWhatWasImposed) {
+TEST(LawSpecimen, KeepsImposedDisplacement) {
   std::vector<std::unique_ptr<Law>> laws;
   laws.push_back(std::make_unique<Elastic>(2.0e6));
   laws.push_back(std::make_unique<Bilinear>(
@@ -29,7 +29,7 @@ TEST(LawSpecimen, KeepsWhatWasImposed) {
   EXPECT_DOUBLE_EQ(force_n[1], 2.0e4);
 }
 
-TEST(LawSpecimen, RefusesNoneAndTooMany) {
+TEST(LawSpecimen, RejectsNoLawAndTooMany) {
   const auto make = [](int count) {
     std::vector<std::unique_ptr<Law>> laws;
     for (int i = 0; i < count; ++i) laws.push_back(std::make_unique<Elastic>(1.0));

@@ -26,13 +26,13 @@ TEST(Network, LatencyAndClockOffsetAreDelays) {
   }
 }
 
-TEST(Network, AClockThatDriftsPlaysLaterAndLaterUntilASecond) {
+TEST(Network, ClockDriftGrowsToOneSecond) {
   const auto targets = response(*made(kNetwork, "clock_drift", {0.05}), ramp(), 30000, through);
   for (std::size_t i = 0; i < 19000; ++i) ASSERT_NEAR(targets[i], 0.95 * kBenchPeriod_s * static_cast<double>(i), 1e-9);
   EXPECT_NEAR(targets[29999], 29.999 - 1.0, 1e-9);
 }
 
-TEST(Network, LossHoldsTheNewestAndHasItsRate) {
+TEST(Network, LossHoldsNewestAtConfiguredRate) {
   const auto targets = response(*made(kNetwork, "loss", {0.3, 5.0}), ramp(), 20000, through);
   int held = 0;
   for (std::size_t i = 1; i < targets.size(); ++i) {
@@ -44,7 +44,7 @@ TEST(Network, LossHoldsTheNewestAndHasItsRate) {
             response(*made(kNetwork, "loss", {0.3, 5.0}), ramp(), 100, through));
 }
 
-TEST(Network, JitterIsNeverLaterThanItsBoundNorGoesBack) {
+TEST(Network, JitterStaysInBoundAndInOrder) {
   const auto targets = response(*made(kNetwork, "jitter", {0.01, 1.0}), ramp(), 5000, through);
   std::set<int> lateness;
   for (std::size_t i = 20; i < targets.size(); ++i) {
@@ -56,7 +56,7 @@ TEST(Network, JitterIsNeverLaterThanItsBoundNorGoesBack) {
   EXPECT_GE(lateness.size(), 4U);  // control: it does vary
 }
 
-TEST(Compensator, MismatchShiftsInTimeAndBiasAdds) {
+TEST(Compensator, MismatchShiftsTimeAndBiasAdds) {
   const auto shifted = response(*made(kCompensator, "setting_mismatch", {-0.004}), ramp(), 50, through);
   for (std::size_t i = 3; i < shifted.size(); ++i) {
     ASSERT_NEAR(shifted[i], kBenchPeriod_s * static_cast<double>(i) - 0.004, 1e-13);

@@ -9,12 +9,12 @@
 namespace hybridtest {
 namespace {
 
-TEST(NoisySensor, ReadsTheValueWithoutNoise) {
+TEST(NoisySensor, ZeroNoiseReturnsTheValue) {
   NoisySensor sensor{0.0, Random{1}};
   for (const double value : {0.0, 0.25, -3.0e5}) EXPECT_EQ(sensor.read(value), value);
 }
 
-TEST(NoisySensor, NoiseHasItsStandardDeviationAndNoMean) {
+TEST(NoisySensor, NoiseHasStandardDeviationAndZeroMean) {
   constexpr int kReadings = 100'000;
   constexpr double kNoise = 50.0;
   NoisySensor sensor{kNoise, Random{7, 3}};
@@ -30,7 +30,7 @@ TEST(NoisySensor, NoiseHasItsStandardDeviationAndNoMean) {
   EXPECT_NEAR(std::sqrt(squares / kReadings), kNoise, 4.0 * kNoise / std::sqrt(2.0 * kReadings));
 }
 
-TEST(NoisySensor, RepeatsWithItsSeedAndDiffersByStream) {
+TEST(NoisySensor, RepeatsForSeedAndDiffersByStream) {
   NoisySensor sensor{1.0, Random{7, 0}};
   NoisySensor same{1.0, Random{7, 0}};
   NoisySensor other{1.0, Random{7, 1}};
@@ -44,7 +44,7 @@ TEST(NoisySensor, RepeatsWithItsSeedAndDiffersByStream) {
   EXPECT_EQ(sensor.read(0.0), first);
 }
 
-TEST(NoisySensor, RefusesNoiseOutOfRange) {
+TEST(NoisySensor, RejectsNoiseOutOfRange) {
   EXPECT_THROW((NoisySensor{-1.0, Random{1}}), ConfigError);
   EXPECT_THROW((NoisySensor{std::nan(""), Random{1}}), ConfigError);
 }

@@ -45,7 +45,7 @@ SecondOrder actuator_of(const Case& system, Duration delay = Duration::zero()) {
       1ms};
 }
 
-TEST(SecondOrder, AnswersARampByItsClosedForm) {
+TEST(SecondOrder, RampResponseMatchesClosedForm) {
   for (const Case& system : kCases) {
     SecondOrder actuator = actuator_of(system);
     for (int i = 0; i < 1000; ++i) {
@@ -56,7 +56,7 @@ TEST(SecondOrder, AnswersARampByItsClosedForm) {
   }
 }
 
-TEST(SecondOrder, AnswersAStepByItsClosedForm) {
+TEST(SecondOrder, StepResponseMatchesClosedForm) {
   for (const Case& system : kCases) {
     SecondOrder actuator = actuator_of(system);
     const double omega = omega_of(system);
@@ -69,7 +69,7 @@ TEST(SecondOrder, AnswersAStepByItsClosedForm) {
   }
 }
 
-TEST(SecondOrder, IsExactForAnyPiecewiseLinearCommandAndAnyDelay) {
+TEST(SecondOrder, IsExactForPiecewiseLinearCommandAndAnyDelay) {
   Random random{9};
   std::vector<double> command;
   for (int i = 0; i < 300; ++i) command.push_back(random.normal());
@@ -104,7 +104,7 @@ TEST(SecondOrder, HasItsFrequencyResponse) {
   }
 }
 
-TEST(SecondOrder, ResetPutsItToRest) {
+TEST(SecondOrder, ResetSetsRest) {
   SecondOrder actuator = actuator_of(kCases[0], 2500us);
   SecondOrder fresh = actuator_of(kCases[0], 2500us);
   for (int i = 0; i < 20; ++i) static_cast<void>(actuator.step(1.0));
@@ -112,7 +112,7 @@ TEST(SecondOrder, ResetPutsItToRest) {
   for (int i = 0; i < 20; ++i) ASSERT_EQ(actuator.step(0.5), fresh.step(0.5));
 }
 
-TEST(SecondOrder, RefusesParametersOutOfRange) {
+TEST(SecondOrder, RejectsParametersOutOfRange) {
   const auto make = [](double frequency_hz, double damping_ratio, Duration delay, Duration period) {
     return SecondOrder{{.natural_frequency_hz = frequency_hz, .damping_ratio = damping_ratio, .delay = delay}, period};
   };

@@ -32,7 +32,7 @@ TEST(Sensors, QuantizeAndSaturate) {
   EXPECT_EQ(readings(kForce, "saturation", 2.0, {1.0, 3.0, -2.5}), (std::vector<double>{1.0, 2.0, -2.0}));
 }
 
-TEST(Sensors, FollowLate) {
+TEST(Sensors, FollowWithLag) {
   std::vector<double> ramp;
   for (int i = 0; i < 200; ++i) ramp.push_back(i * kBenchPeriod_s);
   constexpr double kTime_s = 0.02;
@@ -46,7 +46,7 @@ TEST(Sensors, FollowLate) {
   for (std::size_t i = 5; i < ramp.size(); ++i) ASSERT_NEAR(skewed[i], ramp[i] - 0.0035, 1e-13);
 }
 
-TEST(Sensors, DisplacementReadBackwardsIsTheTrueMotion) {
+TEST(Sensors, InverseReadingGivesTrueMotion) {
   const Driver driver = sine(0.02, 9.0);
   for (const auto& [name, value] : {std::pair{"gain", 0.3}, {"bias", 0.004}, {"drift", -0.01}, {"lag", 0.01}}) {
     const EffectType* const type = find_effect(kDisplacement, name);
@@ -67,7 +67,7 @@ TEST(Sensors, DisplacementReadBackwardsIsTheTrueMotion) {
 }
 
 /// The lag of an acceleration is taken off by its own difference: second order in the sample period.
-TEST(Sensors, AccelerationBehindALagIsTheTrueOne) {
+TEST(Sensors, LaggedAccelerationIsInverted) {
   constexpr double kTime_s = 0.004;
   constexpr double kOmega = 2.0 * std::numbers::pi * 3.0;
   const auto inverse = find_effect(kDisplacement, "lag")->make_inverse(std::vector{kTime_s}, kBenchPeriod_s);

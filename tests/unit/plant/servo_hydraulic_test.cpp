@@ -59,7 +59,7 @@ ServoHydraulic::Parameters of_benchmark(const TransferSystemModel& model) {
   return p;
 }
 
-TEST(ServoHydraulic, InTheSmallItIsTheLinearActuatorOfTheBenchmark) {
+TEST(ServoHydraulic, SmallMotionMatchesLinearBenchmarkActuator) {
   const TransferSystemModel model;
   constexpr double kAmplitude_m = 1.0e-6;  // a force of 1 N beside a stall force of 20 kN: the root changes by 3e-5
   for (const double frequency_hz : {0.5, 5.0, 15.0, 30.0}) {
@@ -88,7 +88,7 @@ TEST(ServoHydraulic, InTheSmallItIsTheLinearActuatorOfTheBenchmark) {
   }
 }
 
-TEST(ServoHydraulic, IsNoFasterThanItsFlowOverItsArea) {
+TEST(ServoHydraulic, VelocityIsLimitedByFlowOverArea) {
   ServoHydraulic actuator{laboratory(), 1ms};
   double previous_m = 0.0;
   double fastest = 0.0;
@@ -125,7 +125,7 @@ TEST(ServoHydraulic, StopsAtTheEndOfItsStroke) {
   EXPECT_EQ(displacement_m, 0.1);
 }
 
-TEST(ServoHydraulic, ALoadPushesItBackUntilTheIntegralHasBroughtItHome) {
+TEST(ServoHydraulic, IntegralRemovesOffsetUnderLoad) {
   const auto under_load = [](double integral_gain) {
     ServoHydraulic::Parameters p = laboratory();
     p.integral_gain_per_m_s = integral_gain;
@@ -141,7 +141,7 @@ TEST(ServoHydraulic, ALoadPushesItBackUntilTheIntegralHasBroughtItHome) {
   EXPECT_NEAR(under_load(100.0), 0.02, 1e-9);
 }
 
-TEST(ServoHydraulic, TheIntegralDoesNotWindUp) {
+TEST(ServoHydraulic, IntegralDoesNotWindUp) {
   // A step beyond what the flow can follow at once: with conditional integration it comes home with little overshoot.
   ServoHydraulic::Parameters p = laboratory();
   p.integral_gain_per_m_s = 300.0;
@@ -158,7 +158,7 @@ TEST(ServoHydraulic, TheIntegralDoesNotWindUp) {
   EXPECT_NEAR(last_m, 0.08, 1e-5);
 }
 
-TEST(ServoHydraulic, BeginsAnewAfterReset) {
+TEST(ServoHydraulic, ResetRestoresInitialState) {
   ServoHydraulic actuator{laboratory(), 1ms};
   const auto run = [&] {
     std::vector<double> moved;
@@ -170,7 +170,7 @@ TEST(ServoHydraulic, BeginsAnewAfterReset) {
   EXPECT_EQ(run(), first);
 }
 
-TEST(ServoHydraulic, RefusesWhatCannotBe) {
+TEST(ServoHydraulic, RejectsInvalidParameters) {
   ServoHydraulic::Parameters p = laboratory();
   p.moving_mass_kg = 1.0e-9;
   EXPECT_THROW((ServoHydraulic{p, 1ms}), ConfigError);

@@ -31,7 +31,7 @@ SiteModel delayed_spring() {
 
 StageSample command(double displacement_m) { return {.motion = {.displacement_m = displacement_m}}; }
 
-TEST(SiteStages, ANegativeDelayShortensTheModelsOwn) {
+TEST(SiteStages, NegativeDelayShortensTheModelDelay) {
   SiteModel model = delayed_spring();
   model.effects = {setting(EffectInterface::transfer_system, "delay", {-0.003})};
   TransferStage stage{model, kPeriod_s};
@@ -41,7 +41,7 @@ TEST(SiteStages, ANegativeDelayShortensTheModelsOwn) {
   EXPECT_THROW((TransferStage{model, kPeriod_s}), ConfigError);
 }
 
-TEST(SiteStages, TheInverseUndoesTheSensorInReverse) {
+TEST(SiteStages, InverseReversesTheSensors) {
   SiteModel model = delayed_spring();
   model.effects = {setting(EffectInterface::displacement_sensor, "gain", {0.25}),
                    setting(EffectInterface::displacement_sensor, "bias", {0.002})};
@@ -56,7 +56,7 @@ TEST(SiteStages, TheInverseUndoesTheSensorInReverse) {
   }
 }
 
-TEST(SiteStages, WithoutALawThereIsTheForceOfTheEffectsAlone) {
+TEST(SiteStages, WithoutLawOnlyEffectsGiveForce) {
   SiteModel model = delayed_spring();
   model.make_law = nullptr;
   model.effects = {setting(EffectInterface::specimen, "inertia", {95.0}),
@@ -66,7 +66,7 @@ TEST(SiteStages, WithoutALawThereIsTheForceOfTheEffectsAlone) {
   EXPECT_DOUBLE_EQ(stage.force_n(), 190.0);
 }
 
-TEST(SiteStages, ThePiecesTogetherAreTheRig) {
+TEST(SiteStages, StagesTogetherEqualTheRig) {
   SiteModel model = delayed_spring();
   model.effects = {setting(EffectInterface::transfer_system, "bandwidth", {0.004, 0.25}),
                    setting(EffectInterface::displacement_sensor, "gain", {0.1}),
@@ -104,7 +104,7 @@ TEST(SiteStages, ThePiecesTogetherAreTheRig) {
   }
 }
 
-TEST(SiteStages, TheCompensatorIsTheModels) {
+TEST(SiteStages, CompensatorIsThatOfTheModel) {
   SiteModel model = delayed_spring();
   model.make_compensator = [](double period_s, double delay_change_s) {
     return std::make_unique<PolynomialDisplacement>(
@@ -117,7 +117,7 @@ TEST(SiteStages, TheCompensatorIsTheModels) {
 }
 
 /// Of a wave, on which a first-order change of the command would not be the other setting's.
-TEST(SiteStages, AnotherSettingOfACompensatorIsThatCompensator) {
+TEST(SiteStages, ChangedCompensatorSettingIsApplied) {
   const auto compensated = [](double delay_s, double mismatch_s) {
     SiteModel model = delayed_spring();
     model.make_compensator = [delay_s](double period_s, double delay_change_s) {

@@ -31,7 +31,7 @@ struct Formula {
 
 class AFormulaOfTheMotion : public testing::TestWithParam<Formula> {};
 
-TEST_P(AFormulaOfTheMotion, IsAddedToTheBase) {
+TEST_P(AFormulaOfTheMotion, IsAddedToTheBaseForce) {
   const auto& [name, values, force_n] = GetParam();
   const Driver driver = sine(0.01, 12.0);
   const auto effect = made(kSpecimen, name, values);
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Specimen, AFormulaOfTheMotion, testing::ValuesIn(formul
   return std::string{instance.param.name} + "_" + std::to_string(instance.index);
 });
 
-TEST(StribeckFriction, FallsFromItsStaticToItsSlidingValue) {
+TEST(StribeckFriction, DecreasesFromStaticToSlidingValue) {
   const auto sliding_at = [](double velocity_m_per_s) {
     const auto effect = made(kSpecimen, "stribeck_friction", {100.0, 0.5, 0.02, 1e-6});
     const Driver ramp{[=](double t) { return velocity_m_per_s * t; }, [=](double) { return velocity_m_per_s; },
@@ -78,7 +78,7 @@ TEST(StribeckFriction, FallsFromItsStaticToItsSlidingValue) {
   EXPECT_NEAR(sliding_at(-0.002), -(100.0 + 50.0 * std::exp(-0.01)), 1e-9);
 }
 
-TEST(Yielding, LosesWhatABilinearSpringLosesPerCycle) {
+TEST(Yielding, DissipatesBilinearEnergyPerCycle) {
   constexpr double kStiffness_n_per_m = 1.0e6;
   constexpr double kYield_n = 4.0e3;
   constexpr double kAmplitude_m = 0.01;
@@ -93,7 +93,7 @@ TEST(Yielding, LosesWhatABilinearSpringLosesPerCycle) {
   EXPECT_NEAR(forces[3], kStiffness_n_per_m * driver.displacement_m(time_s(3)), 1e-9);  // nothing lost yet
 }
 
-TEST(BoucWenHysteresis, LoadsAlongAnExponential) {
+TEST(BoucWenHysteresis, LoadingIsExponential) {
   // n = 1: z = 1 - exp(-x / xy) from rest.
   const auto effect = made(kSpecimen, "bouc_wen_hysteresis", {250.0, 0.002, 1.0, 0.5});
   std::vector<double> path;
@@ -104,7 +104,7 @@ TEST(BoucWenHysteresis, LoadsAlongAnExponential) {
   }
 }
 
-TEST(Pinching, TakesItsShareOfTheForceAroundZero) {
+TEST(Pinching, RemovesItsShareOfForceNearZero) {
   const auto effect = made(kSpecimen, "pinching", {0.8, 0.002});
   const Driver driver = sine(0.01, 12.0);
   const auto forces = response(*effect, driver, 600, [](const Motion& m) { return 3.0e5 * m.displacement_m; });
@@ -114,7 +114,7 @@ TEST(Pinching, TakesItsShareOfTheForceAroundZero) {
   }
 }
 
-TEST(Gap, LetsTheSpecimenFeelWhatIsBeyondIt) {
+TEST(Gap, PassesMotionBeyondTheGap) {
   const auto effect = made(kSpecimen, "gap", {0.004});
   const Driver driver = sine(0.01, 12.0);
   const auto forces = response(*effect, driver, 600, [](const Motion& m) { return 3.0e5 * m.displacement_m; });
@@ -124,7 +124,7 @@ TEST(Gap, LetsTheSpecimenFeelWhatIsBeyondIt) {
   }
 }
 
-TEST(StiffnessDegradation, IsHalfAsStiffAfterItsHalfLife) {
+TEST(StiffnessDegradation, HalvesStiffnessAfterHalfLife) {
   const auto effect = made(kSpecimen, "stiffness_degradation", {4.0});
   const auto forces =
       along(*effect, {0.0, 1.0, -1.0, 0.0, 1.0}, [](const Motion& m) { return 10.0 * m.displacement_m; });
@@ -132,7 +132,7 @@ TEST(StiffnessDegradation, IsHalfAsStiffAfterItsHalfLife) {
   EXPECT_NEAR(forces[4], 10.0 / 2.25, 1e-12);  // 5 m travelled
 }
 
-TEST(StiffnessError, OfALawChangesItsStiffnessAndNotItsStrength) {
+TEST(StiffnessError, ChangesStiffnessButNotStrength) {
   const auto effect = made(kSpecimen, "stiffness_error", {0.25, 0.0});
   const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
   const auto forces = along(*effect, {0.0, 0.1, 0.5, 1.0, -2.0}, plastic);
@@ -140,7 +140,7 @@ TEST(StiffnessError, OfALawChangesItsStiffnessAndNotItsStrength) {
   for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
 }
 
-TEST(StrengthDegradation, TakesStrengthWithThePathAndLeavesTheStiffness) {
+TEST(StrengthDegradation, ReducesStrengthButNotStiffness) {
   const double left = std::exp(-5.0 / 4.0);
   const auto of_strength = made(kSpecimen, "strength_degradation", {4.0});
   const auto plastic = [](const Motion& m) { return std::clamp(100.0 * m.displacement_m, -10.0, 10.0); };
@@ -150,7 +150,7 @@ TEST(StrengthDegradation, TakesStrengthWithThePathAndLeavesTheStiffness) {
   EXPECT_NEAR(along(*of_stiffness, {0.0, 1.0, -1.0, 0.0, 1.0}, elastic)[4], 100.0, 1e-12);
 }
 
-TEST(SpecimenBacklash, HeldByFrictionIsThePlayOperator) {
+TEST(SpecimenBacklash, FrictionHeldBacklashIsThePlayOperator) {
   const auto effect = made(kSpecimen, "backlash", {0.2, 1.0});
   const auto forces = along(*effect, {0.0, 0.05, 0.5, 0.45, 0.3, 0.2, 0.35, 0.5},
                             [](const Motion& m) { return 10.0 * m.displacement_m; });
@@ -158,7 +158,7 @@ TEST(SpecimenBacklash, HeldByFrictionIsThePlayOperator) {
   for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
 }
 
-TEST(SpecimenBacklash, OfASpringThatNothingHoldsIsAFixedGap) {
+TEST(SpecimenBacklash, FreeSpringBacklashIsAFixedGap) {
   const auto effect = made(kSpecimen, "backlash", {0.2, 0.0});
   const auto force = [](const Motion& m) { return 10.0 * m.displacement_m; };
   const Driver driver = sine(0.5, 2.0);
@@ -171,7 +171,7 @@ TEST(SpecimenBacklash, OfASpringThatNothingHoldsIsAFixedGap) {
   }
 }
 
-TEST(SpecimenBacklash, OfAFrictionDamperMovesWithTheReversal) {
+TEST(SpecimenBacklash, FrictionDamperBacklashMovesWithReversal) {
   const auto friction = made(kSpecimen, "coulomb_friction", {100.0, 0.0, 0.01});
   const auto backlash = made(kSpecimen, "backlash", {0.1, 0.0});
   std::vector<double> forces;
@@ -192,7 +192,7 @@ TEST(SpecimenBacklash, OfAFrictionDamperMovesWithTheReversal) {
   EXPECT_NEAR(forces[64], -100.0, 1e-9);  // 0.12 m after it slides back
 }
 
-TEST(Relaxation, FadesAtRestAndHasMaxwellsComplexStiffness) {
+TEST(Relaxation, HasMaxwellComplexStiffness) {
   constexpr double kTime_s = 0.05;
   const auto effect = made(kSpecimen, "relaxation", {1.0e5, kTime_s});
   const auto at_rest = along(*effect, std::vector<double>(200, 0.01));
@@ -211,7 +211,7 @@ TEST(Relaxation, FadesAtRestAndHasMaxwellsComplexStiffness) {
   }
 }
 
-TEST(Fracture, LosesItsShareFromItsInstantOn) {
+TEST(Fracture, RemovesItsShareFromItsTimeOn) {
   const auto effect = made(kSpecimen, "fracture", {0.4, 0.05});
   const auto forces = response(*effect, sine(1.0, 1.0), 100, [](const Motion&) { return 10.0; });
   EXPECT_EQ(forces[50], 10.0);

@@ -11,7 +11,7 @@ namespace {
 
 double through(const Motion& motion) { return motion.displacement_m; }
 
-TEST(Bandwidth, AnswersASineAsItsTransferFunction) {
+TEST(Bandwidth, SineResponseMatchesTransferFunction) {
   constexpr double kOmega = 2.0 * 3.141592653589793 * 4.0;
   constexpr double kTime_s = 0.012;
   for (const double ratio : {0.0, 1e-9, 0.1, 0.2, 0.25, 0.6, 3.0}) {
@@ -28,7 +28,7 @@ TEST(Bandwidth, AnswersASineAsItsTransferFunction) {
   }
 }
 
-TEST(Bandwidth, IsContinuousWhereItsFormulaChanges) {
+TEST(Bandwidth, IsContinuousAtFormulaChange) {
   const auto last = [](double time_constant_s, double ratio) {
     Bandwidth effect{std::vector{time_constant_s, ratio}, kBenchPeriod_s};
     return response(effect, sine(1.0, 30.0), 300, through).back();
@@ -38,7 +38,7 @@ TEST(Bandwidth, IsContinuousWhereItsFormulaChanges) {
   EXPECT_NEAR(last(0.0, 0.0), std::sin(30.0 * 0.299), 1e-15);
 }
 
-TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
+TEST(TransferDelay, DelaysByFractionalSamples) {
   const auto effect = made(EffectInterface::transfer_system, "delay", {0.0025});
   const Driver ramp{[](double t) { return t; }, [](double) { return 1.0; }, [](double) { return 0.0; }};
   const auto outputs = response(*effect, ramp, 20, through);
@@ -47,7 +47,7 @@ TEST(TransferDelay, IsLateByItsDelayAlsoByParts) {
   }
 }
 
-TEST(TransferDelay, IsThatOfASineBetweenItsSamples) {
+TEST(TransferDelay, DelaysSineBetweenSamples) {
   constexpr double kOmega = 60.0;
   const auto effect = made(EffectInterface::transfer_system, "delay", {0.0015});
   const auto outputs = response(*effect, sine(1.0, kOmega), 400, through);
@@ -76,7 +76,7 @@ TEST(TransferSystemEffects, FollowTheirDefinitionsAlongAPath) {
 }
 
 /// Behind a ramp by its slip time, as one pole is, once it is free; it stays where it is when that turns.
-TEST(TransferSystemEffects, StictionSlipsInItsTime) {
+TEST(TransferSystemEffects, StictionSlipsAfterItsTime) {
   constexpr double kSlip_s = 0.004;
   constexpr double kStick = 2.5 * kBenchPeriod_s;
   const auto effect = made(EffectInterface::transfer_system, "stiction", {kStick, kSlip_s});
@@ -96,7 +96,7 @@ TEST(TransferSystemEffects, StictionSlipsInItsTime) {
   EXPECT_EQ(held_m, last);
 }
 
-TEST(TransferSystemEffects, ComplianceGivesWayUnderTheForce) {
+TEST(TransferSystemEffects, ComplianceYieldsUnderForce) {
   const auto effect = made(EffectInterface::transfer_system, "compliance", {2e-8});
   double displacement_m = 0.01;
   effect->after({.time_s = 0.0, .motion = {}, .force_n = 1.0e5}, {}, displacement_m);

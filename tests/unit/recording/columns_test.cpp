@@ -9,7 +9,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(Columns, AreFoundByQuantityAndUnitWithTheirDegreeOfFreedom) {
+TEST(Columns, FoundByQuantityUnitAndDof) {
   const TemporaryDirectory directory;
   RunFileHeader header = example_header();
   header.interface_dofs = {"floor_1", "floor_2"};

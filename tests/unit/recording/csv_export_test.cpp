@@ -42,7 +42,7 @@ TEST(CsvExport, WritesEveryTableWithUnitsInItsHeader) {
             "\"it \"\"happened\"\", there\"");
 }
 
-TEST(CsvExport, NumbersReadBackAsTheSameBits) {
+TEST(CsvExport, NumbersKeepTheirBits) {
   const TemporaryDirectory directory;
   const std::vector<double> values{0.1,     1.0 / 3.0, -0.0, 5e-324, 1.7976931348623157e308,
                                    31000.0, 1e22,      0.3,  -2.5,   std::numeric_limits<double>::infinity()};
@@ -63,7 +63,7 @@ TEST(CsvExport, NumbersReadBackAsTheSameBits) {
   EXPECT_EQ(lines.back(), "nan");
 }
 
-TEST(CsvExport, SaysWhenThereIsNothingToExportOrNowhereToWrite) {
+TEST(CsvExport, ReportsMissingRunAndUnwritableTarget) {
   const TemporaryDirectory directory;
   EXPECT_THROW(export_csv(directory.path(), directory / "csv"), RecordingError);
   RunFileWriter{directory / "a.h5", example_header(), {example_layout()}}.close();

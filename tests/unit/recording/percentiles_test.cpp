@@ -7,7 +7,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(Percentiles, AreValuesThatOccurredByNearestRank) {
+TEST(Percentiles, UseNearestRank) {
   std::vector<double> values;
   for (int i = 200; i >= 1; --i) values.push_back(i);
   const auto result = percentiles(values);
@@ -17,7 +17,7 @@ TEST(Percentiles, AreValuesThatOccurredByNearestRank) {
   EXPECT_EQ(result->max, 200.0);
 }
 
-TEST(Percentiles, OfOneValueAreThatValueAndOfNoneNothing) {
+TEST(Percentiles, OfOneValueAndOfNone) {
   const auto one = percentiles({7.0, std::numeric_limits<double>::quiet_NaN()});
   ASSERT_TRUE(one.has_value());
   EXPECT_EQ(one->p50, 7.0);

@@ -14,7 +14,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(Recorder, PutsRowsAndEventsOfEverySourceIntoTheFile) {
+TEST(Recorder, WritesRowsAndEventsOfEverySource) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   {
@@ -43,7 +43,7 @@ TEST(Recorder, PutsRowsAndEventsOfEverySourceIntoTheFile) {
   EXPECT_TRUE(reader.counters().closed_cleanly);
 }
 
-TEST(Recorder, SaysInTheFileHowMuchWasDropped) {
+TEST(Recorder, WritesDropCountsToTheFile) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   {
@@ -79,7 +79,7 @@ bool survives_full_disk(const std::filesystem::path& path, const std::string& re
          reader.counters().write_failed && !reader.counters().closed_cleanly;
 }
 
-TEST(Recorder, CountsEveryRowThatALimitOnFileSizeCosts) {
+TEST(Recorder, CountsRowsLostToFileSizeLimit) {
   const TemporaryDirectory directory;
   ChildProcess child{[&](const ChildProcess& self) {
     ::signal(SIGXFSZ, SIG_IGN);
@@ -89,7 +89,7 @@ TEST(Recorder, CountsEveryRowThatALimitOnFileSizeCosts) {
   EXPECT_EQ(child.wait(), 0);
 }
 
-TEST(Recorder, CountsEveryRowThatAFullDiskCosts) {
+TEST(Recorder, CountsRowsLostToFullDisk) {
   const TemporaryDirectory directory;
   ChildProcess child{[&](const ChildProcess& self) {
     // A file system of 256 KiB that only this child sees.
@@ -104,7 +104,7 @@ TEST(Recorder, CountsEveryRowThatAFullDiskCosts) {
   EXPECT_EQ(answer, 1U);
 }
 
-TEST(RecorderThread, HasEverythingInTheFileOnceStopped) {
+TEST(RecorderThread, WritesEverythingBeforeItStops) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   Recorder recorder{path, example_header(), {{example_layout(), 100'000}}};

@@ -12,7 +12,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(RowRing, GivesRowsBackInOrderAcrossTheEndOfItsStorage) {
+TEST(RowRing, KeepsOrderAcrossWrapAround) {
   RowRing ring{2, 3};
   double next_in = 0.0;
   double next_out = 0.0;
@@ -28,7 +28,7 @@ TEST(RowRing, GivesRowsBackInOrderAcrossTheEndOfItsStorage) {
   EXPECT_EQ(ring.dropped(), 0U);
 }
 
-TEST(RowRing, TakesNoMoreThanThereIsRoomFor) {
+TEST(RowRing, TakesNoMoreRowsThanFit) {
   RowRing ring{1, 4};
   for (double value = 0.0; value < 4.0; value += 1.0) ring.append(std::array{value});
   std::array<double, 3> rows{};
@@ -39,7 +39,7 @@ TEST(RowRing, TakesNoMoreThanThereIsRoomFor) {
   EXPECT_EQ(ring.take(rows), 0U);
 }
 
-TEST(RowRing, CountsRowsThatFindItFullAndKeepsTheOlderOnes) {
+TEST(RowRing, CountsRowsDroppedWhenFullAndKeepsOlder) {
   RowRing ring{1, 3};
   for (double value = 0.0; value < 8.0; value += 1.0) ring.append(std::array{value});
   EXPECT_EQ(ring.dropped(), 5U);
@@ -63,13 +63,13 @@ TEST(RowRing, DoesNotAllocateWhenAppendingKeepingOrDropping) {
   EXPECT_EQ(events.dropped(), 2U);
 }
 
-TEST(RowRing, ControlTheAllocationCountSeesAnAllocation) {
+TEST(RowRing, ControlAllocationCountDetectsAllocation) {
   const std::size_t before = allocation_count();
   const auto vector = std::make_unique<std::vector<double>>(100);
   EXPECT_EQ(allocation_count(), before + 2) << vector->size();
 }
 
-TEST(RowRingDeathTest, ARowOfAnotherWidthIsOurOwnMistake) {
+TEST(RowRingDeathTest, WrongRowWidthAborts) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   RowRing ring{2, 2};
   EXPECT_DEATH(ring.append(std::array{1.0}), "row_width_");

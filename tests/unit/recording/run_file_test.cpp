@@ -5,7 +5,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(RunFile, RolesAndDigestsSurviveTheirText) {
+TEST(RunFile, RolesAndDigestsRoundTripThroughText) {
   for (const Role role : {Role::coordinator, Role::numerical_substructure, Role::experimental_site}) {
     EXPECT_EQ(role_from_name(name(role)), role);
   }
@@ -17,7 +17,7 @@ TEST(RunFile, RolesAndDigestsSurviveTheirText) {
   EXPECT_EQ(digest_from_hex(text), digest);
 }
 
-TEST(RunFile, TextsThatAreNoDigestReadAsNone) {
+TEST(RunFile, InvalidDigestTextReadsAsNone) {
   EXPECT_EQ(digest_from_hex("12"), ScenarioDigest{});
   EXPECT_EQ(digest_from_hex(std::string(62, '1') + "g0"), ScenarioDigest{});
   EXPECT_EQ(digest_from_hex(std::string(62, '1') + "1g"), ScenarioDigest{});

@@ -38,7 +38,7 @@ void write_for_ever(const ChildProcess& child, const std::filesystem::path& path
   }
 }
 
-TEST(RunFileWriter, ControlAWrongRowIsSeen) {
+TEST(RunFileWriter, ControlDetectsWrongRow) {
   std::vector<double> rows;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto row = example_row(i);
@@ -49,7 +49,7 @@ TEST(RunFileWriter, ControlAWrongRowIsSeen) {
   EXPECT_EQ(wrong_rows(rows), 1U);
 }
 
-TEST(RunFileWriter, WhatIsWrittenIsReadBack) {
+TEST(RunFileWriter, WrittenRowsAreReadBack) {
   const TemporaryDirectory directory;
   const auto path = directory / "storey_1.h5";
   {
@@ -89,7 +89,7 @@ TEST(RunFileWriter, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(reader.counters().tables[2], (TableCounter{"events", 2, 0}));
 }
 
-TEST(RunFileWriter, AnUnknownColumnOrTableIsAnError) {
+TEST(RunFileWriter, UnknownColumnOrTableIsAnError) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   RunFileWriter{path, example_header(), {example_layout()}}.close();
@@ -100,7 +100,7 @@ TEST(RunFileWriter, AnUnknownColumnOrTableIsAnError) {
   EXPECT_EQ(reader.row_count("nothing"), 0U);
 }
 
-TEST(RunFileWriter, RefusesTablesThatCannotBeTold) {
+TEST(RunFileWriter, RejectsInvalidTables) {
   const TemporaryDirectory directory;
   const std::vector<Column> column{{"a", ""}};
   const std::vector<std::vector<TableLayout>> refused{{{"", column}},
@@ -117,7 +117,7 @@ TEST(RunFileWriter, RefusesTablesThatCannotBeTold) {
   }
 }
 
-TEST(RunFileWriter, SaysWhichFileCannotBeCreatedAndWhy) {
+TEST(RunFileWriter, ReportsWhyFileCannotBeCreated) {
   try {
     const RunFileWriter writer{"/nowhere/at/all.h5", example_header(), {example_layout()}};
     FAIL();
@@ -127,7 +127,7 @@ TEST(RunFileWriter, SaysWhichFileCannotBeCreatedAndWhy) {
   }
 }
 
-TEST(RunFileWriter, AFileThatIsNoRunFileIsRefusedByTheReader) {
+TEST(RunFileWriter, ReaderRejectsOtherFiles) {
   const TemporaryDirectory directory;
   std::ofstream{directory / "a.h5"} << "not HDF5";
   EXPECT_THROW(RunFileReader{directory / "a.h5"}, RecordingError);
@@ -164,7 +164,7 @@ TEST(RunFileWriter, AnotherProcessReadsTheFileWhileItGrows) {
   EXPECT_TRUE(reader.counters().closed_cleanly);
 }
 
-TEST(RunFileWriter, AKilledWriterLeavesAllRowsUpToTheLastFlush) {
+TEST(RunFileWriter, KilledWriterKeepsRowsUpToLastFlush) {
   // A kill at several stages: small file, several chunks, index blocks of the dataset allocated.
   for (const int flushes : {1, 3, 20, 150}) {
     const TemporaryDirectory directory;
@@ -204,7 +204,7 @@ TEST(RunFileWriter, OtherToolsOpenAKilledFileAfterRepairOnly) {
   EXPECT_TRUE(program_runs("h5dump " + path.string())) << "every row is readable";
 }
 
-TEST(RunFileWriter, AFileBeingWrittenIsNeitherRepairedNorReplaced) {
+TEST(RunFileWriter, OpenFileIsNeitherRepairedNorReplaced) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   ChildProcess child{[&](const ChildProcess& self) {
@@ -252,7 +252,7 @@ std::uint64_t write_until_refused(const std::filesystem::path& path, rlim_t byte
   return 0;
 }
 
-TEST(RunFileWriter, AFullDiskLeavesAllRowsUpToTheLastGoodFlush) {
+TEST(RunFileWriter, FullDiskKeepsRowsUpToLastFlush) {
   for (const rlim_t bytes_max : {20'000U, 60'000U, 100'001U, 500'000U}) {
     const TemporaryDirectory directory;
     const auto path = directory / "a.h5";

@@ -33,7 +33,7 @@ std::string printed(const RunSummary& summary) {
   return stream.str();
 }
 
-TEST(RunSummary, OfACompletedTestHasEveryFigure) {
+TEST(RunSummary, CompletedTestHasEveryFigure) {
   const RunSummary summary = summary_of({});
   EXPECT_EQ(verdict(summary), "completed");
   EXPECT_EQ(summary.exit_code, kExitCompleted);
@@ -94,7 +94,7 @@ TEST(RunSummary, CountsExchangesPerSubstructure) {
   EXPECT_EQ(numerical.resent + numerical.late + numerical.held + numerical.lost, 0U);
 }
 
-TEST(RunSummary, DroppedRecordsMakeTheDataInvalid) {
+TEST(RunSummary, DroppedRecordsMakeDataInvalid) {
   ExampleRun run;
   run.site_dropped = 12;
   const RunSummary summary = summary_of(run);
@@ -104,7 +104,7 @@ TEST(RunSummary, DroppedRecordsMakeTheDataInvalid) {
   EXPECT_EQ(summary.participants[1].dropped_rows, 12U);
 }
 
-TEST(RunSummary, MissingStepsMakeTheDataInvalid) {
+TEST(RunSummary, MissingStepsMakeDataInvalid) {
   ExampleRun run;
   run.site_skips_steps_100_to_102 = true;
   const RunSummary summary = summary_of(run);
@@ -112,7 +112,7 @@ TEST(RunSummary, MissingStepsMakeTheDataInvalid) {
   EXPECT_THAT(summary.data_faults, ElementsAre("storey_1: 3 steps missing between others"));
 }
 
-TEST(RunSummary, ARecordThatEndsBeforeTheTestMakesTheDataInvalid) {
+TEST(RunSummary, ShortRecordMakesDataInvalid) {
   ExampleRun run;
   run.site_steps = ExampleRun::kSteps - 1;
   EXPECT_TRUE(summary_of(run).data_valid) << "the very last answer may be under way";
@@ -120,7 +120,7 @@ TEST(RunSummary, ARecordThatEndsBeforeTheTestMakesTheDataInvalid) {
   EXPECT_THAT(summary_of(run).data_faults, ElementsAre("storey_1: the record ends 2 steps before the test"));
 }
 
-TEST(RunSummary, AnInterlockIsToldOnceWithItsLimitAndKeepsItsExitCode) {
+TEST(RunSummary, InterlockIsListedOnceWithLimitAndExitCode) {
   ExampleRun run;
   run.stop_reason = StopReason::interlock;
   run.exit_code = kExitEndedEarly;
@@ -140,7 +140,7 @@ TEST(RunSummary, AnInterlockIsToldOnceWithItsLimitAndKeepsItsExitCode) {
                                           "step 4711 (4.711 s)"));
 }
 
-TEST(RunSummary, OtherFaultsAreToldButInformationIsNot) {
+TEST(RunSummary, ListsFaultsWithoutInformationEvents) {
   ExampleRun run;
   Event lost = example_event();
   lost.code = EventCode::participant_lost;
@@ -152,7 +152,7 @@ TEST(RunSummary, OtherFaultsAreToldButInformationIsNot) {
   EXPECT_THAT(summary_of(run).faults, ElementsAre("coordinator: it happened"));
 }
 
-TEST(RunSummary, ASiteAtRestHasNoDelay) {
+TEST(RunSummary, SiteAtRestHasNoDelay) {
   ExampleRun run;
   run.site_at_rest = true;
   const RunSummary summary = summary_of(run);
@@ -162,7 +162,7 @@ TEST(RunSummary, ASiteAtRestHasNoDelay) {
   EXPECT_FALSE(summary.substructures[0].tracking[0].equivalent_delay_s.has_value());
 }
 
-TEST(RunSummary, AKilledSiteIsNamed) {
+TEST(RunSummary, NamesKilledSite) {
   const TemporaryDirectory directory;
   ExampleRun run;
   run.stop_reason = StopReason::participant_lost;
@@ -184,7 +184,7 @@ TEST(RunSummary, AKilledSiteIsNamed) {
   EXPECT_EQ(summary.exit_code, kExitEndedEarly);
 }
 
-TEST(RunSummary, WithoutTheCoordinatorsWordTheDataAreInvalid) {
+TEST(RunSummary, MissingTestRowMakesDataInvalid) {
   ExampleRun run;
   run.with_test_row = false;
   const RunSummary killed = summary_of(run);
@@ -201,7 +201,7 @@ TEST(RunSummary, WithoutTheCoordinatorsWordTheDataAreInvalid) {
   EXPECT_EQ(alone.substructures.at(0).tracking.size(), 1U);
 }
 
-TEST(RunSummary, AFileOnAnotherHostIsNoFault) {
+TEST(RunSummary, FileOnAnotherHostIsNoFault) {
   const TemporaryDirectory directory;
   ExampleRun run;
   run.write_coordinator(directory / "coordinator.h5");
@@ -211,7 +211,7 @@ TEST(RunSummary, AFileOnAnotherHostIsNoFault) {
   EXPECT_THAT(summary.remarks, ElementsAre(HasSubstr("storey_1: no file")));
 }
 
-TEST(RunSummary, AFileOfAnotherScenarioOrNoFileAtAllIsAFault) {
+TEST(RunSummary, MissingOrForeignFileIsAFault) {
   const TemporaryDirectory directory;
   ExampleRun{}.write(directory.path());
   RunFileHeader stranger = ExampleRun::header("left_over", Role::experimental_site);
@@ -226,7 +226,7 @@ TEST(RunSummary, AFileOfAnotherScenarioOrNoFileAtAllIsAFault) {
   EXPECT_THROW((void)summarise(empty / "absent"), RecordingError);
 }
 
-TEST(RunSummary, TheJsonIsSiAndCompleteAndHasNullWhereNothingIsKnown) {
+TEST(RunSummary, JsonIsInSiUnitsWithNullForUnknown) {
   ExampleRun run;
   run.site_at_rest = true;
   run.site_events = {example_event()};
@@ -247,7 +247,7 @@ TEST(RunSummary, TheJsonIsSiAndCompleteAndHasNullWhereNothingIsKnown) {
   EXPECT_EQ(json.at("participants").at(1).at("role"), "experimental_site");
 }
 
-TEST(RunSummary, TellsHowWellAControlLoopOnItsOwnThreadKeptItsTime) {
+TEST(RunSummary, ReportsControlLoopTiming) {
   EXPECT_FALSE(summary_of({}).substructures[0].loop_timing.has_value());
   ExampleRun run;
   run.site_has_loop_thread = true;
@@ -270,7 +270,7 @@ TEST(RunSummary, TellsHowWellAControlLoopOnItsOwnThreadKeptItsTime) {
   EXPECT_TRUE(json.at("substructures").at(1).at("loop_timing").is_null());
 }
 
-TEST(RunSummary, ThePrintedFormStartsWithTheVerdictAndUsesEngineeringUnits) {
+TEST(RunSummary, PrintedSummaryStartsWithVerdict) {
   const std::string text = printed(summary_of({}));
   EXPECT_TRUE(text.starts_with("COMPLETED  (exit 0)  two_storey\n")) << text;
   EXPECT_THAT(text, HasSubstr("10000 of 10000 steps, 10.000 s of model time in 4.00 s, 2500 steps/s"));

@@ -28,7 +28,7 @@ Signals delayed_sine() {
   return signals;
 }
 
-TEST(TrackingError, OfADelayedSineIsTheClosedForm) {
+TEST(TrackingError, DelayedSineMatchesClosedForm) {
   const Signals s = delayed_sine();
   const auto error = evaluate_tracking("floor_1", s.time_s, s.target_m, s.measured_m);
   ASSERT_TRUE(error.has_value());
@@ -45,7 +45,7 @@ TEST(TrackingError, OfADelayedSineIsTheClosedForm) {
   EXPECT_EQ(error->samples, 10'000U);
 }
 
-TEST(TrackingError, AHoleInTheRecordDoesNotDistortTheDelay) {
+TEST(TrackingError, GapInRecordDoesNotDistortDelay) {
   Signals s = delayed_sine();
   for (auto* values : {&s.time_s, &s.target_m, &s.measured_m}) {
     values->erase(values->begin() + 1500, values->begin() + 1733);
@@ -57,7 +57,7 @@ TEST(TrackingError, AHoleInTheRecordDoesNotDistortTheDelay) {
   EXPECT_NEAR(error->equivalent_delay_s.value(), 0.0125, 2e-6) << "7.5 s, where the taper is shorter";
 }
 
-TEST(TrackingError, AtRestThereIsAnErrorButNeitherShareNorDelay) {
+TEST(TrackingError, AtRestHasErrorWithoutShareOrDelay) {
   const std::vector<double> time_s{0.0, 1.0, 2.0, 3.0};
   const std::vector<double> target_m(4, 0.0);
   const std::vector<double> measured_m{1e-3, -3e-3, 1e-3, 1e-3};
@@ -69,7 +69,7 @@ TEST(TrackingError, AtRestThereIsAnErrorButNeitherShareNorDelay) {
   EXPECT_FALSE(error->equivalent_delay_s.has_value());
 }
 
-TEST(TrackingError, WithoutAnyFinitePairThereIsNone) {
+TEST(TrackingError, NoFinitePairGivesNone) {
   const std::vector<double> nothing{kNan, kNan};
   EXPECT_FALSE(evaluate_tracking("", nothing, nothing, nothing).has_value());
   EXPECT_FALSE(evaluate_tracking("", {}, {}, {}).has_value());

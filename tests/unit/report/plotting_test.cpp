@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Scale, MapsItsEndsOntoZeroAndOne) {
+TEST(Scale, MapsEndsToZeroAndOne) {
   const Scale linear{{.label = "", .is_logarithmic = false, .low = 2.0, .high = 6.0}, 0.0, 1.0};
   EXPECT_DOUBLE_EQ(linear.share(2.0), 0.0);
   EXPECT_DOUBLE_EQ(linear.share(5.0), 0.75);
@@ -26,7 +26,7 @@ TEST(Scale, MapsItsEndsOntoZeroAndOne) {
   EXPECT_FALSE(std::isfinite(logarithmic.share(0.0)));
 }
 
-TEST(Scale, TicksAreRoundAndInside) {
+TEST(Scale, TicksAreRoundAndInRange) {
   const Scale scale{{.label = "", .is_logarithmic = false, .low = -0.7, .high = 3.3}, 0.0, 1.0};
   std::vector<std::string> labels;
   for (const Tick& tick : scale.ticks()) {
@@ -37,13 +37,13 @@ TEST(Scale, TicksAreRoundAndInside) {
   EXPECT_THAT(labels, testing::ElementsAre("-0.5", "0", "0.5", "1", "1.5", "2", "2.5", "3"));
 }
 
-TEST(Scale, HasAPlaceForConstantAndForNoValues) {
+TEST(Scale, AcceptsConstantAndEmptyValues) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isfinite(Scale(Axis{}, 3.0, 3.0).share(3.0)));
   EXPECT_TRUE(std::isfinite(Scale(Axis{}, kInfinity, -kInfinity).share(0.0)));
 }
 
-TEST(LineFigure, ValuesThatAreNotFiniteLeaveAGap) {
+TEST(LineFigure, NonFiniteValuesLeaveAGap) {
   const Line line{.name = "broken", .x = {0, 1, 2, 3, 4}, .y = {0, 1, std::nan(""), 1, 0}};
   const std::string svg = to_svg(LineFigure{.panels = {{.title = "", .x = {}, .y = {}, .lines = {line}}}});
   EXPECT_EQ(svg.find("nan"), std::string::npos);
@@ -52,7 +52,7 @@ TEST(LineFigure, ValuesThatAreNotFiniteLeaveAGap) {
   EXPECT_EQ(pieces, 2U);
 }
 
-TEST(LineFigure, ThinningKeepsTheExtremes) {
+TEST(LineFigure, ThinningKeepsExtremes) {
   Line line{.name = "spike", .x = {}, .y = {}};
   for (int i = 0; i < 100000; ++i) {
     line.x.push_back(i);
@@ -68,7 +68,7 @@ TEST(LineFigure, ThinningKeepsTheExtremes) {
   EXPECT_THAT(svg, HasSubstr(",26.0 "));
 }
 
-TEST(DotFigure, AValueOutsideTheAxisStaysOnIt) {
+TEST(DotFigure, ClampsValuesToTheAxis) {
   const DotFigure figure{.title = "t",
                          .axis = {.label = "a", .is_logarithmic = true, .low = 1.0, .high = 10.0},
                          .marks = {"m"},
@@ -79,7 +79,7 @@ TEST(DotFigure, AValueOutsideTheAxisStaysOnIt) {
   EXPECT_THAT(svg, HasSubstr("lost"));
 }
 
-TEST(Page, OpensWithoutANetworkAndEscapesText) {
+TEST(Page, IsSelfContainedAndEscapesText) {
   const std::string page = html_page("a < b & c", "lead", {{"h", "t", to_svg(LineFigure{})}});
   EXPECT_THAT(page, HasSubstr("a &lt; b &amp; c"));
   EXPECT_THAT(page, Not(HasSubstr("<script")));

@@ -132,21 +132,21 @@ class DocumentedCompensation : public testing::Test {
   ScenarioFile file_;
 };
 
-TEST_F(DocumentedCompensation, EveryCompensatorHasItsNameKeysAndDefaults) {
+TEST_F(DocumentedCompensation, CompensatorsHaveDocumentedKeysAndDefaults) {
   const DocumentedTypes types = documented("compensator");
   EXPECT_EQ(names_of(types), known("compensator", "{type: ", "}"));
   EXPECT_EQ(types.size(), 12U);
   for (const auto& [type, keys] : types) expect_keys(effective("compensator", yaml_of(type, keys)), keys, type);
 }
 
-TEST_F(DocumentedCompensation, EveryForceCompensatorHasItsNameKeysAndDefaults) {
+TEST_F(DocumentedCompensation, ForceCompensatorsHaveDocumentedKeysAndDefaults) {
   const DocumentedTypes types = documented("force_compensator");
   EXPECT_EQ(names_of(types), known("force_compensator", "{type: ", "}"));
   EXPECT_EQ(types.size(), 5U);
   for (const auto& [type, keys] : types) expect_keys(effective("force_compensator", yaml_of(type, keys)), keys, type);
 }
 
-TEST_F(DocumentedCompensation, EveryEstimatorHasItsNameKeysAndDefaults) {
+TEST_F(DocumentedCompensation, EstimatorsHaveDocumentedKeysAndDefaults) {
   DocumentedTypes types = documented("estimator");
   const Keys common = types.at(kEveryOne);
   types.erase(kEveryOne);
@@ -160,7 +160,7 @@ TEST_F(DocumentedCompensation, EveryEstimatorHasItsNameKeysAndDefaults) {
   }
 }
 
-TEST_F(DocumentedCompensation, OnlyAMethodWithADelayTakesAnEstimator) {
+TEST_F(DocumentedCompensation, OnlyMethodsWithDelayAcceptEstimator) {
   const auto estimated = [](const std::string& type, const std::string& required) {
     return "{type: " + type + required + ", estimator: {type: fixed, initial_delay_s: 0.02}}";
   };
@@ -174,7 +174,7 @@ TEST_F(DocumentedCompensation, OnlyAMethodWithADelayTakesAnEstimator) {
   EXPECT_THAT(errors, testing::Contains(testing::HasSubstr("needs a compensator with a delay")));
 }
 
-TEST_F(DocumentedCompensation, AParameterOutOfItsRangeIsRefusedWithRangeAndReason) {
+TEST_F(DocumentedCompensation, RejectsParameterOutOfRangeWithReason) {
   const auto errors =
       file_.errors(kScenarioText, {"substructures[storey_1].compensator={type: adaptive_time_series, window_s: 20.0}"});
   EXPECT_THAT(errors,

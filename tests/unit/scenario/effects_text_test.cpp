@@ -17,7 +17,7 @@ std::string documentation() {
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
-TEST(EffectsText, TheDocumentationHasTheLibraryAsItIs) {
+TEST(EffectsText, DocumentationMatchesTheLibrary) {
   EXPECT_THAT(documentation(), testing::HasSubstr("<!-- hybridtest effects --markdown -->\n" + effects_markdown() +
                                                   "\n<!-- end of hybridtest effects --markdown -->"))
       << "put what `hybridtest effects --markdown` prints between these two lines of docs/scenario.md";

@@ -51,7 +51,7 @@ TEST_F(LoopSectionsTest, LimitsAloneAreTheShortForm) {
   EXPECT_EQ(loop.return_time_s, 2.0);
 }
 
-TEST_F(LoopSectionsTest, InterlocksInFullSayLimitActionAndClearCondition) {
+TEST_F(LoopSectionsTest, FullInterlocksHaveLimitActionAndClearCondition) {
   const std::string text = R"(    interlocks:
       displacement: {limit_m: 0.21, action: release}
       velocity: {limit_m_per_s: 1.6}
@@ -100,13 +100,13 @@ TEST_F(LoopSectionsTest, InterlocksInFullSayLimitActionAndClearCondition) {
   EXPECT_EQ(file_.read(scenario.effective).digest, scenario.digest) << "the effective scenario says the same";
 }
 
-TEST_F(LoopSectionsTest, AnInterlockCanGiveARuleToALimitOfTheShortForm) {
+TEST_F(LoopSectionsTest, InterlockRuleAppliesToShortFormLimit) {
   const LoopScenario loop = read(std::string{kLimits} + "    interlocks: {force: {action: release}}\n");
   EXPECT_EQ(loop.limits.force_n, 150.0e3);
   EXPECT_EQ(rule(loop, InterlockKind::force).action, SafetyAction::release);
 }
 
-TEST_F(LoopSectionsTest, WhatDoesNotFitIsAnError) {
+TEST_F(LoopSectionsTest, RejectsInconsistentSettings) {
   const auto one_error = [&](const std::string& interlocks, const char* what) {
     const auto found = errors(std::string{kLimits} + "    interlocks: {" + interlocks + "}\n");
     ASSERT_THAT(found, SizeIs(1)) << interlocks;

@@ -34,7 +34,7 @@ class MeasurementFile : public testing::Test {
 
 const std::string kHeader = "sample,time_s,measured_force_n,measured_displacement_m\n";
 
-TEST_F(MeasurementFile, TakesItsColumnsByNameAndPassesOverOthers) {
+TEST_F(MeasurementFile, ReadsColumnsByNameAndIgnoresOthers) {
   const RecordedMeasurement record = read(kHeader + "0,0.5,100,1e-3\r\n1,0.75,-2.5e3,0.25\n");
   EXPECT_THAT(record.time_s, ElementsAre(0.5, 0.75));
   EXPECT_EQ(record.displacement_m[1], (InterfaceVector{{0.25}}));
@@ -49,7 +49,7 @@ TEST_F(MeasurementFile, NumbersTheColumnsOfSeveralActuators) {
   EXPECT_EQ(record.force_n[0], (InterfaceVector{{3.0, 4.0}}));
 }
 
-TEST_F(MeasurementFile, SaysWhatIsWrongAndWhere) {
+TEST_F(MeasurementFile, ReportsErrorWithItsPlace) {
   expect_refused("", "", "empty");
   expect_refused(kHeader, "", "no rows");
   expect_refused("time_s,measured_force_n\n0,1\n", "", "no column 'measured_displacement_m'");
@@ -60,7 +60,7 @@ TEST_F(MeasurementFile, SaysWhatIsWrongAndWhere) {
   expect_refused(kHeader + "0,0.1,1,1\n1,0.1,1,1\n", ":3", "not later");
 }
 
-TEST_F(MeasurementFile, AFileThatIsNotThereSaysSo) {
+TEST_F(MeasurementFile, ReportsMissingFile) {
   EXPECT_THAT([&] { static_cast<void>(read_measurement("nowhere/measured.csv", 1)); },
               ThrowsMessage<ConfigError>(HasSubstr("cannot be read")));
 }

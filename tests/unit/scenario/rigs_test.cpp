@@ -40,7 +40,7 @@ class RigsTest : public testing::Test {
 
 const std::string kPaced = "time.mode=paced";
 
-TEST_F(RigsTest, AUdpRigNeedsAnAddressAndATimeThatItKeeps) {
+TEST_F(RigsTest, UdpRigRequiresAddressAndPace) {
   const Scenario scenario = read("{type: udp, host: rig.example, port: 5000, transfer_delay_s: 0.02}", {kPaced});
   EXPECT_EQ(scenario.substructures[0].site.rig_type, "udp");
   EXPECT_EQ(scenario.substructures[0].site.transfer_delay_s, 0.02);
@@ -55,12 +55,12 @@ TEST_F(RigsTest, AUdpRigNeedsAnAddressAndATimeThatItKeeps) {
       << "shorter than two control periods";
 }
 
-TEST_F(RigsTest, AControllerWithAClockIsNotForLockstep) {
+TEST_F(RigsTest, RejectsControllerClockInLockstep) {
   EXPECT_THAT(errors("{type: udp, host: a, port: 1}"), Contains(HasSubstr("clock of its own")));
   EXPECT_THAT(errors("{type: udp, host: a, port: 1, pace: datagrams}"), IsEmpty());
 }
 
-TEST_F(RigsTest, ARigElsewhereIsNotForSimulatedTime) {
+TEST_F(RigsTest, RejectsRemoteRigInSimulatedTime) {
   const Scenario scenario = read("{type: udp, host: a, port: 1, pace: datagrams}");
   NoRecord nothing;
   const SimulationObserver observer{
@@ -68,7 +68,7 @@ TEST_F(RigsTest, ARigElsewhereIsNotForSimulatedTime) {
   EXPECT_THROW(static_cast<void>(simulate(scenario, {}, observer)), ConfigError);
 }
 
-TEST_F(RigsTest, AnyRigStandsBehindAGeometryOfMoreActuators) {
+TEST_F(RigsTest, GeometryWrapsAnyRig) {
   const std::string two_specimens =
       "{type: simulated, transfer_system: {type: ideal}, specimen: [{type: elastic, stiffness_n_per_m: 1.0e6}, {type: "
       "elastic, stiffness_n_per_m: 2.0e6}], geometry: {type: linear, matrix: [[1.0], [2.0]]}}";
@@ -88,7 +88,7 @@ TEST_F(RigsTest, AnyRigStandsBehindAGeometryOfMoreActuators) {
               ElementsAre("rig_link", "rig_actuators"));
 }
 
-TEST_F(RigsTest, WhatIsWrongWithAGeometryIsSaid) {
+TEST_F(RigsTest, ReportsErrorsOfGeometry) {
   const auto of_geometry = [&](const std::string& geometry) {
     return errors("{type: udp, host: a, port: 1, pace: datagrams, geometry: " + geometry + "}");
   };

@@ -22,7 +22,7 @@ class ScenarioTest : public testing::Test {
   ScenarioFile file_;
 };
 
-TEST_F(ScenarioTest, ReadsWhatTheFileSays) {
+TEST_F(ScenarioTest, ReadsAllValues) {
   const Scenario scenario = file_.read();
   EXPECT_EQ(scenario.name, "sound");
   EXPECT_EQ(scenario.time.mode, CouplingMode::lockstep);
@@ -46,7 +46,7 @@ TEST_F(ScenarioTest, ReadsWhatTheFileSays) {
   EXPECT_EQ(stiffness, (Eigen::Matrix2d{} << 7.0e6, -3.0e6, -3.0e6, 3.0e6).finished());
 }
 
-TEST_F(ScenarioTest, ListsEverythingThatIsWrongAtOnceWithItsPlace) {
+TEST_F(ScenarioTest, ListsAllErrorsWithTheirPlaces) {
   std::string text = with("name: sound", "name: a/b");
   text = with("step_s: 0.001", "step_s: -0.001", text);
   text = with("ratio: 0.02", "ratoi: 0.02", text);
@@ -71,7 +71,7 @@ TEST_F(ScenarioTest, ListsEverythingThatIsWrongAtOnceWithItsPlace) {
   for (const std::string& error : errors) EXPECT_TRUE(std::isdigit(error.front())) << "without a place: " << error;
 }
 
-TEST_F(ScenarioTest, UnknownTypesListTheKnownNames) {
+TEST_F(ScenarioTest, UnknownTypeListsKnownNames) {
   EXPECT_THAT(file_.errors(with("type: second_order", "type: third_order")),
               Contains(AllOf(StartsWith("17:"), HasSubstr("ideal, delay, first_order, second_order"))));
   EXPECT_THAT(file_.errors(with("type: bilinear", "type: steel02")),
@@ -85,7 +85,7 @@ TEST_F(ScenarioTest, UnknownTypesListTheKnownNames) {
   EXPECT_THAT(file_.errors(with("hybridtest/1", "hybridtest/2")), Contains(HasSubstr("hybridtest/1")));
 }
 
-TEST_F(ScenarioTest, RefusesAStepAboveTheStabilityLimit) {
+TEST_F(ScenarioTest, RejectsStepAboveStabilityLimit) {
   const auto errors = file_.errors(with("step_s: 0.001", "step_s: 0.1"));
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_THAT(errors[0], AllOf(StartsWith("3:1: time:"), HasSubstr("T_n/pi"), HasSubstr("shorten the step")));
@@ -100,27 +100,27 @@ TEST_F(ScenarioTest, RefusesAStepAboveTheStabilityLimit) {
               IsEmpty());
 }
 
-TEST_F(ScenarioTest, RefusesADegreeOfFreedomThatNobodyHolds) {
+TEST_F(ScenarioTest, RejectsDegreeOfFreedomWithoutSubstructure) {
   const auto errors = file_.errors(with("[{dof: floor_2, relative_to: floor_1}]", "[{dof: floor_1}]"));
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_THAT(errors[0], AllOf(StartsWith("10:1: substructures:"), HasSubstr("'floor_2'")));
 }
 
-TEST_F(ScenarioTest, RefusesTwoSubstructuresOfOneId) {
+TEST_F(ScenarioTest, RejectsDuplicateSubstructureId) {
   const auto errors = file_.errors(with("id: storey_2", "id: storey_1"));
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_THAT(errors[0], HasSubstr("two substructures with the id 'storey_1'"));
   EXPECT_THAT(file_.errors(with("id: storey_2", "id: coordinator")), ElementsAre(HasSubstr("'coordinator' is taken")));
 }
 
-TEST_F(ScenarioTest, RefusesInterfacesThatAreListedTwiceOrAgainstThemselves) {
+TEST_F(ScenarioTest, RejectsDuplicateAndSelfRelativeInterfaces) {
   EXPECT_THAT(file_.errors(with("[{dof: floor_2, relative_to: floor_1}]", "[{dof: floor_2}, {dof: floor_2}]")),
               Contains(HasSubstr("listed twice")));
   EXPECT_THAT(file_.errors(with("relative_to: floor_1", "relative_to: floor_2")),
               Contains(HasSubstr("relative to itself, expected another one")));
 }
 
-TEST_F(ScenarioTest, RefusesMatricesOfTheWrongSize) {
+TEST_F(ScenarioTest, RejectsMatricesOfWrongSize) {
   EXPECT_THAT(file_.errors(with("[[4.0e6]]", "[[4.0e6, 0.0], [0.0, 4.0e6]]")),
               Contains(AllOf(StartsWith("14:"), HasSubstr("expected"))));
   EXPECT_THAT(file_.errors(with("mass_kg: {floor_1: 20.0e3, floor_2: 20.0e3}", "mass_matrix_kg: [[20.0e3]]")),
@@ -130,20 +130,20 @@ TEST_F(ScenarioTest, RefusesMatricesOfTheWrongSize) {
   EXPECT_THAT(file_.errors(with("modes: [1, 2]", "modes: [1, 3]")), Contains(HasSubstr("from 1 to 2")));
 }
 
-TEST_F(ScenarioTest, RefusesAMassThatIsNotPositive) {
+TEST_F(ScenarioTest, RejectsNonPositiveMass) {
   EXPECT_THAT(file_.errors(with("floor_2: 20.0e3}", "floor_2: 0.0}")), Contains(StartsWith("7:")));
   EXPECT_THAT(file_.errors(with("mass_kg: {floor_1: 20.0e3, floor_2: 20.0e3}",
                                 "mass_matrix_kg: [[20.0e3, 30.0e3], [30.0e3, 20.0e3]]")),
               Contains(HasSubstr("mass")));
 }
 
-TEST_F(ScenarioTest, RefusesACompensatorDelayThatTheCompensatorCannotMakeUpFor) {
+TEST_F(ScenarioTest, RejectsDelayBeyondTheCompensator) {
   EXPECT_THAT(file_.errors(with("delay_s: 0.023", "delay_s: -0.001")), Contains(StartsWith("21:")));
   // More than eight point spacings ahead.
   EXPECT_THAT(file_.errors(with("delay_s: 0.023}", "delay_s: 0.023, point_spacing_s: 0.002}")), Not(IsEmpty()));
 }
 
-TEST_F(ScenarioTest, RefusesACommandAgeThatEveryStepWouldExceed) {
+TEST_F(ScenarioTest, RejectsCommandAgeBelowTheStep) {
   const auto errors =
       file_.errors(with("mode: lockstep, step_s: 0.001", "mode: paced, time_scale: 1500.0, step_s: 0.001"));
   ASSERT_EQ(errors.size(), 1U);
@@ -152,7 +152,7 @@ TEST_F(ScenarioTest, RefusesACommandAgeThatEveryStepWouldExceed) {
               IsEmpty());
 }
 
-TEST_F(ScenarioTest, RefusesAMotionThatIsNotThereOrNotOne) {
+TEST_F(ScenarioTest, RejectsMissingOrInvalidGroundMotion) {
   EXPECT_THAT(file_.errors(with("motion.txt", "moton.txt")), Contains(AllOf(StartsWith("4:"), HasSubstr("moton.txt"))));
   std::ofstream{file_.directory() / "broken.txt"} << "time_s acceleration_m_per_s2\n0.0 0.0\n0.05 loud\n";
   EXPECT_THAT(file_.errors(with("motion.txt", "broken.txt")), Contains(AllOf(StartsWith("4:"), HasSubstr("loud"))));
@@ -164,7 +164,7 @@ TEST_F(ScenarioTest, ReportsUnknownDuplicateAndMissingKeys) {
   EXPECT_THAT(file_.errors(with("integrator: {type: central_difference}\n", "")), Contains(HasSubstr("integrator")));
 }
 
-TEST_F(ScenarioTest, TheEffectiveScenarioReadsBackToTheSameDigest) {
+TEST_F(ScenarioTest, EffectiveScenarioKeepsTheDigest) {
   const Scenario first = file_.read();
   EXPECT_THAT(first.effective,
               AllOf(HasSubstr("command_age_s"), HasSubstr("liveliness_lease_s"), HasSubstr("on_failure")))
@@ -174,7 +174,7 @@ TEST_F(ScenarioTest, TheEffectiveScenarioReadsBackToTheSameDigest) {
   EXPECT_EQ(again.digest, first.digest);
 }
 
-TEST_F(ScenarioTest, TheShippedScenariosReadBackToTheSameDigest) {
+TEST_F(ScenarioTest, ShippedScenariosKeepTheirDigest) {
   const std::filesystem::path directory = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios";
   const std::vector<std::string> motion{"excitation.ground_motion=" + (file_.directory() / "motion.txt").string(),
                                         "time.duration_s=0.1"};
@@ -184,7 +184,7 @@ TEST_F(ScenarioTest, TheShippedScenariosReadBackToTheSameDigest) {
   }
 }
 
-TEST_F(ScenarioTest, TheDigestIsThatOfTheContentNotOfItsForm) {
+TEST_F(ScenarioTest, DigestDependsOnContentNotOnFormatting) {
   const ScenarioDigest digest = file_.read().digest;
   EXPECT_EQ(file_.read(with("name: sound", "# a comment\nname: \"sound\"  # another")).digest, digest);
   EXPECT_EQ(file_.read(with("20.0e3, floor_2: 20.0e3", "20000, floor_2: 2.0e+4")).digest, digest);
@@ -202,7 +202,7 @@ TEST_F(ScenarioTest, TheDigestIsThatOfTheContentNotOfItsForm) {
       << "a default that is written out";
 }
 
-TEST_F(ScenarioTest, TheDigestChangesWithEveryValue) {
+TEST_F(ScenarioTest, DigestChangesWithEveryValue) {
   std::set<ScenarioDigest> digests{file_.read().digest};
   const std::vector<std::string> changes{
       "name=other",
@@ -249,7 +249,7 @@ TEST_F(ScenarioTest, TheDigestChangesWithEveryValue) {
   }
 }
 
-TEST_F(ScenarioTest, OverridesReplaceValuesAndTheLastOneWins) {
+TEST_F(ScenarioTest, LastOverrideWins) {
   const Scenario scenario =
       file_.read(kScenarioText, {"substructures[storey_1].limits.force_n=1.0e3", "substructures[1].id=upper",
                                  "substructures[storey_1].limits.force_n=2.0e3"});
@@ -258,7 +258,7 @@ TEST_F(ScenarioTest, OverridesReplaceValuesAndTheLastOneWins) {
   EXPECT_EQ(file_.read(scenario.effective).digest, scenario.digest);
 }
 
-TEST_F(ScenarioTest, OverridesThatFitNothingAreListedWithTheNearestName) {
+TEST_F(ScenarioTest, ReportsUnknownOverridesWithNearestName) {
   const auto errors =
       file_.errors(kScenarioText, {"time.step=0.002", "substructures[storey_3].id=x", "tim.step_s=1.0"});
   ASSERT_EQ(errors.size(), 3U);
@@ -267,7 +267,7 @@ TEST_F(ScenarioTest, OverridesThatFitNothingAreListedWithTheNearestName) {
   EXPECT_THAT(errors, Contains(AllOf(StartsWith("--set tim.step_s:"), HasSubstr("time"))));
 }
 
-TEST_F(ScenarioTest, ALawByItselfIsAModelForOneDegreeOfFreedom) {
+TEST_F(ScenarioTest, LawAloneIsAModelForOneDof) {
   const std::string bilinear =
       "model: {type: bilinear, stiffness_n_per_m: 3.0e6, yield_force_n: 1.0e4, hardening_ratio: 0.1}";
   const std::string model = "model: {type: elastic, stiffness_n_per_m: 3.0e6}";
@@ -278,7 +278,7 @@ TEST_F(ScenarioTest, ALawByItselfIsAModelForOneDegreeOfFreedom) {
               Contains(HasSubstr("one for each interface degree of freedom")));
 }
 
-TEST_F(ScenarioTest, EveryMakerMakesAFreshPart) {
+TEST_F(ScenarioTest, FactoriesMakeIndependentParts) {
   const Scenario scenario = file_.read();
   const SubstructureScenario& site = scenario.substructures[0];
   EXPECT_NE(site.make_rig(0.0005).get(), site.make_rig(0.0005).get());

@@ -36,7 +36,7 @@ double force_at(const SiteModel& model, const Motion& motion) {
   return stage.step({.motion = motion});
 }
 
-TEST_F(SiteFile, LeavesOutWhatIsIdeal) {
+TEST_F(SiteFile, OmitsIdealParts) {
   const SiteModelFile site = read("effects: [{interface: specimen, effect: inertia, mass_kg: 95.0}]\n");
   ASSERT_EQ(site.dofs.size(), 1U);
   TransferStage transfer{site.dofs[0], kPeriod_s};
@@ -45,7 +45,7 @@ TEST_F(SiteFile, LeavesOutWhatIsIdeal) {
   EXPECT_FALSE(site.dofs[0].make_compensator);
 }
 
-TEST_F(SiteFile, IsTheSameAtTheTopUnderRigAndInAScenario) {
+TEST_F(SiteFile, IsTheSameAtTopUnderRigAndInScenario) {
   const std::string parts =
       "transfer_system: {type: delay, delay_s: 0.002}\n"
       "specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n";
@@ -68,7 +68,7 @@ TEST_F(SiteFile, IsTheSameAtTheTopUnderRigAndInAScenario) {
 }
 
 /// From none at all to far ahead, so that a search for what was set finds a compensator everywhere.
-TEST_F(SiteFile, ACompensatorCanBeMadeForEveryDelayThatItsSettingAllows) {
+TEST_F(SiteFile, CompensatorCanBeMadeForEveryAllowedDelay) {
   for (const char* text :
        {"{type: polynomial_displacement, delay_s: 0.01}",
         "{type: polynomial_displacement, delay_s: 0.01, point_spacing_s: 0.0029}",
@@ -87,7 +87,7 @@ TEST_F(SiteFile, ACompensatorCanBeMadeForEveryDelayThatItsSettingAllows) {
   EXPECT_EQ(read("compensator: {type: adaptive_time_series}\n").dofs[0].compensator_delay.most_s, 0.0);
 }
 
-TEST_F(SiteFile, EffectsAreAddedBehindThoseItHas) {
+TEST_F(SiteFile, AddedEffectsFollowExistingOnes) {
   for (const std::string& text :
        {std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"},
         std::string{"specimen: {type: elastic, stiffness_n_per_m: 10.0}\n"
@@ -103,7 +103,7 @@ TEST_F(SiteFile, EffectsAreAddedBehindThoseItHas) {
   }
 }
 
-TEST_F(SiteFile, NamesWhatItKnows) {
+TEST_F(SiteFile, NamesKnownParts) {
   EXPECT_THAT(error_of("effects: [{interface: specimen, effect: coulomb_frictoin, friction_force_n: 1.0}]\n"),
               testing::HasSubstr("coulomb_friction"));
   EXPECT_THAT(error_of("effects: [{interface: specimn, effect: inertia, mass_kg: 1.0}]\n"),
@@ -119,7 +119,7 @@ TEST_F(SiteFile, NamesWhatItKnows) {
   EXPECT_THAT(error_of("specimens: {type: none}\n"), testing::HasSubstr("did you mean 'specimen'"));
 }
 
-TEST_F(SiteFile, AnEffectCanConcernOneDegreeOfFreedom) {
+TEST_F(SiteFile, EffectCanApplyToOneDof) {
   const SiteModelFile site = read(
       "specimen: [{type: none}, {type: none}]\n"
       "effects:\n"

@@ -17,7 +17,7 @@ double first_reading_n(const SubstructureScenario& site) {
   return feedback.force_n[0];
 }
 
-TEST(SiteNoise, OfOneSeedDiffersFromSiteToSite) {
+TEST(SiteNoise, DiffersBetweenSitesForOneSeed) {
   const std::string second_site =
       "  - id: storey_2\n"
       "    kind: experimental\n"

@@ -31,7 +31,7 @@ class SitesInPlace : public testing::Test {
 
 const std::string kRigOfFile = "substructures[storey_1].rig={type: simulated, model: site.yaml}";
 
-TEST_F(SitesInPlace, ARigOfAFileIsTheRigWrittenOut) {
+TEST_F(SitesInPlace, RigFromFileEqualsInlineRig) {
   write_site(kSite);
   const Scenario from_file = file_.read(kScenarioText, {kRigOfFile});
   const Scenario written_out =
@@ -43,14 +43,14 @@ TEST_F(SitesInPlace, ARigOfAFileIsTheRigWrittenOut) {
   EXPECT_EQ(file_.read(from_file.effective).effective, from_file.effective);
 }
 
-TEST_F(SitesInPlace, WhatAFileLeavesOutIsIdeal) {
+TEST_F(SitesInPlace, OmittedPartsAreIdeal) {
   write_site("specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n");
   const Scenario scenario = file_.read(kScenarioText, {kRigOfFile});
   EXPECT_THAT(scenario.effective, HasSubstr("type: ideal"));
   EXPECT_EQ(scenario.find("storey_1")->site.transfer_delay_s, 0.0);
 }
 
-TEST_F(SitesInPlace, AModelBesideARigIsWhatADiagnosisReads) {
+TEST_F(SitesInPlace, DiagnosisReadsModelBesideRig) {
   write_site("name: mine\nspecimen: {type: elastic, stiffness_n_per_m: 3.0e6}\n");
   EXPECT_FALSE(file_.read().find("storey_1")->site.has_model);
   for (const char* model : {"site.yaml", "{specimen: {type: elastic, stiffness_n_per_m: 3.0e6}}"}) {
@@ -63,7 +63,7 @@ TEST_F(SitesInPlace, AModelBesideARigIsWhatADiagnosisReads) {
   }
 }
 
-TEST_F(SitesInPlace, WhatIsWrongIsNamedByItsPlace) {
+TEST_F(SitesInPlace, ReportsErrorsWithTheirPlace) {
   write_site("specimen: {type: elastic, stiffness_n_per_m: -1}\n");
   EXPECT_THAT(file_.errors(kScenarioText, {kRigOfFile}), testing::Contains(HasSubstr("site.yaml:1")));
   EXPECT_THAT(file_.errors(kScenarioText, {"substructures[storey_1].rig={model: nowhere.yaml}"}),

@@ -5,7 +5,7 @@
 namespace hybridtest {
 namespace {
 
-TEST(BoundedQueue, GivesOldestFirstAcrossTheEndOfItsMemory) {
+TEST(BoundedQueue, KeepsOrderAcrossWrapAround) {
   BoundedQueue<int> queue{3};
   int value = 0;
   int next_in = 0;
@@ -19,14 +19,14 @@ TEST(BoundedQueue, GivesOldestFirstAcrossTheEndOfItsMemory) {
   }
 }
 
-TEST(BoundedQueue, WhenEmptyLeavesTheValueAlone) {
+TEST(BoundedQueue, PopFromEmptyLeavesValueUnchanged) {
   BoundedQueue<int> queue{1};
   int value = 5;
   EXPECT_FALSE(queue.pop(value));
   EXPECT_EQ(value, 5);
 }
 
-TEST(BoundedQueue, WhenFullTurnsAwayTheNewAndCounts) {
+TEST(BoundedQueue, RejectsAndCountsWhenFull) {
   BoundedQueue<int> queue{2};
   EXPECT_TRUE(queue.push(1));
   EXPECT_TRUE(queue.push(2));
@@ -44,7 +44,7 @@ TEST(BoundedQueue, WhenFullTurnsAwayTheNewAndCounts) {
   EXPECT_FALSE(queue.pop(value));
 }
 
-TEST(BoundedQueue, DisplacingDropsTheOldestAndCounts) {
+TEST(BoundedQueue, DisplacingDropsOldestAndCounts) {
   BoundedQueue<int> queue{2};
   queue.push_displacing(1);
   queue.push_displacing(2);

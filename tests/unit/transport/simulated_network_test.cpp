@@ -57,7 +57,7 @@ Arrivals send_many(std::uint64_t seed, const NetworkConditions& conditions, int 
   return arrivals;
 }
 
-TEST(SimulatedNetwork, DeliversAfterTheLatencyAndNotBefore) {
+TEST(SimulatedNetwork, DeliversAfterLatencyAndNotBefore) {
   SimulatedNetwork network{1, {}};
   const auto a = network.join("a");
   const auto b = network.join("b");
@@ -78,7 +78,7 @@ TEST(SimulatedNetwork, DeliversAfterTheLatencyAndNotBefore) {
   EXPECT_EQ(network.next_delivery(), kNever);
 }
 
-TEST(SimulatedNetwork, KeepsTheOrderOfALinkUnderJitter) {
+TEST(SimulatedNetwork, KeepsOrderOfALinkUnderJitter) {
   NetworkConditions conditions;
   conditions.jitter = milliseconds{1};
   const Arrivals arrivals = send_many(3, conditions);
@@ -94,7 +94,7 @@ TEST(SimulatedNetwork, KeepsTheOrderOfALinkUnderJitter) {
   EXPECT_GT(longest, conditions.latency + conditions.jitter / 2);
 }
 
-TEST(SimulatedNetwork, LosesTheShareAskedFor) {
+TEST(SimulatedNetwork, LosesConfiguredShare) {
   NetworkConditions conditions;
   conditions.loss = 0.1;
   const Arrivals arrivals = send_many(4, conditions);
@@ -104,7 +104,7 @@ TEST(SimulatedNetwork, LosesTheShareAskedFor) {
   EXPECT_EQ(arrivals.counters.delivered, arrivals.numbers.size());
 }
 
-TEST(SimulatedNetwork, DoublesTheShareAskedFor) {
+TEST(SimulatedNetwork, DuplicatesConfiguredShare) {
   NetworkConditions conditions;
   conditions.duplication = 0.2;
   const Arrivals arrivals = send_many(5, conditions);
@@ -113,7 +113,7 @@ TEST(SimulatedNetwork, DoublesTheShareAskedFor) {
   EXPECT_TRUE(std::ranges::is_sorted(arrivals.numbers));
 }
 
-TEST(SimulatedNetwork, LetsLaterMessagesOvertakeTheShareAskedFor) {
+TEST(SimulatedNetwork, ReordersConfiguredShare) {
   NetworkConditions conditions;
   conditions.reordering = 0.1;
   const Arrivals arrivals = send_many(6, conditions);
@@ -125,7 +125,7 @@ TEST(SimulatedNetwork, LetsLaterMessagesOvertakeTheShareAskedFor) {
   for (int i = 0; i < kMessages; ++i) ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
 }
 
-TEST(SimulatedNetwork, TheSameSeedGivesTheSameArrivalsAndAnotherDoesNot) {
+TEST(SimulatedNetwork, ArrivalsDependOnTheSeedOnly) {
   NetworkConditions conditions;
   conditions.jitter = microseconds{300};
   conditions.loss = conditions.duplication = conditions.reordering = 0.05;
@@ -137,7 +137,7 @@ TEST(SimulatedNetwork, TheSameSeedGivesTheSameArrivalsAndAnotherDoesNot) {
   EXPECT_NE(first.times, other.times);
 }
 
-TEST(SimulatedNetwork, AnOutageCutsItsParticipantOffBothWays) {
+TEST(SimulatedNetwork, OutageCutsBothDirections) {
   NetworkConditions conditions;
   conditions.outages.push_back({"a", milliseconds{10}, milliseconds{20}});
   SimulatedNetwork network{1, conditions};
@@ -164,7 +164,7 @@ TEST(SimulatedNetwork, AnOutageCutsItsParticipantOffBothWays) {
   }
 }
 
-TEST(SimulatedNetwork, ADeadParticipantNeitherSendsNorHears) {
+TEST(SimulatedNetwork, DeadParticipantNeitherSendsNorReceives) {
   SimulatedNetwork network{1, {}};
   const auto a = network.join("a");
   const auto b = network.join("b");
@@ -184,7 +184,7 @@ TEST(SimulatedNetwork, ADeadParticipantNeitherSendsNorHears) {
   EXPECT_FALSE(to_b->take(event));
 }
 
-TEST(SimulatedNetwork, NobodyHearsItself) {
+TEST(SimulatedNetwork, SenderDoesNotReceiveItsOwnMessages) {
   SimulatedNetwork network{1, {}};
   const auto a = network.join("a");
   const auto outbox = a->event_outbox();
@@ -193,7 +193,7 @@ TEST(SimulatedNetwork, NobodyHearsItself) {
   EXPECT_EQ(network.next_delivery(), kNever);
 }
 
-TEST(SimulatedNetwork, ACommandGoesToItsSubstructureAlone) {
+TEST(SimulatedNetwork, DeliversCommandOnlyToItsSubstructure) {
   SimulatedNetwork network{1, {}};
   const auto coordinator = network.join("coordinator");
   const auto first = network.join("first");
@@ -209,7 +209,7 @@ TEST(SimulatedNetwork, ACommandGoesToItsSubstructureAlone) {
   EXPECT_TRUE(to_second->take(command));
 }
 
-TEST(SimulatedNetwork, ThoseWhoJoinLateGetTheAnnouncementAndTheNewestStatuses) {
+TEST(SimulatedNetwork, LateJoinerGetsAnnouncementAndNewestStatuses) {
   NetworkConditions conditions;
   conditions.loss = 0.9;  // never of the announcement
   SimulatedNetwork lossy{1, conditions};
@@ -239,7 +239,7 @@ TEST(SimulatedNetwork, ThoseWhoJoinLateGetTheAnnouncementAndTheNewestStatuses) {
   EXPECT_FALSE(inbox->take(status));
 }
 
-TEST(SimulatedNetwork, CountsWhatAFullInboxCouldNotTake) {
+TEST(SimulatedNetwork, CountsMessagesRejectedByFullInbox) {
   SimulatedNetwork network{1, {}};
   const auto a = network.join("a");
   const auto b = network.join("b");

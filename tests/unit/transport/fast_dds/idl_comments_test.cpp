@@ -86,7 +86,7 @@ IdlSurvey survey_text(const std::string& text) {
   return survey_idl(stream);
 }
 
-TEST(IdlComments, EveryFieldHasAUnitAndEveryStructItsExtensibility) {
+TEST(IdlComments, FieldsHaveUnitsAndStructsExtensibility) {
   std::ifstream idl{std::string{HYBRIDTEST_SOURCE_DIR} + "/idl/hybridtest.idl"};
   ASSERT_TRUE(idl);
   const IdlSurvey survey = survey_idl(idl);
@@ -100,29 +100,29 @@ TEST(IdlComments, EveryFieldHasAUnitAndEveryStructItsExtensibility) {
 
 // The guard can fail: each of these has one fault.
 
-TEST(IdlComments, AFieldWithoutUnitIsFound) {
+TEST(IdlComments, ReportsFieldWithoutUnit) {
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;\n};\n").complaints.size(), 1U);
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;  // metres\n};\n").complaints.size(), 1U);
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;  // [furlong]\n};\n").complaints.size(), 1U);
   EXPECT_TRUE(survey_text("@final\nstruct A {\n  double x;  // [m]\n};\n").complaints.empty());
 }
 
-TEST(IdlComments, ABrokenTagIsFound) {
+TEST(IdlComments, ReportsBrokenTag) {
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;  // [m] @range 0\n};\n").complaints.size(), 1U);
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;  // [m] @invalid\n};\n").complaints.size(), 1U);
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double x;  // [m] @unknown 1\n};\n").complaints.size(), 1U);
 }
 
-TEST(IdlComments, AUnitThatContradictsTheNameIsFound) {
+TEST(IdlComments, ReportsUnitThatContradictsName) {
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double force_n;  // [m]\n};\n").complaints.size(), 1U);
   EXPECT_EQ(survey_text("@final\nstruct A {\n  double velocity_m_per_s;  // [s]\n};\n").complaints.size(), 1U);
 }
 
-TEST(IdlComments, AStructWithoutExtensibilityIsFound) {
+TEST(IdlComments, ReportsStructWithoutExtensibility) {
   EXPECT_EQ(survey_text("struct A {\n  double x;  // [m]\n};\n").complaints.size(), 1U);
 }
 
-TEST(IdlComments, HeapInAFinalStructIsFound) {
+TEST(IdlComments, ReportsHeapTypeInFinalStruct) {
   EXPECT_EQ(survey_text("@final\nstruct A {\n  sequence<double, 3> x;  // [m]\n};\n").complaints.size(), 1U);
   EXPECT_TRUE(survey_text("@appendable\nstruct A {\n  sequence<double, 3> x;  // [m]\n};\n").complaints.empty());
 }

@@ -24,7 +24,7 @@ ParticipantStatus status(LifecycleState state) {
   return result;
 }
 
-TEST(Peers, GoneIsReportedOnceWithTheLastStatus) {
+TEST(Peers, ReportsLossOnceWithLastStatus) {
   Peers peers;
   peers.heard(prefix(1), instance(1), status(LifecycleState::ready));
   peers.heard(prefix(1), instance(1), status(LifecycleState::running));
@@ -34,7 +34,7 @@ TEST(Peers, GoneIsReportedOnceWithTheLastStatus) {
   EXPECT_FALSE(peers.gone(prefix(1)));
 }
 
-TEST(Peers, WhoTookLeaveOrWasNeverHeardIsNotReported) {
+TEST(Peers, DepartedOrUnknownPeerIsNotReported) {
   Peers peers;
   peers.heard(prefix(1), instance(1), status(LifecycleState::finished));
   peers.heard(prefix(2), instance(2), status(LifecycleState::refused));
@@ -43,7 +43,7 @@ TEST(Peers, WhoTookLeaveOrWasNeverHeardIsNotReported) {
   EXPECT_FALSE(peers.gone(prefix(3)));
 }
 
-TEST(Peers, WhoComesBackCanBeLostAgain) {
+TEST(Peers, ReturnedPeerCanBeLostAgain) {
   Peers peers;
   peers.heard(prefix(1), instance(1), status(LifecycleState::running));
   EXPECT_TRUE(peers.gone(prefix(1)));
@@ -51,7 +51,7 @@ TEST(Peers, WhoComesBackCanBeLostAgain) {
   EXPECT_TRUE(peers.gone(prefix(1)));
 }
 
-TEST(Peers, SilenceCountsOnlyWhileMotionIsPossible) {
+TEST(Peers, SilenceMattersOnlyWhileMotionIsPossible) {
   for (const LifecycleState state : {LifecycleState::joining, LifecycleState::ready, LifecycleState::finished}) {
     Peers peers;
     peers.heard(prefix(1), instance(1), status(state));
@@ -67,7 +67,7 @@ TEST(Peers, SilenceCountsOnlyWhileMotionIsPossible) {
   }
 }
 
-TEST(Peers, WhoSpeaksAgainCanFallSilentAgain) {
+TEST(Peers, RecoveredPeerCanFallSilentAgain) {
   Peers peers;
   peers.heard(prefix(1), instance(1), status(LifecycleState::running));
   EXPECT_TRUE(peers.silent(instance(1)));
@@ -75,7 +75,7 @@ TEST(Peers, WhoSpeaksAgainCanFallSilentAgain) {
   EXPECT_TRUE(peers.silent(instance(1)));
 }
 
-TEST(Peers, OfTwoWithOneIdEachIsReported) {
+TEST(Peers, ReportsBothOfTwoWithOneId) {
   Peers peers;
   peers.heard(prefix(1), instance(1), status(LifecycleState::running));
   peers.heard(prefix(2), instance(1), status(LifecycleState::running));

@@ -193,15 +193,15 @@ void round_trip(Message (Draw::*draw)()) {
   }
 }
 
-TEST(WireMapping, EveryAnnouncementSurvives) { round_trip<wire::TestAnnouncement>(&Draw::announcement); }
-TEST(WireMapping, EveryStatusSurvives) { round_trip<wire::ParticipantStatus>(&Draw::status); }
-TEST(WireMapping, EveryCommandSurvives) { round_trip<wire::DisplacementCommand>(&Draw::command); }
-TEST(WireMapping, EveryMeasurementSurvives) { round_trip<wire::ForceMeasurement>(&Draw::measurement); }
-TEST(WireMapping, EveryControlSurvives) { round_trip<wire::TestControl>(&Draw::control); }
-TEST(WireMapping, EveryEventSurvives) { round_trip<wire::Event>(&Draw::event); }
-TEST(WireMapping, EverySignalBlockSurvives) { round_trip<wire::SignalBlock>(&Draw::signal); }
+TEST(WireMapping, AnnouncementRoundTrips) { round_trip<wire::TestAnnouncement>(&Draw::announcement); }
+TEST(WireMapping, StatusRoundTrips) { round_trip<wire::ParticipantStatus>(&Draw::status); }
+TEST(WireMapping, CommandRoundTrips) { round_trip<wire::DisplacementCommand>(&Draw::command); }
+TEST(WireMapping, MeasurementRoundTrips) { round_trip<wire::ForceMeasurement>(&Draw::measurement); }
+TEST(WireMapping, ControlRoundTrips) { round_trip<wire::TestControl>(&Draw::control); }
+TEST(WireMapping, EventRoundTrips) { round_trip<wire::Event>(&Draw::event); }
+TEST(WireMapping, SignalBlockRoundTrips) { round_trip<wire::SignalBlock>(&Draw::signal); }
 
-TEST(WireMapping, NotANumberSurvives) {
+TEST(WireMapping, NotANumberRoundTrips) {
   ForceMeasurement message = Draw{1}.measurement();
   message.force_n = InterfaceVector::Constant(3, std::numeric_limits<double>::quiet_NaN());
   ForceMeasurement received;
@@ -222,7 +222,7 @@ template <class Sample, class Message, class Change>
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-TEST(WireMapping, CommandOutOfRangeIsRefused) {
+TEST(WireMapping, RejectsCommandOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::DisplacementCommand>(Draw{3}.command(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
   EXPECT_TRUE(refused([](auto& s) { s.point_count(0); }));
@@ -236,7 +236,7 @@ TEST(WireMapping, CommandOutOfRangeIsRefused) {
   EXPECT_FALSE(refused([](auto& s) { s.points()[0].displacement_m()[0] = kNaN; })) << "for the nodes to decide";
 }
 
-TEST(WireMapping, MeasurementOutOfRangeIsRefused) {
+TEST(WireMapping, RejectsMeasurementOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::ForceMeasurement>(Draw{4}.measurement(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.substructure(65535); }));
   EXPECT_TRUE(refused([](auto& s) { s.flags(1U << 5U); }));
@@ -247,7 +247,7 @@ TEST(WireMapping, MeasurementOutOfRangeIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.force_count(13); }));
 }
 
-TEST(WireMapping, StatusOutOfRangeIsRefused) {
+TEST(WireMapping, RejectsStatusOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::ParticipantStatus>(Draw{5}.status(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.role(4); }));
   EXPECT_TRUE(refused([](auto& s) { s.state(static_cast<std::uint8_t>(LifecycleState::lost)); }))
@@ -256,7 +256,7 @@ TEST(WireMapping, StatusOutOfRangeIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.faults(1U << 31U); }));
 }
 
-TEST(WireMapping, AnnouncementOutOfRangeIsRefused) {
+TEST(WireMapping, RejectsAnnouncementOutOfRange) {
   const auto refused = [](auto change) {
     return refused_after<wire::TestAnnouncement>(Draw{6}.announcement(), change);
   };
@@ -269,7 +269,7 @@ TEST(WireMapping, AnnouncementOutOfRangeIsRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].interface_dofs(13); }));
 }
 
-TEST(WireMapping, ControlAndEventOutOfRangeAreRefused) {
+TEST(WireMapping, RejectsControlAndEventOutOfRange) {
   const auto control_refused = [](auto change) { return refused_after<wire::TestControl>(Draw{7}.control(), change); };
   EXPECT_TRUE(control_refused([](auto& s) { s.verb(6); }));
   EXPECT_TRUE(control_refused([](auto& s) { s.sender_role(4); }));
@@ -282,7 +282,7 @@ TEST(WireMapping, ControlAndEventOutOfRangeAreRefused) {
   EXPECT_FALSE(event_refused([](auto& s) { s.values()[0] = kNaN; }));
 }
 
-TEST(WireMapping, SignalBlockOutOfRangeIsRefused) {
+TEST(WireMapping, RejectsSignalBlockOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::SignalBlock>(Draw{9}.signal(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
   EXPECT_TRUE(refused([](auto& s) { s.sample_count(kMaxSignalSamples + 1); }));

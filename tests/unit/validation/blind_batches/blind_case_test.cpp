@@ -39,7 +39,7 @@ std::string files_of(const BlindCase& blind_case) {
   return text + recording_csv(blind_case.held_out, blind_case.setting.columns, blind_case.setting.site.rate_hz);
 }
 
-TEST(BlindCase, IsRepeatedByItsSeedToTheLastByte) {
+TEST(BlindCase, SeedRepeatsTheSameBytes) {
   const BlindCase once = draw_case(kSeed, 3);
   const BlindCase again = draw_case(kSeed, 3);
   EXPECT_EQ(files_of(once), files_of(again));
@@ -47,7 +47,7 @@ TEST(BlindCase, IsRepeatedByItsSeedToTheLastByte) {
   EXPECT_NE(files_of(once), files_of(draw_case(kSeed + 1, 3)));
 }
 
-TEST(BlindCase, WithoutAnEffectTheUsersModelLeavesNoiseAlone) {
+TEST(BlindCase, WithoutEffectTheModelLeavesOnlyNoise) {
   for (std::uint64_t index = 0; index < 12; ++index) {
     const BlindCase none = make_case(draw_case_setting(kSeed, index), TruthClass::none, {}, kSeed, index);
     const Site& site = none.setting.site;
@@ -66,7 +66,7 @@ TEST(BlindCase, WithoutAnEffectTheUsersModelLeavesNoiseAlone) {
   }
 }
 
-TEST(BlindCase, FilesOfOneSiteDifferInTheMeasuredValuesAlone) {
+TEST(BlindCase, FilesOfOneSiteDifferOnlyInMeasuredValues) {
   const CaseSetting setting = setting_with(is_elastic_and_commanded);
   const std::string without = files_of(make_case(setting, TruthClass::none, {}, kSeed, 1));
   for (const auto* catalogue : {&named_effects(), &wrong_numbers(), &foreign_effects()}) {
@@ -99,7 +99,7 @@ TEST(BlindCase, NoFileNamesAnEffect) {
   }
 }
 
-TEST(BlindCase, GapToFloorIsWhatTheNumbersSay) {
+TEST(BlindCase, GapToFloorMatchesTheSignals) {
   CaseSetting setting = setting_with(is_elastic_and_commanded);
   const double stiffness = setting.site.specimen.stiffness_n_per_m;
   const PlantEffect bias{"force_sensor", "bias", {{"bias_n", 0.05 * setting.scales.force_n}}};
@@ -110,7 +110,7 @@ TEST(BlindCase, GapToFloorIsWhatTheNumbersSay) {
   EXPECT_THAT(biased.truth.acceptable, Not(Contains(Cause{"specimen", "inertia"})));
 }
 
-TEST(BlindCase, AWrongStiffnessCountsAsAForceGainOnAnElasticSpecimen) {
+TEST(BlindCase, WrongStiffnessEqualsForceGainOnElasticSpecimen) {
   const CaseSetting setting = setting_with(is_elastic_and_commanded);
   const PlantEffect soft{"specimen", "stiffness_error", {{"stiffness_ratio", 0.8}}};
   const BlindCase blind_case = make_case(setting, TruthClass::named, {soft}, kSeed, 1);

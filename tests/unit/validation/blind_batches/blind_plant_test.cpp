@@ -36,7 +36,7 @@ Site elastic_site() {
   return site;
 }
 
-TEST(BristleFriction, SlidesAtItsForceAndDissipatesFourForceTimesAmplitude) {
+TEST(BristleFriction, SlidesAtItsForceAndDissipatesLoopArea) {
   const MotionHistory motion = motion_of(spline(sine(0.02, 0.5, 4.0)), kFinePeriodS);
   const History force = bristle_friction({.force_n = 300.0,
                                           .force_backward_n = 200.0,
@@ -69,7 +69,7 @@ TEST(BristleFriction, FollowsTheStribeckCurveInSteadySliding) {
   }
 }
 
-TEST(IwanStack, RunsFromTheInitialToTheHardeningLine) {
+TEST(IwanStack, FollowsInitialAndHardeningLines) {
   const StackParameters stack{.stiffness_n_per_m = 1e6, .yield_force_n = 5e3, .hardening_ratio = 0.1, .spread = 0.6};
   const History x{0.0, 0.001, 0.0019, 0.02, 0.0};
   const History force = iwan_stack(stack, x);
@@ -81,7 +81,7 @@ TEST(IwanStack, RunsFromTheInitialToTheHardeningLine) {
   EXPECT_NEAR(force[4], -0.9 * 5e3, 1e-6);
 }
 
-TEST(BaseLaw, BoucWenEndsAtItsUltimateForceAndStartsAtItsStiffness) {
+TEST(BaseLaw, BoucWenHasItsStiffnessAndUltimateForce) {
   LawModel law;
   law.kind = LawKind::bouc_wen;
   law.stiffness_n_per_m = 1e6;
@@ -94,7 +94,7 @@ TEST(BaseLaw, BoucWenEndsAtItsUltimateForceAndStartsAtItsStiffness) {
   EXPECT_NEAR(force[3], -1e5 * 0.5 - 0.9e6 / 100.0, 1e-9);
 }
 
-TEST(BaseLaw, SteelSpringNearsItsHardeningLine) {
+TEST(BaseLaw, SteelSpringApproachesItsHardeningLine) {
   LawModel law;
   law.kind = LawKind::giuffre_menegotto_pinto;
   law.stiffness_n_per_m = 2e8;
@@ -107,7 +107,7 @@ TEST(BaseLaw, SteelSpringNearsItsHardeningLine) {
   EXPECT_NEAR(force[2], 4e5 * (1.0 + 0.02 * 9.0), 1e-6);
 }
 
-TEST(Actuator, ASecondOrderServoDelaysSlowMotionByTwoZetaOverOmega) {
+TEST(Actuator, SecondOrderServoDelaysSlowMotion) {
   Site site = elastic_site();
   site.transfer_system = {.kind = TransferKind::second_order,
                           .delay_s = 0.0053,
@@ -120,7 +120,7 @@ TEST(Actuator, ASecondOrderServoDelaysSlowMotionByTwoZetaOverOmega) {
   EXPECT_NEAR(x.back(), 0.01 * (2.0 - delay_s), 1e-12);  // transients: exp(-176) after 2 s
 }
 
-TEST(Actuator, AFirstOrderServoIsDownByThreeDecibelsAtItsBandwidth) {
+TEST(Actuator, FirstOrderServoIsThreeDecibelsDownAtBandwidth) {
   Site site = elastic_site();
   site.transfer_system = {.kind = TransferKind::first_order,
                           .delay_s = 0.0,
@@ -133,7 +133,7 @@ TEST(Actuator, AFirstOrderServoIsDownByThreeDecibelsAtItsBandwidth) {
   EXPECT_NEAR(peak(x), std::sqrt(0.5), 2e-4);
 }
 
-TEST(Actuator, AFrameShortensTheStrokeByTheStiffnessRatio) {
+TEST(Actuator, FrameReducesStrokeByStiffnessRatio) {
   const Site site = elastic_site();
   const PlantEffects frame{{"transfer_system", "compliance", {{"stiffness_n_per_m", 2e7}}}};
   const History command = sine(0.01, 1.0, 1.0);
@@ -150,7 +150,7 @@ TEST(Compensator, IsExactForMotionsOfItsOrder) {
   EXPECT_NEAR(command[800], parabola(0.8 + 0.0125), 3.0 * 0.6 * 1e-6 / 8.0 + 1e-12);
 }
 
-TEST(Network, HoldsTheNewestThatHasArrived) {
+TEST(Network, HoldsNewestArrivedValue) {
   Site site = elastic_site();
   const PlantEffects latency{{"network", "latency", {{"delay_s", 0.0025}}}};
   EXPECT_EQ(through_network(site, latency, {0, 1, 2, 3, 4, 5, 6}), (History{0, 0, 0, 0, 1, 2, 3}));
@@ -171,7 +171,7 @@ TEST(Specimen, InertiaAndDampingActOnTheDerivatives) {
   }
 }
 
-TEST(Specimen, ADamperBehindPlayIsFreeForTheWidthAfterAReversal) {
+TEST(Specimen, DamperWithPlayIsFreeAfterReversal) {
   Site site = elastic_site();
   site.specimen.kind = LawKind::none;
   site.known_damping_n_s_per_m = 1000.0;
@@ -187,7 +187,7 @@ TEST(Specimen, ADamperBehindPlayIsFreeForTheWidthAfterAReversal) {
   EXPECT_NEAR(signals.read_n[i], 1000.0 * velocity, 1e-3);  // (w h)^2 / 6 of 50 N: 3e-4
 }
 
-TEST(Sensors, SkewAndLagDelayARamp) {
+TEST(Sensors, SkewAndLagDelayRamp) {
   const Site site = elastic_site();
   const History ramp = samples_of([](double t) { return 0.01 * t; }, 1.0);
   const double rate = 2e6 * 0.01;

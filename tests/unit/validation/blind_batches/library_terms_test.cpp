@@ -10,7 +10,7 @@
 namespace hybridtest::blind {
 namespace {
 
-TEST(LibraryTerms, EveryEffectAndParameterIsOneOfTheLibrary) {
+TEST(LibraryTerms, EveryEffectAndParameterIsInTheLibrary) {
   const CaseSetting setting = draw_case_setting(1, 0);
   for (const auto* catalogue : {&named_effects(), &wrong_numbers()}) {
     for (const CatalogueEntry& entry : *catalogue) {
@@ -30,7 +30,7 @@ TEST(LibraryTerms, EveryEffectAndParameterIsOneOfTheLibrary) {
   }
 }
 
-TEST(LibraryTerms, TwoPolesAreADelayAndARatio) {
+TEST(LibraryTerms, TwoPolesAreDelayAndRatio) {
   const Parameters terms =
       in_library_terms({}, {"transfer_system", "bandwidth", {{"natural_frequency_hz", 10.0}, {"damping_ratio", 1.0}}});
   // (1 + s / w)^2: T = 2 / w, r T^2 = 1 / w^2.
@@ -38,14 +38,14 @@ TEST(LibraryTerms, TwoPolesAreADelayAndARatio) {
   EXPECT_NEAR(terms.at("second_order_ratio"), 0.25, 1e-15);
 }
 
-TEST(LibraryTerms, FrictionOfTwoSizesIsAMeanAndAnAsymmetry) {
+TEST(LibraryTerms, FrictionOfTwoSizesIsMeanAndAsymmetry) {
   const Parameters terms = in_library_terms(
       {}, {"specimen", "coulomb_friction", {{"friction_force_n", 30.0}, {"friction_force_backward_n", 10.0}}});
   EXPECT_DOUBLE_EQ(terms.at("friction_force_n") * (1.0 + terms.at("asymmetry")), 30.0);
   EXPECT_DOUBLE_EQ(terms.at("friction_force_n") * (1.0 - terms.at("asymmetry")), 10.0);
 }
 
-TEST(LibraryTerms, OnlyThePartThatYieldsCounts) {
+TEST(LibraryTerms, CountsOnlyTheYieldingPart) {
   Site site;
   site.specimen.stiffness_n_per_m = 1e6;
   const Parameters terms =

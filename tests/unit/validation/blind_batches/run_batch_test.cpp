@@ -22,7 +22,7 @@ void in_order(std::size_t count, const std::function<void(std::size_t)>& one) {
   for (std::size_t i = 0; i < count; ++i) one(i);
 }
 
-TEST(RunBatch, AnswersWhatIsNotAnsweredSealsAndIsScored) {
+TEST(RunBatch, AnswersOpenCasesSealsAndScores) {
   const fs::path root = fs::path{testing::TempDir()} / "blind_run_batch";
   fs::remove_all(root);
   make_batch({.cases = 3, .seed = 9, .directory = root / "b", .key = root / "key.json"}, digest, in_order);

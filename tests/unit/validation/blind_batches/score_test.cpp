@@ -97,7 +97,7 @@ TEST(Score, AllRightMeetsEveryTarget) {
   EXPECT_EQ(score.clear_confusion.at("unknown").at("unknown"), 10U);
 }
 
-TEST(Score, AllWrongMissesEveryTargetThatHasAName) {
+TEST(Score, AllWrongMissesEveryNamedTarget) {
   const Score score = scored([](const KeyCase&) {
     return read_answer(diagnosis("named", {{"displacement_sensor", "drift"}}, 0.9));
   });
@@ -112,7 +112,7 @@ TEST(Score, AllWrongMissesEveryTargetThatHasAName) {
   EXPECT_EQ(score.wrong.size(), 40U);
 }
 
-TEST(Score, AllUnknownNamesNothingFalselyAndFindsNothing) {
+TEST(Score, AllUnknownHasNoFalseNamesAndNoHits) {
   const Score score = scored([](const KeyCase&) { return read_answer(diagnosis("unknown", {}, 0.0)); });
   EXPECT_DOUBLE_EQ(value(score, "effect_right_or_in_set"), 0.0);
   EXPECT_DOUBLE_EQ(value(score, "false_names_on_none_and_unknown"), 0.0);
@@ -122,7 +122,7 @@ TEST(Score, AllUnknownNamesNothingFalselyAndFindsNothing) {
   EXPECT_FALSE(figure(score, "mean_set_size").estimate.has_value());
 }
 
-TEST(Score, AMissingAnswerIsAWrongOne) {
+TEST(Score, MissingAnswerCountsAsWrong) {
   const Score score = scored([](const KeyCase&) { return std::optional<Answer>{}; });
   EXPECT_DOUBLE_EQ(value(score, "effect_right_or_in_set"), 0.0);
   EXPECT_DOUBLE_EQ(value(score, "interface_right"), 0.0);
@@ -130,7 +130,7 @@ TEST(Score, AMissingAnswerIsAWrongOne) {
   EXPECT_EQ(score.confusion.at("named").at("missing"), 10U);
 }
 
-TEST(Score, ASetIsRightByAnyMemberAndCountedByItsSize) {
+TEST(Score, SetIsRightByAnyMemberAndCountedBySize) {
   const Cause friction{"specimen", "coulomb_friction"};
   const Cause stribeck{"specimen", "stribeck_friction"};
   const Answer answer = read_answer(diagnosis("set", {stribeck, friction}, 0.45));
@@ -142,7 +142,7 @@ TEST(Score, ASetIsRightByAnyMemberAndCountedByItsSize) {
   EXPECT_NEAR(marked.forecast.value().probability, 0.9, 1e-12);
 }
 
-TEST(Score, WhereACauseCannotBeSeparatedItsTwinIsRight) {
+TEST(Score, EquivalentCauseCountsAsRight) {
   KeyCase key = key_case(TruthClass::named, {{"specimen", "stiffness_error"}});
   key.acceptable.push_back({"force_sensor", "gain"});
   const MarkedCase marked = mark(key, read_answer(diagnosis("named", {{"force_sensor", "gain"}}, 0.8)));
@@ -151,7 +151,7 @@ TEST(Score, WhereACauseCannotBeSeparatedItsTwinIsRight) {
   EXPECT_FALSE(marked.is_single_name_right.has_value());
 }
 
-TEST(Score, WhatNoiseHidesIsRightlyCalledNothingAndIsNoClearCase) {
+TEST(Score, HiddenEffectIsRightlyCalledNothing) {
   const KeyCase hidden = key_case(TruthClass::named, {{"specimen", "inertia"}}, 0.4);
   const MarkedCase marked = mark(hidden, read_answer(diagnosis("none", {}, 0.0)));
   EXPECT_TRUE(marked.is_effect_right.value());
@@ -159,7 +159,7 @@ TEST(Score, WhatNoiseHidesIsRightlyCalledNothingAndIsNoClearCase) {
   EXPECT_FALSE(mark(key_case(TruthClass::named, {{"specimen", "inertia"}}, 1.5), right_answer(hidden)).is_clear());
 }
 
-TEST(Score, TextAndJsonTellWhichTargetsAreMissed) {
+TEST(Score, TextAndJsonListMissedTargets) {
   const Score score = scored([](const KeyCase& key) {
     if (key.truth != TruthClass::none) return right_answer(key);
     return read_answer(diagnosis("named", {{"specimen", "inertia"}}, 0.7));
@@ -174,7 +174,7 @@ TEST(Score, TextAndJsonTellWhichTargetsAreMissed) {
   EXPECT_EQ(json["wrong"].size(), 10U);
 }
 
-TEST(Answer, SaysWhatIsWrongWithADiagnosis) {
+TEST(Answer, ReportsErrorsOfADiagnosis) {
   EXPECT_THROW((void)read_answer("{"), std::runtime_error);
   EXPECT_THROW((void)read_answer(R"({"verdict": "named"})"), std::runtime_error);
   try {
@@ -185,7 +185,7 @@ TEST(Answer, SaysWhatIsWrongWithADiagnosis) {
   }
 }
 
-TEST(Answer, ToleratesNumbersThatADiagnosisDoesNotHave) {
+TEST(Answer, AcceptsMissingNumbers) {
   const Answer answer = read_answer(R"({"verdict": "named", "causes": [{"interface": "specimen", "effect": "gap",
       "probability": null, "parameters": {"clearance_m": {"value": null}}}], "shrink": {"interface": null}})");
   EXPECT_DOUBLE_EQ(answer.causes.front().probability, 0.0);

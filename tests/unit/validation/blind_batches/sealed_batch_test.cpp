@@ -42,7 +42,7 @@ class SealedBatch : public testing::Test {
   fs::path answers_ = root_ / "answers";
 };
 
-TEST_F(SealedBatch, OpensWithItsKeyAndHoldsNoTruth) {
+TEST_F(SealedBatch, OpensWithItsKeyWithoutRevealingTruth) {
   const std::vector<CaseFiles> cases = open_batch(batch_, digest);
   ASSERT_EQ(cases.size(), 2U);
   EXPECT_EQ(cases[0].name, "case_0001");
@@ -55,14 +55,14 @@ TEST_F(SealedBatch, OpensWithItsKeyAndHoldsNoTruth) {
   }
 }
 
-TEST_F(SealedBatch, AChangedKeyOrRecordingIsRefused) {
+TEST_F(SealedBatch, RejectsChangedKeyOrRecording) {
   append(key_);
   EXPECT_THROW((void)open_key(batch_, key_, digest), std::runtime_error);
   append(batch_ / "case_0002" / "held_out.csv");
   EXPECT_THROW((void)open_batch(batch_, digest), std::runtime_error);
 }
 
-TEST_F(SealedBatch, SealedAnswersThatChangedAppearedOrWentAreRefused) {
+TEST_F(SealedBatch, RejectsChangedAddedOrRemovedAnswers) {
   const std::vector<std::string> names{"case_0001", "case_0002"};
   answer("case_0001", "{}");
   EXPECT_FALSE(open_answers(batch_, answers_, names, digest).are_sealed);
@@ -82,14 +82,14 @@ TEST_F(SealedBatch, SealedAnswersThatChangedAppearedOrWentAreRefused) {
   EXPECT_THROW((void)open_answers(batch_, answers_, names, digest), std::runtime_error);
 }
 
-TEST_F(SealedBatch, AnswersToAnotherBatchAreRefused) {
+TEST_F(SealedBatch, RejectsAnswersToAnotherBatch) {
   answer("case_0001", "{}");
   seal_answers(batch_, answers_, digest);
   append(batch_ / "batch.json");
   EXPECT_THROW((void)open_answers(batch_, answers_, {"case_0001"}, digest), std::runtime_error);
 }
 
-TEST_F(SealedBatch, NeitherBatchNorKeyIsWrittenOver) {
+TEST_F(SealedBatch, OverwritesNeitherBatchNorKey) {
   const auto make_again = [&](const fs::path& directory, const fs::path& key) {
     make_batch({.cases = 1, .seed = 4, .directory = directory, .key = key}, digest,
                [](std::size_t, const std::function<void(std::size_t)>&) {});

@@ -7,7 +7,7 @@
 namespace hybridtest::blind {
 namespace {
 
-TEST(Statistics, WilsonIntervalsAreThoseOfTheTextbook) {
+TEST(Statistics, WilsonIntervalsMatchTextbook) {
   // Agresti and Coull (Am. Stat. 52, 1998): at 0 of n the interval ends at z^2 / (n + z^2).
   const double z2 = 1.959963984540054 * 1.959963984540054;
   EXPECT_NEAR(proportion(0, 20)->high, z2 / (20.0 + z2), 1e-12);
@@ -18,7 +18,7 @@ TEST(Statistics, WilsonIntervalsAreThoseOfTheTextbook) {
   EXPECT_FALSE(proportion(0, 0).has_value());
 }
 
-TEST(Statistics, BootstrapOfAMeanIsAsWideAsItsStandardError) {
+TEST(Statistics, BootstrapOfMeanMatchesStandardError) {
   std::vector<double> values;
   for (int i = 0; i < 400; ++i) values.push_back(i % 2 == 0 ? 1.0 : 3.0);
   const Estimate found = mean(values).value();
@@ -29,7 +29,7 @@ TEST(Statistics, BootstrapOfAMeanIsAsWideAsItsStandardError) {
   EXPECT_DOUBLE_EQ(median({1.0, 9.0, 2.0, 4.0})->value, 3.0);
 }
 
-TEST(Statistics, CalibrationErrorIsTheWeightedDistanceOfEachBin) {
+TEST(Statistics, CalibrationErrorIsWeightedBinDistance) {
   // 0.95 said eight times, six came true: |7.6 - 6|; 0.25 said twice, both true: |0.5 - 2|; over ten.
   std::vector<Forecast> forecasts(8, {0.95, true});
   forecasts[0].came_true = forecasts[1].came_true = false;

@@ -23,7 +23,7 @@ TEST(Baseline, IntegratesStraightAccelerationsExactly) {
   }
 }
 
-TEST(Baseline, DriftIsRemovedByALittle) {
+TEST(Baseline, DriftIsRemovedBySmallCorrection) {
   Random random{8};
   std::vector<double> motion;
   for (int i = 0; i < 3000; ++i) motion.push_back(random.normal() + 0.05);

@@ -28,7 +28,7 @@ double largest(const std::vector<double>& values) {
   return result;
 }
 
-TEST(ShippedDesignMotion, FitsTheSpectrumOfTheCode) {
+TEST(ShippedDesignMotion, FitsTheCodeSpectrum) {
   const GroundMotion motion = read_ground_motion(kShipped);
   const auto target = spectral_target(design_spectrum({}), 0.05, 4.0, 317);
   const SpectralFit fit = spectral_fit(motion.acceleration_m_per_s2, motion.dt_s, target);
@@ -39,7 +39,7 @@ TEST(ShippedDesignMotion, FitsTheSpectrumOfTheCode) {
   EXPECT_LE(motion.peak_m_per_s2(), 1.25 * 0.25 * kStandardGravity_m_per_s2 * 1.15);
 }
 
-TEST(ShippedDesignMotion, LastsAndIsStrongLongEnough) {
+TEST(ShippedDesignMotion, HasRequiredDurationAndStrongPhase) {
   const GroundMotion motion = read_ground_motion(kShipped);
   EXPECT_EQ(motion.dt_s, 0.005);
   EXPECT_NEAR(motion.end_s(), 31.0, 1e-12);
@@ -67,7 +67,7 @@ TEST(ShippedDesignMotion, ComesToRest) {
   EXPECT_EQ(motion.acceleration_m_per_s2.back(), 0.0);
 }
 
-TEST(ShippedDesignMotion, HasThatSpectrumByTheCoordinatorsIntegratorToo) {
+TEST(ShippedDesignMotion, CoordinatorIntegratorGivesTheSameSpectrum) {
   const GroundMotion motion = read_ground_motion(kShipped);
   constexpr double kStep_s = 0.0005;
   for (const double period_s : {0.1, 0.4, 0.75, 2.0}) {
@@ -90,7 +90,7 @@ TEST(ShippedDesignMotion, HasThatSpectrumByTheCoordinatorsIntegratorToo) {
   }
 }
 
-TEST(DesignMotion, MakesTheShippedFileAgainByteByByte) {
+TEST(DesignMotion, ReproducesTheShippedFileByteByByte) {
   const DesignMotionSettings settings;
   std::ifstream stream{kShipped, std::ios::binary};
   const std::string shipped{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
@@ -103,7 +103,7 @@ TEST(DesignMotion, MakesTheShippedFileAgainByteByByte) {
   EXPECT_LE(motion.fit.misfit(), 0.08);
 }
 
-TEST(DesignMotion, DependsOnItsSeedAndKeepsThePeakOfTheCode) {
+TEST(DesignMotion, DependsOnSeedAndKeepsCodePeak) {
   DesignMotionSettings settings;
   settings.dt_s = 0.02;
   settings.iterations = 0;  // the noise as it is
@@ -114,7 +114,7 @@ TEST(DesignMotion, DependsOnItsSeedAndKeepsThePeakOfTheCode) {
   EXPECT_GE(largest(second.acceleration_m_per_s2), design_spectrum(settings).zero_period_m_per_s2() * (1.0 - 1e-12));
 }
 
-TEST(DesignMotion, RefusesSettingsOutOfRange) {
+TEST(DesignMotion, RejectsSettingsOutOfRange) {
   const auto refuses = [](auto change) {
     DesignMotionSettings settings;
     settings.iterations = 0;
@@ -128,7 +128,7 @@ TEST(DesignMotion, RefusesSettingsOutOfRange) {
   refuses([](DesignMotionSettings& settings) { settings.iterations = -1; });
 }
 
-TEST(At2Text, IsReadBack) {
+TEST(At2Text, RoundTrips) {
   DesignMotionSettings settings;
   settings.dt_s = 0.02;
   const std::vector<double> motion{0.0, -1.5, 2.25, -1e-9};

@@ -22,7 +22,7 @@ TEST(ElasticSpectrum, HasTheOrdinatesOfTheCode) {
   EXPECT_DOUBLE_EQ(kSpectrum.ground_displacement_m(), 0.025 * 1.15 * 0.6 * 2.0);
 }
 
-TEST(ElasticSpectrum, HasNoJumps) {
+TEST(ElasticSpectrum, IsContinuous) {
   // At T_E and T_F the code's own constants meet to (2 pi)^2 * 0.025 = 0.987.
   for (const double corner_s : {0.2, 0.6, 2.0, 10.0}) {
     EXPECT_NEAR(kSpectrum.at(corner_s * (1.0 - 1e-12)) / kSpectrum.at(corner_s * (1.0 + 1e-12)), 1.0, 1e-10);
@@ -30,12 +30,12 @@ TEST(ElasticSpectrum, HasNoJumps) {
   EXPECT_NEAR(kSpectrum.at(6.0 * (1.0 + 1e-12)) / kSpectrum.at(6.0), 0.987, 0.001);
 }
 
-TEST(ElasticSpectrum, EndsInTheDisplacementOfTheGround) {
+TEST(ElasticSpectrum, TendsToGroundDisplacement) {
   const double omega = 2.0 * std::numbers::pi / 12.0;
   EXPECT_NEAR(kSpectrum.at(12.0), omega * omega * kSpectrum.ground_displacement_m(), 1e-15);
 }
 
-TEST(ElasticSpectrum, FallsWithDampingToALimit) {
+TEST(ElasticSpectrum, DecreasesWithDampingToALimit) {
   ElasticSpectrum damped = kSpectrum;
   damped.damping_ratio = 0.10;
   EXPECT_DOUBLE_EQ(damped.at(0.4), 1.15 * 2.5 * std::sqrt(10.0 / 15.0));
@@ -44,7 +44,7 @@ TEST(ElasticSpectrum, FallsWithDampingToALimit) {
   EXPECT_DOUBLE_EQ(damped.at(0.4), 1.15 * 2.5 * 0.55);
 }
 
-TEST(LogarithmicPeriods, GoFromEndToEndByOneFactor) {
+TEST(LogarithmicPeriods, AreSpacedByOneFactor) {
   const auto periods = logarithmic_periods(0.05, 4.0, 5);
   ASSERT_EQ(periods.size(), 5U);
   EXPECT_DOUBLE_EQ(periods.front(), 0.05);

@@ -9,7 +9,7 @@
 namespace hybridtest::design_motion {
 namespace {
 
-TEST(Envelope, RisesStaysDecaysAndFades) {
+TEST(Envelope, RisesHoldsDecaysAndFades) {
   const Envelope envelope;
   EXPECT_EQ(envelope.at(0.0), 0.0);
   EXPECT_DOUBLE_EQ(envelope.at(1.5), 0.25);
@@ -52,7 +52,7 @@ TEST(FilteredNoise, HasTheVarianceOfItsSpectrum) {
   EXPECT_NEAR(square / static_cast<double>(kCount) / expected, 1.0, 0.04);
 }
 
-TEST(FilteredNoise, RepeatsItselfForASeed) {
+TEST(FilteredNoise, RepeatsForASeed) {
   Random first{5};
   Random again{5};
   Random other{6};

@@ -13,7 +13,7 @@ constexpr double kPeriod_s = 0.8;
 constexpr double kRatio = 0.05;
 constexpr double kOmega = 2.0 * std::numbers::pi / kPeriod_s;
 
-TEST(Oscillator, AnswersASuddenAccelerationExactly) {
+TEST(Oscillator, IsExactForStepAcceleration) {
   // u = -(A/w^2) (1 - e^{-zwt} (cos w't + z w/w' sin w't)), whatever the step.
   constexpr double kAcceleration = 3.0;
   const double damped = kOmega * std::sqrt(1.0 - kRatio * kRatio);
@@ -34,7 +34,7 @@ TEST(Oscillator, AnswersASuddenAccelerationExactly) {
   }
 }
 
-TEST(Oscillator, AnswersARampExactly) {
+TEST(Oscillator, IsExactForRamp) {
   // Undamped, a = s t: u = -(s/w^2) (t - sin(wt)/w).
   constexpr double kSlope = 2.0;
   constexpr double kStep_s = 0.03;
@@ -47,7 +47,7 @@ TEST(Oscillator, AnswersARampExactly) {
   }
 }
 
-TEST(PeakResponse, OfASuddenAccelerationIsTwiceThatWithoutDamping) {
+TEST(PeakResponse, UndampedStepResponseIsTwiceStatic) {
   for (const double dt_s : {0.01, 0.4, 2.0}) {  // far apart samples are subdivided
     const auto peak =
         peak_response(std::vector<double>(static_cast<std::size_t>(2.0 / dt_s) + 2, 1.5), dt_s, kPeriod_s, 0.0);
@@ -57,7 +57,7 @@ TEST(PeakResponse, OfASuddenAccelerationIsTwiceThatWithoutDamping) {
   }
 }
 
-TEST(PeakResponse, OvershootsASuddenAccelerationByItsDamping) {
+TEST(PeakResponse, DampedStepOvershootMatchesClosedForm) {
   // Peak at half the damped period, 1 + exp(-pi z/sqrt(1 - z^2)).
   const auto peak = peak_response(std::vector<double>(2000, 1.0), 0.001, kPeriod_s, kRatio);
   const double root = std::sqrt(1.0 - kRatio * kRatio);
@@ -65,7 +65,7 @@ TEST(PeakResponse, OvershootsASuddenAccelerationByItsDamping) {
   EXPECT_NEAR(peak.time_s, 0.5 * kPeriod_s / root, 0.001);
 }
 
-TEST(PeakResponse, InResonanceIsTheInverseOfTwiceTheDamping) {
+TEST(PeakResponse, ResonanceGivesInverseOfTwiceDamping) {
   constexpr double kStep_s = 0.001;
   std::vector<double> sine;
   for (int i = 0; i < 40000; ++i) sine.push_back(std::sin(kOmega * i * kStep_s));
@@ -73,7 +73,7 @@ TEST(PeakResponse, InResonanceIsTheInverseOfTwiceTheDamping) {
   EXPECT_NEAR(std::abs(peak_response(sine, kStep_s, kPeriod_s, kRatio).pseudo_acceleration_m_per_s2), 10.0, 1e-3);
 }
 
-TEST(PeakResponse, OfAStiffOscillatorIsThePeakOfTheGround) {
+TEST(PeakResponse, StiffOscillatorHasGroundPeak) {
   std::vector<double> pulse;
   for (int i = 0; i <= 200; ++i) pulse.push_back(-4.0 * std::sin(std::numbers::pi * i / 200.0));
   const auto peak = peak_response(pulse, 0.01, 0.005, kRatio);

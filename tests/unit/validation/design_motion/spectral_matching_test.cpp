@@ -42,7 +42,7 @@ TEST(SpectralFit, ComparesWithTheTarget) {
   EXPECT_DOUBLE_EQ(fit.misfit(), 0.5);
 }
 
-TEST(MatchSpectrum, ReachesASpectrumOfAnotherShape) {
+TEST(MatchSpectrum, MatchesSpectrumOfAnotherShape) {
   const auto motion = noise();
   SpectralTarget target = own_spectrum(motion, 1.0);
   // A fifth more and less in turns over the periods.
@@ -55,7 +55,7 @@ TEST(MatchSpectrum, ReachesASpectrumOfAnotherShape) {
   EXPECT_LT(after, 0.05);
 }
 
-TEST(MatchSpectrum, LeavesAMotionThatFits) {
+TEST(MatchSpectrum, KeepsMotionThatFits) {
   const auto motion = noise();
   EXPECT_EQ(match_spectrum(motion, kStep_s, own_spectrum(motion, 1.0), 0.5, 3), motion);
   EXPECT_EQ(match_spectrum(motion, kStep_s, own_spectrum(motion, 1.5), 0.5, 0), motion);

@@ -25,7 +25,7 @@ std::complex<double> cubic_behind_delay(double angle) {
   return sum;
 }
 
-TEST(FrequencyResponse, OfAPureDelayIsItsAngle) {
+TEST(FrequencyResponse, PureDelayHasItsPhase) {
   const StandKind stand = pure_delay_stand();
   for (const double frequency_hz : {0.7, 3.0, 11.0}) {
     const auto response = measured_response(method("none"), stand, frequency_hz);
@@ -34,7 +34,7 @@ TEST(FrequencyResponse, OfAPureDelayIsItsAngle) {
   }
 }
 
-TEST(FrequencyResponse, OfPolynomialsIsTheSumOfTheirWeights) {
+TEST(FrequencyResponse, PolynomialsMatchSumOfWeights) {
   for (const char* name : {"polynomial_displacement", "polynomial_force"}) {
     for (const double frequency_hz : {1.0, 4.0, 9.0}) {
       const auto response = measured_response(method(name), pure_delay_stand(), frequency_hz);
@@ -44,14 +44,14 @@ TEST(FrequencyResponse, OfPolynomialsIsTheSumOfTheirWeights) {
   }
 }
 
-TEST(FrequencyResponse, OfNewmarkKinematicsIsTheTaylorSeries) {
+TEST(FrequencyResponse, NewmarkKinematicsMatchTaylorSeries) {
   const double angle = 2.0 * std::numbers::pi * 5.0 * 0.020;
   const auto response = measured_response(method("newmark_kinematics"), pure_delay_stand(), 5.0);
   const auto wanted = std::complex{1.0 - angle * angle / 2.0, angle} * std::polar(1.0, -angle);
   EXPECT_NEAR(std::abs(response - wanted), 0.0, 1e-8);
 }
 
-TEST(FrequencyResponse, OfTheBenchmarkActuatorHoldsTheLoopDelay) {
+TEST(FrequencyResponse, BenchmarkActuatorIncludesLoopDelay) {
   // The nominal delay is that at 3.5 Hz with half a period of hold; the structure gets the force one period late and
   // holds it, which is one and a half more.
   const StandKind stand = benchmark_stand();
@@ -59,7 +59,7 @@ TEST(FrequencyResponse, OfTheBenchmarkActuatorHoldsTheLoopDelay) {
   EXPECT_NEAR(effective_delay_s(response, 3.5), stand.delay_s + 1.5 * stand.period_s, 2e-6);
 }
 
-TEST(NoiseGain, OfPolynomialsIsTheRootOfTheSumOfTheirSquaredWeights) {
+TEST(NoiseGain, PolynomialsMatchRootOfSquaredWeights) {
   const double wanted = std::sqrt(16.0 + 36.0 + 16.0 + 1.0);
   // 8 s at 4096 Hz: the square root of a mean of 32768 squares scatters by 0.4 %.
   EXPECT_NEAR(measured_noise_gain(method("polynomial_displacement"), benchmark_stand()).target_to_command, wanted,
@@ -67,7 +67,7 @@ TEST(NoiseGain, OfPolynomialsIsTheRootOfTheSumOfTheirSquaredWeights) {
   EXPECT_NEAR(measured_noise_gain(method("polynomial_force"), benchmark_stand()).force_to_force, wanted, 0.02 * wanted);
 }
 
-TEST(NoiseGain, IsOneOnTheWayThatAMethodLeavesAlone) {
+TEST(NoiseGain, IsOneWithoutCompensation) {
   const NoiseGain gain = measured_noise_gain(method("newmark_kinematics"), benchmark_stand());
   EXPECT_NEAR(gain.target_to_command, 1.0, 0.02);
   EXPECT_NEAR(gain.force_to_force, 1.0, 0.02);
@@ -84,7 +84,7 @@ double delayed_damping(double damping, double angle) {
   return -s.real();
 }
 
-TEST(LoopDamping, WithoutCompensationIsThatOfTheCharacteristicRoot) {
+TEST(LoopDamping, UncompensatedMatchesCharacteristicRoot) {
   for (const double angle : {0.02, 0.1, 0.3, 0.6}) {
     // The step of the integration, 1 ms over 20 ms of delay: (omega dt)^2 / 24 in frequency and a like share in
     // damping.
@@ -93,18 +93,18 @@ TEST(LoopDamping, WithoutCompensationIsThatOfTheCharacteristicRoot) {
   }
 }
 
-TEST(LoopDamping, IsTheStructuresOwnWhereCompensationIsGood) {
+TEST(LoopDamping, EqualsStructureDampingWithGoodCompensation) {
   // The cubic leaves (omega delay)^4 of the amplitude.
   EXPECT_NEAR(measured_loop_damping(method("polynomial_displacement"), 0.1, 0.02), 0.02, 1e-4);
   EXPECT_NEAR(measured_loop_damping(method("polynomial_force"), 0.1, 0.02), 0.02, 1e-4);
 }
 
-TEST(LoopDamping, OfAMethodThatGrowsIsNegative) {
+TEST(LoopDamping, IsNegativeForUnstableMethod) {
   EXPECT_LT(measured_loop_damping(method("polynomial_displacement"), 1.0, 0.02), 0.0);
   EXPECT_LT(measured_loop_damping(method("none"), 2.0, 0.02), 0.0);
 }
 
-TEST(StabilityLimit, LiesOnTheLineBetweenTheLastDecayAndTheFirstGrowth) {
+TEST(StabilityLimit, InterpolatesBetweenDecayAndGrowth) {
   const StabilityLimit limit = stability_limit({1.0, 2.0, 3.0, 4.0}, {0.02, 0.01, -0.03, 0.5});
   EXPECT_TRUE(limit.is_reached);
   EXPECT_DOUBLE_EQ(limit.omega_delay, 2.25);

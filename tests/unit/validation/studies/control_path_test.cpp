@@ -10,14 +10,14 @@
 namespace hybridtest::rths {
 namespace {
 
-TEST(Converter, HasEighteenBitsAfterThePointAndAnEnd) {
+TEST(Converter, HasEighteenFractionBitsAndSaturates) {
   EXPECT_EQ(quantised(0.4 / 262144.0), 0.0);
   EXPECT_EQ(quantised(0.6 / 262144.0), 1.0 / 262144.0);
   EXPECT_EQ(saturated(5.0), 3.8);
   EXPECT_EQ(saturated(-5.0), -3.8);
 }
 
-TEST(ReleasedLoop, IsProportionalAtOnceAndIntegratesByTheTrapezoidalRule) {
+TEST(ReleasedLoop, IsProportionalAndIntegratesByTrapezoidalRule) {
   ReleasedLoop loop;
   const double error = quantised(0.001);
   // First sample: half of the trapezoid before it is the error of rest.
@@ -29,7 +29,7 @@ TEST(ReleasedLoop, IsProportionalAtOnceAndIntegratesByTheTrapezoidalRule) {
   EXPECT_NEAR(command, 2.0 * error + 95.0 * integral, 0x1p-18);
 }
 
-TEST(ReleasedController, ItsLeadHasUnitGainAtRestAndItsCornerRatioForAStep) {
+TEST(ReleasedController, LeadHasUnitStaticGainAndCornerRatio) {
   ReleasedController controller;
   // Held at the displacement that the lead asks for in the end: the error vanishes.
   const double target = quantised(0.002);
@@ -57,7 +57,7 @@ class Witness final : public Compensator {
   CompensatorInput& seen_;
 };
 
-TEST(CompensatedPath, ShowsTheMeasurementsOfTheSampleBeforeAndSaturatesTheCommand) {
+TEST(CompensatedPath, UsesPreviousMeasurementAndSaturatesCommand) {
   CompensatorInput seen;
   CompensatedPath path{std::make_unique<Witness>(seen), Arrangement::straight};
   const double command = path.command({.target_m = 0.001,

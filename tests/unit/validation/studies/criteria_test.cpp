@@ -21,35 +21,35 @@ std::vector<double> sine(double amplitude, double delay_s = 0.0, double offset =
   return values;
 }
 
-TEST(Criteria, AStandardDeviationIsThatOfTheClosedFormWithTheMeanRemoved) {
+TEST(Criteria, StandardDeviationMatchesClosedForm) {
   // A / sqrt 2 over whole cycles; rounding only.
   EXPECT_NEAR(standard_deviation(sine(3.0, 0.0, 7.0)), 3.0 / std::sqrt(2.0), 1e-12);
   EXPECT_DOUBLE_EQ(largest_magnitude(std::vector{1.0, -4.0, 2.0}), 4.0);
 }
 
-TEST(Criteria, ErrorsOfAScaledSignalAreItsScale) {
+TEST(Criteria, ErrorOfScaledSignalIsItsScale) {
   EXPECT_NEAR(deviation_error_percent(sine(1.1), sine(1.0)), 10.0, 1e-10);
   EXPECT_NEAR(peak_error_percent(sine(0.8), sine(1.0)), 20.0, 1e-10);
 }
 
-TEST(Criteria, TheErrorOfADelayIsTwiceTheSineOfHalfItsAngle) {
+TEST(Criteria, ErrorOfDelayMatchesClosedForm) {
   for (const double delay_s : {0.001, 0.01, 0.04}) {
     EXPECT_NEAR(deviation_error_percent(sine(1.0, delay_s), sine(1.0)), 200.0 * std::sin(0.5 * kOmega * delay_s), 1e-9);
   }
 }
 
-TEST(Criteria, TheCorrelationFindsWholeSamplesAndStopsAtFortyNine) {
+TEST(Criteria, CorrelationFindsWholeSamplesUpToFortyNine) {
   for (const int lag : {0, 1, 7, 49}) {
     EXPECT_DOUBLE_EQ(correlation_lag_s(sine(1.0, lag * kPeriod_s), sine(1.0), kPeriod_s), lag * kPeriod_s) << lag;
   }
   EXPECT_DOUBLE_EQ(correlation_lag_s(sine(1.0, 80 * kPeriod_s), sine(1.0), kPeriod_s), 49 * kPeriod_s);
 }
 
-TEST(Criteria, ALeadReadsAsNoLag) {
+TEST(Criteria, LeadCountsAsZeroLag) {
   EXPECT_EQ(correlation_lag_s(sine(1.0, -10 * kPeriod_s), sine(1.0), kPeriod_s), 0.0);
 }
 
-TEST(Criteria, TheFittedDelayHasASignAndIsFinerThanASample) {
+TEST(Criteria, FittedDelayIsSignedAndFractional) {
   for (const double delay_s : {-2e-3, -1e-4, 1e-4, 2e-3}) {
     // Third order: sin x instead of x. The difference quotient adds (omega T)^2 / 6, the ends of the record a sample.
     const double angle = kOmega * delay_s;
@@ -58,7 +58,7 @@ TEST(Criteria, TheFittedDelayHasASignAndIsFinerThanASample) {
   }
 }
 
-TEST(Criteria, EachIsMadeOfItsOwnSignals) {
+TEST(Criteria, EachUsesItsOwnSignals) {
   // Every signal is wrong by an amount of its own, so that no two can be mixed up.
   const auto target = sine(1.00);
   const auto measured = sine(1.05);
@@ -80,7 +80,7 @@ TEST(Criteria, EachIsMadeOfItsOwnSignals) {
   EXPECT_NEAR(found.j(9), 30.0, 1e-9);
 }
 
-TEST(Criteria, ARunThatDidNotEndHasNone) {
+TEST(Criteria, IncompleteRunHasNoCriteria) {
   for (const double value : no_criteria().values) EXPECT_TRUE(std::isnan(value));
 }
 

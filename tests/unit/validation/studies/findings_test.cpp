@@ -52,7 +52,7 @@ std::vector<bool> shown(const std::vector<MethodRun>& runs) {
   return result;
 }
 
-TEST(Distance, IsTheErrorOfAScaledMotion) {
+TEST(Distance, EqualsErrorOfScaledMotion) {
   const Distance distance = distance_of(made_up("scaled", 0.07), made_up("exact", 0.0));
   EXPECT_NEAR(distance.rms_percent[0], 7.0, 1e-9);
   EXPECT_NEAR(distance.peak_percent[1], 7.0, 1e-9);
@@ -60,7 +60,7 @@ TEST(Distance, IsTheErrorOfAScaledMotion) {
   EXPECT_EQ(distance.jumps, 0);
 }
 
-TEST(Distance, CountsAForceOutOfLineAsAJumpThereAndBack) {
+TEST(Distance, CountsForceSpikeAsTwoJumps) {
   MethodRun run = made_up("jumping", 0.0);
   run.force_n[0][300] += 20.0;
   const Distance distance = distance_of(run, made_up("exact", 0.0));
@@ -69,7 +69,7 @@ TEST(Distance, CountsAForceOutOfLineAsAJumpThereAndBack) {
   EXPECT_NEAR(distance.largest_change_percent, 20.0, 1.1);
 }
 
-TEST(Findings, AreShownByRunsThatShowThem) { EXPECT_EQ(shown(showing()), (std::vector{true, true, true, true, true})); }
+TEST(Findings, AreFoundInMatchingRuns) { EXPECT_EQ(shown(showing()), (std::vector{true, true, true, true, true})); }
 
 TEST(Findings, EachCanBeMissing) {
   auto runs = showing();
@@ -104,7 +104,7 @@ std::vector<std::string> what_all_share(const std::filesystem::path& file) {
   return lines;
 }
 
-TEST(FoundingScenarios, DifferInRigAndCompensationAlone) {
+TEST(FoundingScenarios, DifferOnlyInRigAndCompensation) {
   const auto directory = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch/scenarios/founding_study";
   const auto exact = what_all_share(directory / "exact.yaml");
   ASSERT_GT(exact.size(), 15U);

@@ -35,7 +35,7 @@ void PrintTo(const PublishedCase& published, std::ostream* out) { *out << "case 
 
 class PublishedCases : public testing::TestWithParam<PublishedCase> {};
 
-TEST_P(PublishedCases, HaveTheirNaturalFrequenciesAndModalDamping) {
+TEST_P(PublishedCases, MatchPublishedFrequenciesAndDamping) {
   const auto a = accelerations(Frame::of_case(GetParam().number));
   // All masses of a case are the same, so that M^-1 K is symmetric and its eigenvectors are the modes.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes{-a.leftCols<3>()};
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Frame, PublishedCases,
                                          PublishedCase{3, {3.168, 14.030, 33.404}, 0.03},
                                          PublishedCase{4, {3.612, 15.997, 38.086}, 0.03}));
 
-TEST(Frame, TheRestAndTheSpecimenTogetherMoveAsTheWhole) {
+TEST(Frame, PartitionedFrameMovesAsTheWhole) {
   const Frame whole = Frame::of_case(2);
   const TransferSystemModel specimen;
   const Frame rest = whole.without(specimen);
@@ -68,7 +68,7 @@ TEST(Frame, TheRestAndTheSpecimenTogetherMoveAsTheWhole) {
   for (std::size_t floor = 0; floor < 3; ++floor) EXPECT_NEAR(found[floor], wanted[floor], 1e-10);
 }
 
-TEST(Frame, AStepIsOfFourthOrder) {
+TEST(Frame, StepIsOfFourthOrder) {
   // Free vibration against itself at half the step would need another step; against the exponential of A it is exact.
   const Frame frame = Frame::of_case(1);
   const auto a = accelerations(frame);
@@ -84,7 +84,7 @@ TEST(Frame, AStepIsOfFourthOrder) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(state[static_cast<std::size_t>(i)], wanted(i), 1e-14);
 }
 
-TEST(Frame, RefusesACaseThatIsNotThere) {
+TEST(Frame, RejectsUnknownCase) {
   EXPECT_THROW(static_cast<void>(Frame::of_case(0)), ConfigError);
   EXPECT_THROW(static_cast<void>(Frame::of_case(5)), ConfigError);
 }

@@ -22,7 +22,7 @@ VirtualTest first_case_under_el_centro(const BenchmarkInputs& inputs) {
           .has_sensor_noise = false};
 }
 
-TEST(HarnessCheck, TheReleasedControllerGivesTheFirstPublishedRow) {
+TEST(HarnessCheck, ReleasedControllerGivesFirstPublishedRow) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   ReleasedController controller;
@@ -35,7 +35,7 @@ TEST(HarnessCheck, TheReleasedControllerGivesTheFirstPublishedRow) {
   }
 }
 
-TEST(HarnessCheck, AForceWithoutItsSampleOfDelayWouldNotPass) {
+TEST(HarnessCheck, DetectsForceWithoutSampleDelay) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   // The control: a harness that is wrong by one sample of force fails the three percent in J6. What makes up for the
   // sample is a straight line through the last two forces.
@@ -68,7 +68,7 @@ TEST(HarnessCheck, UncompensatedTheFirstCaseDiverges) {
   EXPECT_GE(result.peak_force_n, kForceLimitN);
 }
 
-TEST(HarnessCheck, AValueOffByMoreThanThreePercentIsNotConfirmed) {
+TEST(HarnessCheck, DetectsValueOffByMoreThanThreePercent) {
   HarnessCheck check;
   check.uncompensated_runs = check.uncompensated_diverged = 12;
   check.largest_deviation_share = 0.03;
@@ -80,7 +80,7 @@ TEST(HarnessCheck, AValueOffByMoreThanThreePercentIsNotConfirmed) {
   EXPECT_FALSE(check.is_confirmed());
 }
 
-TEST(BenchmarkInputs, TheNoiseFloorsOfJ2AreTheIssuedOnes) {
+TEST(BenchmarkInputs, NoiseFloorsOfJ2MatchPublishedValues) {
   HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS();
   const BenchmarkInputs inputs{benchmark_motions()};
   constexpr std::array<std::array<double, 3>, 4> kFloors{
@@ -96,7 +96,7 @@ TEST(BenchmarkInputs, TheNoiseFloorsOfJ2AreTheIssuedOnes) {
   }
 }
 
-TEST(BenchmarkInputs, NamesEveryFileThatIsMissing) {
+TEST(BenchmarkInputs, NamesEveryMissingFile) {
   try {
     const BenchmarkInputs inputs{"/nowhere"};
     FAIL();

@@ -11,7 +11,7 @@
 namespace hybridtest::rths {
 namespace {
 
-TEST(Plant, ComesToRestWhereItsEquationsStandStill) {
+TEST(Plant, SettlesAtItsEquilibrium) {
   const TransferSystemModel p = plant_parameters(3, 11);
   Plant plant{p};
   for (int i = 0; i < 4 * 4096; ++i) plant.step(0.004);
@@ -22,7 +22,7 @@ TEST(Plant, ComesToRestWhereItsEquationsStandStill) {
   EXPECT_NEAR(plant.force_n(), p.stiffness_n_per_m * wanted_m, 1e-6);
 }
 
-TEST(Plant, AnswersASineAsItsTransferFunction) {
+TEST(Plant, SineResponseMatchesTransferFunction) {
   for (const double frequency_hz : {1.0, 4.0, 16.0}) {
     Plant plant{TransferSystemModel{}};
     const double omega = 2.0 * std::numbers::pi * frequency_hz;
@@ -48,7 +48,7 @@ TEST(Plant, AnswersASineAsItsTransferFunction) {
   }
 }
 
-TEST(PlantParameters, TheNominalOneIsThePublishedOneForEverySeed) {
+TEST(PlantParameters, NominalEqualsPublishedForEverySeed) {
   const TransferSystemModel nominal;
   for (const std::uint64_t seed : {1ULL, 2ULL}) {
     EXPECT_EQ(plant_parameters(0, seed).stiffness_n_per_m, nominal.stiffness_n_per_m);
@@ -56,7 +56,7 @@ TEST(PlantParameters, TheNominalOneIsThePublishedOneForEverySeed) {
   }
 }
 
-TEST(PlantParameters, AreTheSameForAnIndexAndASeedAndOthersForOthers) {
+TEST(PlantParameters, DependOnIndexAndSeed) {
   EXPECT_EQ(plant_parameters(7, 1).stiffness_n_per_m, plant_parameters(7, 1).stiffness_n_per_m);
   EXPECT_NE(plant_parameters(7, 1).stiffness_n_per_m, plant_parameters(8, 1).stiffness_n_per_m);
   EXPECT_NE(plant_parameters(7, 1).stiffness_n_per_m, plant_parameters(7, 2).stiffness_n_per_m);

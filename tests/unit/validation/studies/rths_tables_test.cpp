@@ -6,7 +6,7 @@
 namespace hybridtest::rths {
 namespace {
 
-TEST(RthsTables, TheCriteriaAreWrittenWithTheirColumns) {
+TEST(RthsTables, WritesCriteriaWithTheirColumns) {
   const std::vector<Candidate> candidates = chosen_candidates({"newmark_kinematics+pi"});
   StudyRun complete{.candidate = 0, .case_number = 2, .motion = 1, .plant = 0, .result = {}, .is_excused = false};
   complete.result.is_complete = true;

@@ -41,7 +41,7 @@ TEST(Verdict, GoodMeansMeetEveryTarget) {
   EXPECT_EQ(missed(good_means()), 0U);
 }
 
-TEST(Verdict, EachTargetCanBeMissed) {
+TEST(Verdict, DetectsEachMissedTarget) {
   const auto missed_with = [](auto spoil) {
     std::vector<CandidateMeans> means = good_means();
     spoil(means[0], means[1]);
@@ -60,7 +60,7 @@ TEST(Verdict, EachTargetCanBeMissed) {
   EXPECT_EQ(missed_with([](auto&, auto& ours) { ours.j6 = std::nan(""); }), 2U);
 }
 
-TEST(Verdict, OnlyPublishedMethodsThatLoseNoRunAreRivals) {
+TEST(Verdict, OnlyPublishedMethodsWithoutLostRunsAreRivals) {
   std::vector<CandidateMeans> means = good_means();
   means[0].j2 = 0.1;
   means[0].lost = 1;
@@ -70,13 +70,13 @@ TEST(Verdict, OnlyPublishedMethodsThatLoseNoRunAreRivals) {
   EXPECT_EQ(missed(means), 0U);
 }
 
-TEST(Verdict, WithoutOursThereIsNothingToJudge) {
+TEST(Verdict, RequiresOurCompensator) {
   std::vector<CandidateMeans> means = good_means();
   means.pop_back();
   EXPECT_TRUE(judge_ours(means).empty());
 }
 
-TEST(StudyRun, IsLostPastTheLimitUnlessTheReferenceGoesThereItself) {
+TEST(StudyRun, IsLostBeyondLimitUnlessReferenceExceedsIt) {
   StudyRun run;
   run.result.is_complete = true;
   run.result.peak_force_n = 8899.0;
@@ -89,7 +89,7 @@ TEST(StudyRun, IsLostPastTheLimitUnlessTheReferenceGoesThereItself) {
   EXPECT_TRUE(run.is_lost());
 }
 
-TEST(Candidates, HaveNamesOfTheirOwn) {
+TEST(Candidates, HaveUniqueNames) {
   std::vector<std::string> names;
   for (const Candidate& candidate : all_candidates()) names.push_back(candidate.name);
   std::ranges::sort(names);
@@ -99,7 +99,7 @@ TEST(Candidates, HaveNamesOfTheirOwn) {
   EXPECT_TRUE(std::ranges::binary_search(names, "none"));
 }
 
-TEST(Candidates, ANameTakesBothArrangementsAndAMisspeltOneIsRefused) {
+TEST(Candidates, NameSelectsBothArrangementsOrIsRejected) {
   const auto chosen = chosen_candidates({"newmark_kinematics"});
   ASSERT_EQ(chosen.size(), 2U);
   EXPECT_EQ(chosen[0].name, "newmark_kinematics");

@@ -34,7 +34,7 @@ TestResult run_ours(const GroundMotion& motion, bool has_noise, std::uint64_t st
                           *ours.make_path(), *ours.make_force_compensator(), history);
 }
 
-TEST(VirtualTest, TheSameSeedGivesTheSameBytesAndAnotherStreamOthers) {
+TEST(VirtualTest, SameSeedGivesSameBytesOtherStreamDiffers) {
   const GroundMotion motion = short_motion(0.5);
   const TestResult first = run_ours(motion, true, 5);
   const TestResult again = run_ours(motion, true, 5);
@@ -44,7 +44,7 @@ TEST(VirtualTest, TheSameSeedGivesTheSameBytesAndAnotherStreamOthers) {
   EXPECT_NE(first.criteria.j(2), other.criteria.j(2));
 }
 
-TEST(VirtualTest, SensorNoiseIsTheFloorOfJ2WhereTrackingIsPerfect) {
+TEST(VirtualTest, PerfectTrackingLeavesSensorNoiseInJ2) {
   const TestResult result = run_ours(short_motion(0.5), true, 1);
   // Independent sums of squares: noise and what tracking leaves. A standard deviation of 8000 samples scatters by 0.8
   // %.
@@ -52,12 +52,12 @@ TEST(VirtualTest, SensorNoiseIsTheFloorOfJ2WhereTrackingIsPerfect) {
               0.03 * result.criteria.j(2));
 }
 
-TEST(VirtualTest, WithoutNoiseMeasuredAndTrueAreTheSame) {
+TEST(VirtualTest, WithoutNoiseMeasuredEqualsTrue) {
   const TestResult result = run_ours(short_motion(0.5), false, 1);
   EXPECT_EQ(result.criteria.j(2), result.true_tracking_percent);
 }
 
-TEST(VirtualTest, AHybridTestOfAStillGroundIsStill) {
+TEST(VirtualTest, ZeroGroundMotionGivesZeroResponse) {
   TestHistory history;
   const GroundMotion motion = short_motion(0.0);
   static_cast<void>(run_ours(motion, false, 1, &history));
@@ -65,7 +65,7 @@ TEST(VirtualTest, AHybridTestOfAStillGroundIsStill) {
   for (const double value : history.floor_3_m) ASSERT_EQ(value, 0.0);
 }
 
-TEST(VirtualTest, EndsPastTheForceLimitAndSaysSo) {
+TEST(VirtualTest, EndsBeyondForceLimitAndReportsIt) {
   const GroundMotion motion = short_motion(4.0);
   const Reference reference = make_reference(1, motion);
   CompensatedPath path{std::make_unique<NoCompensation>(), Arrangement::straight};
