@@ -79,35 +79,32 @@ Instant ControlLoop::advance(Instant now) noexcept {
 }
 
 void ControlLoop::obey(const LoopRequest& request, Instant now) noexcept {
-  switch (request.kind) {
-    case LoopRequest::Kind::arm: arm(now); break;
-    case LoopRequest::Kind::start: start(now); break;
-    case LoopRequest::Kind::target: take_target(request.target, now); break;
-    case LoopRequest::Kind::pause: is_paused_ = true; break;
-    case LoopRequest::Kind::resume:
-      is_paused_ = false;
-      last_target_at_ = now;
-      if (reset_by_operator(settings_.rules, interlocks_)) report_cleared();
-      break;
-    case LoopRequest::Kind::stop: stop(); break;
-    case LoopRequest::Kind::emergency_stop:
-      emergency_stop_ = true;
-      static_cast<void>(passes_interlocks(false));
-      break;
-  }
+  struct Obey {
+    ControlLoop& loop;
+    Instant now;
+
+    void operator()(const loop_request::Arm&) const noexcept { loop.arm(now); }
+    void operator()(const loop_request::Start&) const noexcept { loop.start(now); }
+    void operator()(const loop_request::Target& target) const noexcept { loop.take_target(target.point, now); }
+    void operator()(const loop_request::Pause&) const noexcept { loop.is_paused_ = true; }
+    void operator()(const loop_request::Resume&) const noexcept { loop.resume(now); }
+    void operator()(const loop_request::Stop&) const noexcept { loop.stop(); }
+    void operator()(const loop_request::EmergencyStop&) const noexcept {
+      loop.emergency_stop_ = true;
+      static_cast<void>(loop.passes_interlocks(false));
+    }
+  };
+  std::visit(Obey{*this, now}, request);
 }
 
 void ControlLoop::arm(Instant now) noexcept {
   if (phase_ != Phase::disarmed) return;
   armed_at_ = now;
-  LoopReport report;
   try {
     rig_.arm();
   } catch (...) {
     faults_ |= FaultFlags::rig_fault;
-    report.kind = LoopReport::Kind::arm_failed;
-    report.fault = FaultFlags::rig_fault;
-    ports_.reports.send(report);
+    ports_.reports.send(loop_report::ArmFailed{});
     return;
   }
   for (auto& compensator : compensation_.commands) compensator->reset();
@@ -121,8 +118,7 @@ void ControlLoop::arm(Instant now) noexcept {
     return;
   }
   phase_ = Phase::standing;
-  report.kind = LoopReport::Kind::armed;
-  ports_.reports.send(report);
+  ports_.reports.send(loop_report::Armed{});
 }
 
 void ControlLoop::start(Instant now) noexcept {
@@ -130,6 +126,12 @@ void ControlLoop::start(Instant now) noexcept {
   if (phase != Phase::standing) return;
   phase = Phase::running;
   last_target_at_ = now;
+}
+
+void ControlLoop::resume(Instant now) noexcept {
+  is_paused_ = false;
+  last_target_at_ = now;
+  if (reset_by_operator(settings_.rules, interlocks_)) report_cleared();
 }
 
 void ControlLoop::take_target(const CommandPoint& target, Instant now) noexcept {
@@ -175,10 +177,7 @@ void ControlLoop::stop() noexcept {
 void ControlLoop::come_to_rest() noexcept {
   rig_.stop_motion();
   phase_ = Phase::at_rest;
-  if (!stop_was_asked_) return;
-  LoopReport report;
-  report.kind = LoopReport::Kind::at_rest;
-  ports_.reports.send(report);
+  if (stop_was_asked_) ports_.reports.send(loop_report::AtRest{});
 }
 
 /// At once, from wherever the command is.
@@ -284,17 +283,12 @@ void ControlLoop::capture_zero_offsets() noexcept {
   // The next sample differs from this one by the offset, and no sensor is broken for that.
   interlocks_.has_sample = false;
   phase_ = Phase::standing;
-  LoopReport report;
-  report.kind = LoopReport::Kind::zero_offset;
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
-    report.dof = static_cast<int>(k);
-    report.displacement_m = zero_offsets_.offset().displacement_m[k];
-    report.force_n = zero_offsets_.offset().force_n[k];
-    ports_.reports.send(report);
+    ports_.reports.send(loop_report::ZeroOffset{.dof = static_cast<int>(k),
+                                                .displacement_m = zero_offsets_.offset().displacement_m[k],
+                                                .force_n = zero_offsets_.offset().force_n[k]});
   }
-  report = {};
-  report.kind = LoopReport::Kind::armed;
-  ports_.reports.send(report);
+  ports_.reports.send(loop_report::Armed{});
 }
 
 void ControlLoop::compensate_forces() noexcept {
@@ -381,22 +375,15 @@ void ControlLoop::go_on() noexcept {
 
 void ControlLoop::report(const InterlockTrip& trip) noexcept {
   const FaultFlags fault = fault_of(trip.kind);
-  if (trip.is_final) faults_ |= fault;
-  LoopReport report;
-  report.kind = trip.is_final ? LoopReport::Kind::fault : LoopReport::Kind::warning;
-  report.fault = fault;
-  report.observed = trip.observed;
-  report.limit = trip.limit;
-  report.model_time_s = model_time_s();
-  ports_.reports.send(report);
+  if (!trip.is_final) {
+    ports_.reports.send(loop_report::Warning{fault, trip.observed, trip.limit, model_time_s()});
+    return;
+  }
+  faults_ |= fault;
+  ports_.reports.send(loop_report::Fault{fault, trip.observed, trip.limit, model_time_s()});
 }
 
-void ControlLoop::report_cleared() noexcept {
-  LoopReport report;
-  report.kind = LoopReport::Kind::cleared;
-  report.model_time_s = model_time_s();
-  ports_.reports.send(report);
-}
+void ControlLoop::report_cleared() noexcept { ports_.reports.send(loop_report::Cleared{model_time_s()}); }
 
 void ControlLoop::report_measurement() noexcept {
   is_reached_ = false;
@@ -404,9 +391,7 @@ void ControlLoop::report_measurement() noexcept {
     if (reached_.fraction >= 1.0) return after;
     return before + reached_.fraction * (after - before);
   };
-  LoopReport report;
-  report.kind = LoopReport::Kind::measurement;
-  StepMeasurement& measurement = report.measurement;
+  StepMeasurement measurement;
   measurement.step = reached_.target.step;
   measurement.model_time_s = reached_.target.model_time_s;
   measurement.target_displacement_m = reached_.target.displacement_m;
@@ -414,7 +399,7 @@ void ControlLoop::report_measurement() noexcept {
   measurement.measured_displacement_m = at_target(feedback_before_.displacement_m, feedback_.displacement_m);
   measurement.force_n = at_target(compensated_force_before_n_, compensated_force_n_);
   measurement.flags = reached_.flags | motion_flags_;
-  ports_.reports.send(report);
+  ports_.reports.send(measurement);
 }
 
 double ControlLoop::model_time_s() const noexcept { return trajectory_.point().path_time_s / settings_.time_scale; }

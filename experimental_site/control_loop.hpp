@@ -74,6 +74,7 @@ class ControlLoop final : public Node {
   void obey(const LoopRequest& request, Instant now) noexcept;
   void arm(Instant now) noexcept;
   void start(Instant now) noexcept;
+  void resume(Instant now) noexcept;
   void take_target(const CommandPoint& target, Instant now) noexcept;
   void stop() noexcept;
   void come_to_rest() noexcept;

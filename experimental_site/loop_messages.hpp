@@ -1,20 +1,36 @@
 #pragma once
 
-#include <cstdint>
+#include <type_traits>
+#include <variant>
 
 #include "core/faults.hpp"
 #include "core/messages.hpp"
 
+/// What the site link and the control loop tell each other: variants, so that a message carries what
+/// its kind needs and nothing else. They are passed through a lock-free queue when the link and the
+/// loop run on two threads; copying one does not allocate.
 namespace hybridtest {
 
-/// From the site link to the control loop; a lock-free queue when they run on two threads.
-struct LoopRequest {
-  enum class Kind : std::uint8_t { arm, start, target, pause, resume, stop, emergency_stop };
-  Kind kind = Kind::target;
-  CommandPoint target;  // with `target`: the next step's point
-};
+namespace loop_request {
 
-/// A step's target reached and measured.
+struct Arm {};
+struct Start {};
+/// The point of the next step.
+struct Target {
+  CommandPoint point;
+};
+struct Pause {};
+struct Resume {};
+struct Stop {};
+struct EmergencyStop {};
+
+}  // namespace loop_request
+
+/// From the site link to the control loop.
+using LoopRequest = std::variant<loop_request::Arm, loop_request::Start, loop_request::Target, loop_request::Pause,
+                                 loop_request::Resume, loop_request::Stop, loop_request::EmergencyStop>;
+
+/// The target of a step, reached and measured.
 struct StepMeasurement {
   Step step = kNoStep;
   double model_time_s = 0.0;
@@ -25,19 +41,46 @@ struct StepMeasurement {
   MeasurementFlags flags = MeasurementFlags::none;
 };
 
-/// From the control loop to the site link.
-struct LoopReport {
-  /// `fault` ends the test; after a `warning` it goes on, if it holds as soon as that has `cleared`.
-  enum class Kind : std::uint8_t { armed, arm_failed, zero_offset, measurement, warning, cleared, fault, at_rest };
-  Kind kind = Kind::measurement;
-  StepMeasurement measurement;          // with `measurement`
-  FaultFlags fault = FaultFlags::none;  // with `fault` and `warning`: exactly one
-  double observed = 0.0;                // likewise: in the fault's unit
-  double limit = 0.0;
-  int dof = 0;                  // with `zero_offset`
-  double displacement_m = 0.0;  // likewise: what is taken off the measured displacement
-  double force_n = 0.0;         // likewise
+namespace loop_report {
+
+struct Armed {};
+/// The rig did not arm.
+struct ArmFailed {};
+/// Captured at arming for one interface degree of freedom; subtracted from what is measured.
+struct ZeroOffset {
+  int dof = 0;
+  double displacement_m = 0.0;
+  double force_n = 0.0;
+};
+/// An interlock that does not end the test.
+struct Warning {
+  FaultFlags fault = FaultFlags::none;  // exactly one
+  double observed = 0.0;                // in the unit of the fault
+  double limit = 0.0;                   // likewise
   double model_time_s = 0.0;
 };
+/// What an interlock warned of or held for is over.
+struct Cleared {
+  double model_time_s = 0.0;
+};
+/// An interlock that ends the test.
+struct Fault {
+  FaultFlags fault = FaultFlags::none;  // exactly one
+  double observed = 0.0;                // in the unit of the fault
+  double limit = 0.0;                   // likewise
+  double model_time_s = 0.0;
+};
+/// The rig has stopped.
+struct AtRest {};
+
+}  // namespace loop_report
+
+/// From the control loop to the site link.
+using LoopReport = std::variant<loop_report::Armed, loop_report::ArmFailed, loop_report::ZeroOffset, StepMeasurement,
+                                loop_report::Warning, loop_report::Cleared, loop_report::Fault, loop_report::AtRest>;
+
+// The real-time path copies and visits them: neither may throw.
+static_assert(std::is_nothrow_move_constructible_v<LoopRequest> && std::is_nothrow_move_assignable_v<LoopRequest>);
+static_assert(std::is_nothrow_move_constructible_v<LoopReport> && std::is_nothrow_move_assignable_v<LoopReport>);
 
 }  // namespace hybridtest

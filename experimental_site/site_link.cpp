@@ -19,7 +19,12 @@ SiteLink::SiteLink(SubstructureIndex index, int dofs, Presence& presence, Member
 }
 
 Instant SiteLink::advance(Instant now) noexcept {
-  const Instant wake = presence_.advance(now);
+  take_messages(now);
+  return pass_reports_on(now);
+}
+
+void SiteLink::take_messages(Instant now) noexcept {
+  static_cast<void>(presence_.advance(now));
   if (requested_stop_ != StopReason::none) begin_stop(std::exchange(requested_stop_, StopReason::none));
   for (Request request = membership_.next_request(now); request != Request::none && !is_done();
        request = membership_.next_request(now)) {
@@ -27,11 +32,15 @@ Instant SiteLink::advance(Instant now) noexcept {
   }
   DisplacementCommand command;
   while (ports_.commands.take(command)) pass_on(command, now);
+}
+
+Instant SiteLink::pass_reports_on(Instant now) noexcept {
+  const Instant wake = presence_.advance(now);  // sends the state that the messages led to
   LoopReport report;
   while (ports_.reports.take(report)) heed(report, now);
   batch_signals();
   if (!is_done()) return wake;
-  static_cast<void>(presence_.advance(now));  // the last word goes out
+  static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
 }
 
@@ -41,16 +50,16 @@ bool SiteLink::is_done() const noexcept {
 
 void SiteLink::obey(Request request) noexcept {
   switch (request) {
-    case Request::arm: ask(LoopRequest::Kind::arm); break;
+    case Request::arm: ports_.requests.send(loop_request::Arm{}); break;
     case Request::start:
-      ask(LoopRequest::Kind::start);
+      ports_.requests.send(loop_request::Start{});
       presence_.set_state(LifecycleState::running);
       break;
-    case Request::pause: ask(LoopRequest::Kind::pause); break;
-    case Request::resume: ask(LoopRequest::Kind::resume); break;
+    case Request::pause: ports_.requests.send(loop_request::Pause{}); break;
+    case Request::resume: ports_.requests.send(loop_request::Resume{}); break;
     case Request::stop: begin_stop(membership_.stop_reason()); break;
     case Request::emergency_stop:
-      ask(LoopRequest::Kind::emergency_stop);
+      ports_.requests.send(loop_request::EmergencyStop{});
       begin_stop(StopReason::interlock);
       break;
     case Request::none: break;
@@ -61,13 +70,7 @@ void SiteLink::begin_stop(StopReason reason) noexcept {
   if (presence_.state() == LifecycleState::stopping) return;
   stop_reason_ = reason;
   presence_.set_state(LifecycleState::stopping);
-  ask(LoopRequest::Kind::stop);
-}
-
-void SiteLink::ask(LoopRequest::Kind kind) noexcept {
-  LoopRequest request;
-  request.kind = kind;
-  ports_.requests.send(request);
+  ports_.requests.send(loop_request::Stop{});
 }
 
 void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept {
@@ -86,48 +89,50 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   for (int i = command.point_count - 1; i >= 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
     if (point.step != passed_on_ + 1) continue;
-    LoopRequest request;
-    request.kind = LoopRequest::Kind::target;
-    request.target = point;
-    if (!ports_.requests.send(request)) return;
+    if (!ports_.requests.send(loop_request::Target{point})) return;
     passed_on_ = point.step;
   }
 }
 
 void SiteLink::heed(const LoopReport& report, Instant now) noexcept {
-  switch (report.kind) {
-    case LoopReport::Kind::armed:
-      loop_is_armed_ = true;
-      presence_.set_state(LifecycleState::armed);
-      break;
-    case LoopReport::Kind::arm_failed:
-    case LoopReport::Kind::fault:
-      presence_.raise(report.fault);
-      presence_.report(
-          now, Severity::fault,
-          report.fault == FaultFlags::command_age ? EventCode::command_overdue : EventCode::interlock_tripped,
-          name(report.fault), {report.observed, report.limit}, passed_on_, report.model_time_s);
-      break;
-    case LoopReport::Kind::warning:
-      presence_.report(now, Severity::warning, EventCode::interlock_warned, name(report.fault),
-                       {report.observed, report.limit}, passed_on_, report.model_time_s);
-      break;
-    case LoopReport::Kind::cleared:
-      presence_.report(now, Severity::information, EventCode::interlock_cleared, {}, {}, passed_on_,
-                       report.model_time_s);
-      break;
-    case LoopReport::Kind::zero_offset:
-      presence_.report(now, Severity::information, EventCode::zero_offset, "dof " + std::to_string(report.dof + 1),
-                       {report.displacement_m, report.force_n});
-      break;
-    case LoopReport::Kind::measurement:
-      measured_ = report.measurement;
-      presence_.set_last_step(measured_.step);
-      record_step();
-      if (presence_.state() == LifecycleState::running) answer(now, MeasurementFlags::none);
-      break;
-    case LoopReport::Kind::at_rest: presence_.set_state(LifecycleState::finished); break;
-  }
+  struct Heed {
+    SiteLink& link;
+    Instant now;
+
+    void operator()(const loop_report::Armed&) const noexcept { link.presence_.set_state(LifecycleState::armed); }
+    void operator()(const loop_report::ArmFailed&) const noexcept {
+      (*this)(loop_report::Fault{.fault = FaultFlags::rig_fault});
+    }
+    void operator()(const loop_report::ZeroOffset& offset) const noexcept {
+      link.presence_.report(now, Severity::information, EventCode::zero_offset, "dof " + std::to_string(offset.dof + 1),
+                            {offset.displacement_m, offset.force_n});
+    }
+    void operator()(const StepMeasurement& measurement) const noexcept { link.take_measurement(measurement, now); }
+    void operator()(const loop_report::Warning& warning) const noexcept {
+      link.presence_.report(now, Severity::warning, EventCode::interlock_warned, name(warning.fault),
+                            {warning.observed, warning.limit}, link.passed_on_, warning.model_time_s);
+    }
+    void operator()(const loop_report::Cleared& cleared) const noexcept {
+      link.presence_.report(now, Severity::information, EventCode::interlock_cleared, {}, {}, link.passed_on_,
+                            cleared.model_time_s);
+    }
+    void operator()(const loop_report::Fault& fault) const noexcept {
+      link.presence_.raise(fault.fault);
+      const bool is_overdue = fault.fault == FaultFlags::command_age;
+      link.presence_.report(now, Severity::fault,
+                            is_overdue ? EventCode::command_overdue : EventCode::interlock_tripped, name(fault.fault),
+                            {fault.observed, fault.limit}, link.passed_on_, fault.model_time_s);
+    }
+    void operator()(const loop_report::AtRest&) const noexcept { link.presence_.set_state(LifecycleState::finished); }
+  };
+  std::visit(Heed{*this, now}, report);
+}
+
+void SiteLink::take_measurement(const StepMeasurement& measurement, Instant now) noexcept {
+  measured_ = measurement;
+  presence_.set_last_step(measured_.step);
+  record_step();
+  if (presence_.state() == LifecycleState::running) answer(now, MeasurementFlags::none);
 }
 
 void SiteLink::answer(Instant now, MeasurementFlags flags) noexcept {
@@ -182,10 +187,10 @@ TableLayout SiteLink::steps_layout(int dofs) {
 }
 
 Instant SiteNode::advance(Instant now) noexcept {
-  // Requests flow down and reports come back within one call.
-  static_cast<void>(link_.advance(now));
+  // A command, the motion that it asks for and the answer all belong to one call.
+  link_.take_messages(now);
   const Instant loop_wake = loop_.advance(now);
-  return std::min(link_.advance(now), loop_wake);
+  return std::min(link_.pass_reports_on(now), loop_wake);
 }
 
 }  // namespace hybridtest

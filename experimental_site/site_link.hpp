@@ -26,7 +26,12 @@ class SiteLink final : public Node {
   SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership, SiteLinkPorts ports,
            RowSink& steps);
 
+  /// Both halves, for a link whose loop has its own thread.
   [[nodiscard]] Instant advance(Instant now) noexcept override;
+  /// First half: from the network to the loop.
+  void take_messages(Instant now) noexcept;
+  /// Second half: from the loop to the network. @return when the link next wants to run.
+  [[nodiscard]] Instant pass_reports_on(Instant now) noexcept;
 
   /// Ends the test safely from this side, as Ctrl-C does; takes effect at the next advance().
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
@@ -42,9 +47,9 @@ class SiteLink final : public Node {
  private:
   void obey(Request request) noexcept;
   void begin_stop(StopReason reason) noexcept;
-  void ask(LoopRequest::Kind kind) noexcept;
   void pass_on(const DisplacementCommand& command, Instant now) noexcept;
   void heed(const LoopReport& report, Instant now) noexcept;
+  void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;
   void answer(Instant now, MeasurementFlags flags) noexcept;
   void record_step() noexcept;
   void batch_signals() noexcept;
@@ -57,7 +62,6 @@ class SiteLink final : public Node {
   RowSink& steps_;
   StopReason requested_stop_ = StopReason::none;
   StopReason stop_reason_ = StopReason::none;
-  bool loop_is_armed_ = false;
   Step passed_on_ = kNoStep;      // newest target given to the loop
   Duration command_send_time_{};  // of the newest command, coordinator's clock
   Duration receive_time_{};
@@ -66,7 +70,8 @@ class SiteLink final : public Node {
   std::vector<double> row_;
 };
 
-/// Link and loop on one thread, as lockstep and simulation run them.
+/// The link and the loop on one thread, in lockstep mode and in a simulated test: the loop runs between
+/// the two halves of the link.
 class SiteNode final : public Node {
  public:
   SiteNode(SiteLink& link, Node& loop) noexcept : link_{link}, loop_{loop} {}

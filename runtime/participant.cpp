@@ -100,8 +100,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
       requests_{kLoopQueue},
       reports_{kLoopQueue},
       signals_{1024},
-      waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()},
-      node_{runs_loop} {
+      waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()} {
   const ControlLoopSettings settings = loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
   rig_ = substructure.make_rig(control_period_s);
@@ -117,7 +116,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
       MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
       SiteLinkPorts{*commands_, *measurements_, *signal_blocks_, requests_, reports_, signals_},
       surroundings.sink("steps"));
-  node_.set(*link_, *loop_);
+  if (runs_loop) node_.emplace(*link_, *loop_);
 }
 
 std::vector<TableLayout> SiteParticipant::tables(const SubstructureScenario& substructure) {

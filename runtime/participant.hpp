@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -90,13 +91,16 @@ class NumericalParticipant final : public Participant {
 class SiteParticipant final : public Participant {
  public:
   /// Connects the rig. @throws whatever Rig::connect() throws.
-  /// @param runs_loop   node() runs the control loop as well; else it has a thread of its own,
-  ///                    which looks for requests by itself.
+  /// @param runs_loop   node() runs the control loop as well; else the loop has its own thread, which
+  ///                    polls for requests.
   SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
                   const ParticipantSurroundings& surroundings, bool runs_loop);
 
-  /// Link and loop on one thread, or the link alone.
-  [[nodiscard]] Node& node() noexcept override { return node_; }
+  /// The link and the loop, or the link alone.
+  [[nodiscard]] Node& node() noexcept override {
+    if (node_) return *node_;
+    return *link_;
+  }
   /// For its own thread.
   [[nodiscard]] Node& control_loop() noexcept { return *loop_; }
   [[nodiscard]] Rig& rig() noexcept { return *rig_; }
@@ -123,24 +127,6 @@ class SiteParticipant final : public Participant {
     Waker* waker_;
   };
 
-  /// The loop's turn inside node(); nothing when it has a thread of its own.
-  class LinkAndLoop final : public Node {
-   public:
-    explicit LinkAndLoop(bool runs_loop) noexcept : runs_loop_{runs_loop} {}
-    void set(SiteLink& link, Node& loop) noexcept {
-      link_ = &link;
-      loop_ = &loop;
-    }
-    [[nodiscard]] Instant advance(Instant now) noexcept override {
-      return runs_loop_ ? SiteNode{*link_, *loop_}.advance(now) : link_->advance(now);
-    }
-
-   private:
-    bool runs_loop_;
-    SiteLink* link_ = nullptr;
-    Node* loop_ = nullptr;
-  };
-
   std::unique_ptr<Inbox<TestAnnouncement>> announcements_;
   std::unique_ptr<Inbox<DisplacementCommand>> commands_;
   std::unique_ptr<Outbox<ForceMeasurement>> measurements_;
@@ -152,7 +138,7 @@ class SiteParticipant final : public Participant {
   std::unique_ptr<Rig> rig_;
   std::unique_ptr<ControlLoop> loop_;
   std::unique_ptr<SiteLink> link_;
-  LinkAndLoop node_;
+  std::optional<SiteNode> node_;  // none when the loop has its own thread
 };
 
 /// The participant that serves a substructure, whichever its role.

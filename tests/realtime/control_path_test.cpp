@@ -34,20 +34,15 @@ class LoopOnRings {
               ControlLoopPorts{requests_, reports_, signals_},
               record_} {}
 
-  void ask(LoopRequest::Kind kind) noexcept {
-    LoopRequest request;
-    request.kind = kind;
-    requests_.send(request);
-  }
+  void ask(const LoopRequest& request) noexcept { requests_.send(request); }
   void target(Step step, double displacement_m) noexcept {
-    LoopRequest request;
-    request.kind = LoopRequest::Kind::target;
-    request.target.step = step;
-    request.target.model_time_s = RingCoupling::kStep_s * static_cast<double>(step);
-    request.target.displacement_m.setConstant(1, displacement_m);
-    request.target.velocity_m_per_s.setZero(1);
-    request.target.acceleration_m_per_s2.setZero(1);
-    requests_.send(request);
+    CommandPoint point;
+    point.step = step;
+    point.model_time_s = RingCoupling::kStep_s * static_cast<double>(step);
+    point.displacement_m.setConstant(1, displacement_m);
+    point.velocity_m_per_s.setZero(1);
+    point.acceleration_m_per_s2.setZero(1);
+    requests_.send(loop_request::Target{point});
   }
   void advance() noexcept {
     static_cast<void>(loop_.advance(now_));
@@ -61,7 +56,7 @@ class LoopOnRings {
     int taken = 0;
     LoopReport report;
     while (reports_.take(report)) {
-      fault = fault || report.kind == LoopReport::Kind::fault;
+      fault = fault || std::holds_alternative<loop_report::Fault>(report);
       ++taken;
     }
     return taken;
@@ -88,8 +83,8 @@ struct LoopStory {
 
 LoopStory run(LoopOnRings& loop) noexcept {
   LoopStory story;
-  loop.ask(LoopRequest::Kind::arm);
-  loop.ask(LoopRequest::Kind::start);
+  loop.ask(loop_request::Arm{});
+  loop.ask(loop_request::Start{});
   loop.target(0, 0.0);
   Step step = 0;
   int wait = 0;
@@ -106,7 +101,7 @@ LoopStory run(LoopOnRings& loop) noexcept {
   loop.target(step + 1, 10.0);  // beyond every limit
   for (int period = 0; period < 1000; ++period) loop.advance();
   static_cast<void>(loop.take_reports(story.has_tripped));
-  loop.ask(LoopRequest::Kind::stop);
+  loop.ask(loop_request::Stop{});
   loop.advance();
   return story;
 }

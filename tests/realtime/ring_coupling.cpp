@@ -144,9 +144,7 @@ void RingCoupling::advance(Duration passed) noexcept {
   now_ += passed;
   static_cast<void>(coordinator_->advance(now_));
   static_cast<void>(numerical_->advance(now_));
-  static_cast<void>(link_->advance(now_));
-  static_cast<void>(loop_->advance(now_));
-  static_cast<void>(link_->advance(now_));
+  static_cast<void>(SiteNode{*link_, *loop_}.advance(now_));
 }
 
 }  // namespace hybridtest

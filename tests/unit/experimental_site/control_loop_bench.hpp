@@ -63,25 +63,20 @@ class LoopBench {
     return made;
   }
 
-  void ask(LoopRequest::Kind kind) {
-    LoopRequest request;
-    request.kind = kind;
-    requests.send(request);
-  }
+  void ask(const LoopRequest& request) { requests.send(request); }
   void target(Step step, double displacement_m, double velocity_m_per_s = 0.0, double acceleration_m_per_s2 = 0.0) {
-    LoopRequest request;
-    request.kind = LoopRequest::Kind::target;
-    request.target.step = step;
-    request.target.model_time_s = static_cast<double>(step) * kStep_s / settings_.time_scale;
-    request.target.displacement_m = InterfaceVector::Constant(settings_.dofs, displacement_m);
-    request.target.velocity_m_per_s = InterfaceVector::Constant(settings_.dofs, velocity_m_per_s);
-    request.target.acceleration_m_per_s2 = InterfaceVector::Constant(settings_.dofs, acceleration_m_per_s2);
-    requests.send(request);
+    CommandPoint point;
+    point.step = step;
+    point.model_time_s = static_cast<double>(step) * kStep_s / settings_.time_scale;
+    point.displacement_m = InterfaceVector::Constant(settings_.dofs, displacement_m);
+    point.velocity_m_per_s = InterfaceVector::Constant(settings_.dofs, velocity_m_per_s);
+    point.acceleration_m_per_s2 = InterfaceVector::Constant(settings_.dofs, acceleration_m_per_s2);
+    requests.send(loop_request::Target{point});
   }
   /// Armed and started, the first target at rest.
   void start() {
-    ask(LoopRequest::Kind::arm);
-    ask(LoopRequest::Kind::start);
+    ask(loop_request::Arm{});
+    ask(loop_request::Start{});
     target(0, 0.0);
     advance();
     take_reports();
@@ -99,9 +94,9 @@ class LoopBench {
     return taken;
   }
   /// The fault among the reports that wait, if there is one.
-  std::optional<LoopReport> take_fault() {
+  std::optional<loop_report::Fault> take_fault() {
     for (const LoopReport& report : take_reports()) {
-      if (report.kind == LoopReport::Kind::fault) return report;
+      if (const auto* fault = std::get_if<loop_report::Fault>(&report)) return *fault;
     }
     return {};
   }

@@ -29,7 +29,7 @@ class SineTest {
       bench_.advance();
       for (const LoopReport& report : bench_.take_reports()) {
         reports.push_back(report);
-        if (report.kind == LoopReport::Kind::measurement) give_target(report.measurement.step + 1);
+        if (const auto* measured = std::get_if<StepMeasurement>(&report)) give_target(measured->step + 1);
       }
     }
   }
@@ -39,8 +39,10 @@ class SineTest {
     bench_.target(step, 0.02 * (1.0 - std::cos(angle)), 0.02 * kOmega * std::sin(angle),
                   0.02 * kOmega * kOmega * std::cos(angle));
   }
-  [[nodiscard]] int count(LoopReport::Kind kind) const {
-    return static_cast<int>(std::ranges::count(reports, kind, &LoopReport::kind));
+  template <class Report>
+  [[nodiscard]] int count() const {
+    return static_cast<int>(std::ranges::count_if(
+        reports, [](const LoopReport& report) { return std::holds_alternative<Report>(report); }));
   }
 
   std::vector<LoopReport> reports;
@@ -50,8 +52,8 @@ class SineTest {
 };
 
 void start(Bench& bench, SineTest& test) {
-  bench.ask(LoopRequest::Kind::arm);
-  bench.ask(LoopRequest::Kind::start);
+  bench.ask(loop_request::Arm{});
+  bench.ask(loop_request::Start{});
   test.give_target(0);
 }
 
@@ -73,10 +75,10 @@ TEST(ControlLoopStories, WarningIsReportedAndTestContinues) {
   SineTest test{bench};
   start(bench, test);
   test.run(5000);
-  EXPECT_EQ(test.count(LoopReport::Kind::fault), 0);
-  EXPECT_EQ(test.count(LoopReport::Kind::warning), 3);
-  EXPECT_EQ(test.count(LoopReport::Kind::cleared), 3);
-  EXPECT_GE(test.count(LoopReport::Kind::measurement), 1240);
+  EXPECT_EQ(test.count<loop_report::Fault>(), 0);
+  EXPECT_EQ(test.count<loop_report::Warning>(), 3);
+  EXPECT_EQ(test.count<loop_report::Cleared>(), 3);
+  EXPECT_GE(test.count<StepMeasurement>(), 1240);
 }
 
 /// Ten holds in a test, each of which clears. @param velocity_change_m_per_s   bound after each.
@@ -100,7 +102,7 @@ void expect_ten_holds_passed(bool compensates, double velocity_change_m_per_s) {
     const double held_m = bench.command_m();
     test.run(300);
     EXPECT_EQ(bench.command_m(), held_m);
-    EXPECT_EQ(test.count(LoopReport::Kind::warning), hold + 1);
+    EXPECT_EQ(test.count<loop_report::Warning>(), hold + 1);
     has_fault = false;
     test.run(99);
     EXPECT_EQ(bench.command_m(), held_m) << "cleared for less than a tenth of a second";
@@ -109,11 +111,11 @@ void expect_ten_holds_passed(bool compensates, double velocity_change_m_per_s) {
     EXPECT_NE(bench.command_m(), held_m);
     EXPECT_LT(largest_velocity_change(bench, resumed, bench.rig.commands.size()), velocity_change_m_per_s);
   }
-  EXPECT_EQ(test.count(LoopReport::Kind::fault), 0);
+  EXPECT_EQ(test.count<loop_report::Fault>(), 0);
   Step step = 0;
   for (const LoopReport& report : test.reports) {
-    if (report.kind == LoopReport::Kind::measurement) {
-      EXPECT_EQ(report.measurement.step, step++);
+    if (const auto* measured = std::get_if<StepMeasurement>(&report)) {
+      EXPECT_EQ(measured->step, step++);
     }
   }
   EXPECT_GT(step, 600);
@@ -143,12 +145,12 @@ TEST(ControlLoopStories, OperatorHoldContinuesOnResume) {
   for (int i = 0; i < 300; ++i) bench.advance();
   EXPECT_EQ(bench.command_m(), held_m);
   EXPECT_TRUE(bench.take_reports().empty());
-  bench.ask(LoopRequest::Kind::resume);
+  bench.ask(loop_request::Resume{});
   for (int i = 0; i < 30; ++i) bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(reports[0].kind, LoopReport::Kind::cleared);
-  EXPECT_EQ(reports[1].measurement.step, 2);
+  EXPECT_TRUE(std::holds_alternative<loop_report::Cleared>(reports[0]));
+  EXPECT_EQ(std::get<StepMeasurement>(reports[1]).step, 2);
 }
 
 TEST(ControlLoopStories, ReleaseStopsRigInThePeriodOfTheTrip) {
@@ -159,7 +161,7 @@ TEST(ControlLoopStories, ReleaseStopsRigInThePeriodOfTheTrip) {
   SineTest test{bench};
   start(bench, test);
   test.run(3000);
-  EXPECT_EQ(test.count(LoopReport::Kind::fault), 1);
+  EXPECT_EQ(test.count<loop_report::Fault>(), 1);
   EXPECT_GE(bench.rig.stops, 1);
   const std::size_t count = bench.rig.commands.size();
   EXPECT_GT(kStiffness_n_per_m * bench.command_m(), 1000.0);
@@ -201,25 +203,25 @@ TEST(ControlLoopStories, SubtractsZeroOffsetsCapturedAtArming) {
                 feedback.force_n[0] += kOffset_n + random.uniform(-1.0, 1.0);
                 return RigStatus::healthy;
               }};
-  bench.ask(LoopRequest::Kind::arm);
+  bench.ask(loop_request::Arm{});
   for (int i = 0; i < 99; ++i) bench.advance();
   EXPECT_TRUE(bench.take_reports().empty()) << "not armed before a tenth of a second of samples is in";
   bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(reports[0].kind, LoopReport::Kind::zero_offset);
+  const auto& offset = std::get<loop_report::ZeroOffset>(reports[0]);
   // A mean of 100 uniform values: five times its standard deviation, width / sqrt(12 * 100).
-  EXPECT_NEAR(reports[0].displacement_m, kOffset_m, 5.0 * 2e-5 / std::sqrt(1200.0));
-  EXPECT_NEAR(reports[0].force_n, kOffset_n, 5.0 * 2.0 / std::sqrt(1200.0));
-  EXPECT_EQ(reports[1].kind, LoopReport::Kind::armed);
+  EXPECT_NEAR(offset.displacement_m, kOffset_m, 5.0 * 2e-5 / std::sqrt(1200.0));
+  EXPECT_NEAR(offset.force_n, kOffset_n, 5.0 * 2.0 / std::sqrt(1200.0));
+  EXPECT_TRUE(std::holds_alternative<loop_report::Armed>(reports[1]));
   for (int i = 0; i < 50; ++i) bench.advance();
-  bench.ask(LoopRequest::Kind::start);
+  bench.ask(loop_request::Start{});
   bench.target(0, 0.0);
   bench.advance();
   const auto measured = bench.take_reports();
   ASSERT_EQ(measured.size(), 1U) << "and no step interlock for the offset that was taken off";
-  EXPECT_NEAR(measured[0].measurement.measured_displacement_m[0], 0.0, 2e-5);
-  EXPECT_NEAR(measured[0].measurement.force_n[0], 0.0, 2.0);
+  EXPECT_NEAR(std::get<StepMeasurement>(measured[0]).measured_displacement_m[0], 0.0, 2e-5);
+  EXPECT_NEAR(std::get<StepMeasurement>(measured[0]).force_n[0], 0.0, 2.0);
 }
 
 TEST(ControlLoopStories, FaultDoesNotSubtractZeroOffsetsTwice) {
@@ -232,9 +234,9 @@ TEST(ControlLoopStories, FaultDoesNotSubtractZeroOffsetsTwice) {
                 feedback.force_n[0] = -456.0;
                 return RigStatus::healthy;
               }};
-  bench.ask(LoopRequest::Kind::arm);
+  bench.ask(loop_request::Arm{});
   for (int i = 0; i < 100; ++i) bench.advance();
-  bench.ask(LoopRequest::Kind::start);
+  bench.ask(loop_request::Start{});
   bench.target(0, 0.0);
   bench.advance();
   is_silent = true;
@@ -252,11 +254,11 @@ TEST(ControlLoopStories, OffsetsBeyondLimitsAreAFaultAndNotApplied) {
                 feedback.force_n[0] = 2.0e4;
                 return RigStatus::healthy;
               }};
-  bench.ask(LoopRequest::Kind::arm);
+  bench.ask(loop_request::Arm{});
   bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_EQ(reports[0].fault, FaultFlags::force_limit);
+  EXPECT_EQ(std::get<loop_report::Fault>(reports[0]).fault, FaultFlags::force_limit);
 }
 
 TEST(ControlLoopStories, BlendsIntoFirstTargetsAndThenReachesThem) {
@@ -265,8 +267,8 @@ TEST(ControlLoopStories, BlendsIntoFirstTargetsAndThenReachesThem) {
     settings.ramp_in_s = ramp_in_s;
     settings.limits.velocity_m_per_s = 10.0;  // a single step lets it no other way
     Bench bench{settings, ideal_spring_rig(kStiffness_n_per_m)};
-    bench.ask(LoopRequest::Kind::arm);
-    bench.ask(LoopRequest::Kind::start);
+    bench.ask(loop_request::Arm{});
+    bench.ask(loop_request::Start{});
     constexpr double kStart_m = 0.01;
     constexpr double kVelocity_m_per_s = 0.02;
     const auto give = [&](Step step) {
@@ -278,12 +280,13 @@ TEST(ControlLoopStories, BlendsIntoFirstTargetsAndThenReachesThem) {
     for (int i = 0; i < 1000; ++i) {
       bench.advance();
       for (const LoopReport& report : bench.take_reports()) {
-        ASSERT_NE(report.kind, LoopReport::Kind::fault);
-        if (report.kind != LoopReport::Kind::measurement) continue;
+        ASSERT_FALSE(std::holds_alternative<loop_report::Fault>(report));
+        const auto* measured = std::get_if<StepMeasurement>(&report);
+        if (measured == nullptr) continue;
         give(next++);
         if (i * kPeriod_s <= std::max(ramp_in_s, Bench::kStep_s) + Bench::kStep_s) continue;
-        worst_late_m = std::max(worst_late_m, std::abs(report.measurement.measured_displacement_m[0] -
-                                                       report.measurement.target_displacement_m[0]));
+        worst_late_m =
+            std::max(worst_late_m, std::abs(measured->measured_displacement_m[0] - measured->target_displacement_m[0]));
       }
     }
     EXPECT_LT(worst_late_m, 1e-15) << "a path that is straight is met to rounding";
@@ -305,9 +308,9 @@ TEST(ControlLoopStories, StopsAtTheEndAndHoldsOrReturnsAsConfigured) {
     start(bench, test);
     test.run(397);  // at 0.08 m/s
     const double stopped_m = bench.command_m();
-    bench.ask(LoopRequest::Kind::stop);
+    bench.ask(loop_request::Stop{});
     const std::size_t from = bench.rig.commands.size();
-    while (test.count(LoopReport::Kind::at_rest) == 0) test.run(1);
+    while (test.count<loop_report::AtRest>() == 0) test.run(1);
     // Down from 0.08 m/s in 20 ms, and the return's own acceleration: 0.004 + 0.003 at most.
     EXPECT_LT(largest_velocity_change(bench, from, bench.rig.commands.size()), 0.007);
     if (returns) {

@@ -28,11 +28,11 @@ TEST(ControlLoop, HoldsZeroBetweenArmingAndStart) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   EXPECT_EQ(bench.advance(), kNever);
   EXPECT_TRUE(bench.rig.commands.empty());
-  bench.ask(LoopRequest::Kind::arm);
+  bench.ask(loop_request::Arm{});
   for (int i = 0; i < 10; ++i) bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_EQ(reports.front().kind, LoopReport::Kind::armed);
+  EXPECT_TRUE(std::holds_alternative<loop_report::Armed>(reports.front()));
   EXPECT_TRUE(bench.rig.is_armed);
   ASSERT_EQ(bench.rig.commands.size(), 10U);
   for (const ActuatorCommand& command : bench.rig.commands) EXPECT_EQ(command.displacement_m[0], 0.0);
@@ -41,14 +41,13 @@ TEST(ControlLoop, HoldsZeroBetweenArmingAndStart) {
 TEST(ControlLoop, ReportsRigThatCannotArmWithoutMotion) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.rig.on_arm = [] { throw std::runtime_error{"no pressure"}; };
-  bench.ask(LoopRequest::Kind::arm);
-  bench.ask(LoopRequest::Kind::start);
+  bench.ask(loop_request::Arm{});
+  bench.ask(loop_request::Start{});
   bench.target(0, 0.01);
   for (int i = 0; i < 10; ++i) bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_EQ(reports.front().kind, LoopReport::Kind::arm_failed);
-  EXPECT_EQ(reports.front().fault, FaultFlags::rig_fault);
+  EXPECT_TRUE(std::holds_alternative<loop_report::ArmFailed>(reports.front()));
   EXPECT_TRUE(bench.rig.commands.empty());
 }
 
@@ -63,7 +62,7 @@ TEST(ControlLoop, MeasuresExactlyAtTargetWithIdealRig) {
     bench.advance();
     const auto reports = bench.take_reports();
     ASSERT_EQ(reports.size(), 1U);
-    const StepMeasurement& measured = reports.front().measurement;
+    const StepMeasurement& measured = std::get<StepMeasurement>(reports.front());
     EXPECT_EQ(measured.step, step);
     EXPECT_EQ(measured.model_time_s, static_cast<double>(step) * kStep_s);
     // The last control period falls on the target: the cubic there is the target, summed of four
@@ -90,7 +89,7 @@ TEST(ControlLoop, InterpolatesMeasurementAtLateTarget) {
     reports = bench.take_reports();
   }
   ASSERT_EQ(reports.size(), 1U);
-  const StepMeasurement& measured = reports.front().measurement;
+  const StepMeasurement& measured = std::get<StepMeasurement>(reports.front());
   constexpr auto kLate = MeasurementFlags::late | MeasurementFlags::extrapolated | MeasurementFlags::held;
   EXPECT_EQ(measured.flags, kLate);
   // Straight interpolation misses a path of curvature k by at most k h^2/8. The path from where
@@ -134,7 +133,7 @@ TEST_P(EveryLimit, TripsInTheControlPeriodThatExceedsIt) {
   while (exchanges < 14) {
     bench.advance();
     for (const LoopReport& report : bench.take_reports()) {
-      ASSERT_EQ(report.kind, LoopReport::Kind::measurement);
+      ASSERT_TRUE(std::holds_alternative<StepMeasurement>(report));
       next_target();
     }
   }
@@ -186,7 +185,7 @@ TEST(ControlLoop, TargetBeyondLimitTripsAndCommandStaysInside) {
   Bench too_far{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   too_far.start();
   too_far.target(1, 0.2);
-  std::optional<LoopReport> fault;
+  std::optional<loop_report::Fault> fault;
   for (int i = 0; i < kPeriodsPerStep && !fault; ++i) {
     too_far.advance();
     fault = too_far.take_fault();
@@ -225,11 +224,11 @@ TEST(ControlLoop, HoldsAfterNonFiniteValuesAlsoWhenStopped) {
   const double held_m = bench.command_m();
   EXPECT_GT(held_m, 0.0);
   bench.take_reports();
-  bench.ask(LoopRequest::Kind::stop);
+  bench.ask(loop_request::Stop{});
   bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_EQ(reports.front().kind, LoopReport::Kind::at_rest);
+  EXPECT_TRUE(std::holds_alternative<loop_report::AtRest>(reports.front()));
   EXPECT_EQ(bench.rig.stops, 1);
   for (int i = 0; i < 10; ++i) bench.advance();
   EXPECT_EQ(bench.command_m(), held_m);
@@ -251,7 +250,7 @@ TEST(ControlLoop, ReturnsToZeroAtMostAtHalfVelocityLimit) {
   const double begin_m = bench.command_m();
   ASSERT_NEAR(begin_m, 0.08, 1e-12);
   const std::size_t before = bench.rig.commands.size();
-  bench.ask(LoopRequest::Kind::stop);
+  bench.ask(loop_request::Stop{});
   while (bench.take_reports().empty()) bench.advance();
   // The last sample before still moved: it comes to a stand first, over 20 ms, half of that
   // velocity further on.
@@ -279,11 +278,11 @@ TEST(ControlLoop, ReturnFromZeroSendsZeros) {
   settings.return_time_s = 0.0;
   Bench bench{settings, ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
-  bench.ask(LoopRequest::Kind::stop);
+  bench.ask(loop_request::Stop{});
   bench.advance();
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 1U);
-  EXPECT_EQ(reports.front().kind, LoopReport::Kind::at_rest);
+  EXPECT_TRUE(std::holds_alternative<loop_report::AtRest>(reports.front()));
   for (const ActuatorCommand& command : bench.rig.commands) EXPECT_EQ(command.displacement_m[0], 0.0);
 }
 
@@ -293,15 +292,15 @@ TEST(ControlLoop, EmergencyStopEndsMotionAtOnce) {
   bench.target(1, 0.001, 0.2);
   bench.advance();
   const std::size_t exchanges = bench.rig.commands.size();
-  bench.ask(LoopRequest::Kind::emergency_stop);
+  bench.ask(loop_request::EmergencyStop{});
   EXPECT_EQ(bench.advance(), kNever);
   EXPECT_GE(bench.rig.stops, 1);
   for (int i = 0; i < 10; ++i) bench.advance();
   EXPECT_EQ(bench.rig.commands.size(), exchanges);
   const auto reports = bench.take_reports();
   ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(reports.front().fault, FaultFlags::emergency_stop);
-  EXPECT_EQ(reports.back().kind, LoopReport::Kind::at_rest);
+  EXPECT_EQ(std::get<loop_report::Fault>(reports.front()).fault, FaultFlags::emergency_stop);
+  EXPECT_TRUE(std::holds_alternative<loop_report::AtRest>(reports.back()));
 }
 
 TEST(ControlLoop, HoldsWhenNextTargetIsOverdue) {
@@ -309,7 +308,7 @@ TEST(ControlLoop, HoldsWhenNextTargetIsOverdue) {
   bench.start();
   bench.target(1, 0.0004, 0.1);
   const Instant given = bench.now;
-  std::optional<LoopReport> fault;
+  std::optional<loop_report::Fault> fault;
   while (!fault) {
     bench.advance();
     ASSERT_LT(bench.now, given + std::chrono::seconds{1});
@@ -340,10 +339,10 @@ TEST(ControlLoop, CommandAgeCountsFromResumption) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
   bench.start();
   bench.target(1, 0.0004, 0.1);
-  bench.ask(LoopRequest::Kind::pause);
+  bench.ask(loop_request::Pause{});
   for (int i = 0; i < 1000; ++i) bench.advance();
   EXPECT_FALSE(bench.take_fault().has_value());
-  bench.ask(LoopRequest::Kind::resume);
+  bench.ask(loop_request::Resume{});
   for (int i = 0; i < 100; ++i) bench.advance();
   EXPECT_FALSE(bench.take_fault().has_value());
   bench.advance();
@@ -353,7 +352,7 @@ TEST(ControlLoop, CommandAgeCountsFromResumption) {
 
 TEST(ControlLoop, CatchesUpMissedControlPeriods) {
   Bench bench{Bench::settings(CouplingMode::paced), ideal_spring_rig(kStiffness_n_per_m)};
-  bench.ask(LoopRequest::Kind::arm);
+  bench.ask(loop_request::Arm{});
   bench.advance();
   bench.now += 19 * kPeriod;
   bench.advance();

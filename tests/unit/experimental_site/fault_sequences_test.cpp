@@ -38,8 +38,8 @@ class FaultSequence {
                random_.uniform() < 0.5} {}
 
   void run() {
-    bench_.ask(LoopRequest::Kind::arm);
-    bench_.ask(LoopRequest::Kind::start);
+    bench_.ask(loop_request::Arm{});
+    bench_.ask(loop_request::Start{});
     bench_.target(0, 0.0);
     for (int i = 0; i < 400 && wrongs_.empty(); ++i) {
       if (random_.uniform() < 0.05) bench_.now += static_cast<int>(random_.below(10)) * LoopBench::kPeriod;
@@ -179,35 +179,36 @@ class FaultSequence {
       const double acceleration = random_.uniform() < 0.01 ? 1.0e5 : random_.uniform(-5.0, 5.0);
       bench_.target(++step_, random_.uniform() < 0.005 ? kNan : displacement_m_, velocity, acceleration);
     }
-    if (draw > 0.990) bench_.ask(LoopRequest::Kind::pause);
-    if (draw > 0.980 && draw < 0.990) bench_.ask(LoopRequest::Kind::resume);
-    if (draw > 0.978 && draw < 0.980) stop(LoopRequest::Kind::stop);
-    if (draw > 0.977 && draw < 0.978) stop(LoopRequest::Kind::emergency_stop);
+    if (draw > 0.990) bench_.ask(loop_request::Pause{});
+    if (draw > 0.980 && draw < 0.990) bench_.ask(loop_request::Resume{});
+    if (draw > 0.978 && draw < 0.980) stop(loop_request::Stop{});
+    if (draw > 0.977 && draw < 0.978) stop(loop_request::EmergencyStop{});
   }
 
-  void stop(LoopRequest::Kind kind) {
+  void stop(const LoopRequest& request) {
     was_stopped_ = true;
-    if (kind == LoopRequest::Kind::emergency_stop) required_ = SafetyAction::release;
-    bench_.ask(kind);
+    if (std::holds_alternative<loop_request::EmergencyStop>(request)) required_ = SafetyAction::release;
+    bench_.ask(request);
   }
 
   void heed_reports() {
     const bool returns_instead = std::exchange(returns_instead_, false);
     for (const LoopReport& report : bench_.take_reports()) {
-      if (report.kind == LoopReport::Kind::fault) {
+      if (const auto* fault = std::get_if<loop_report::Fault>(&report)) {
         // Also those that the rig does not see, such as a target beyond the limits.
         for (std::size_t i = 0; i < kInterlockCount; ++i) {
-          if (fault_of(static_cast<InterlockKind>(i)) != report.fault) continue;
+          if (fault_of(static_cast<InterlockKind>(i)) != fault->fault) continue;
           if (settings_.rules[i].action > SafetyAction::warn) {
             required_ = std::max(required_, settings_.rules[i].action);
           }
         }
       }
-      if (report.kind == LoopReport::Kind::cleared) has_cleared_ = true;
-      if (report.kind == LoopReport::Kind::at_rest && !was_stopped_) wrong("at rest unasked");
-      if (report.kind != LoopReport::Kind::measurement) continue;
-      if (report.measurement.step != ++answered_) wrong("a step was answered twice or never");
-      if (!report.measurement.force_n.allFinite()) wrong("a force that is no number was sent");
+      if (std::holds_alternative<loop_report::Cleared>(report)) has_cleared_ = true;
+      if (std::holds_alternative<loop_report::AtRest>(report) && !was_stopped_) wrong("at rest unasked");
+      const auto* measured = std::get_if<StepMeasurement>(&report);
+      if (measured == nullptr) continue;
+      if (measured->step != ++answered_) wrong("a step was answered twice or never");
+      if (!measured->force_n.allFinite()) wrong("a force that is no number was sent");
       wants_target_ = true;
     }
     if (moves_instead_ || (returns_instead && required_ < SafetyAction::ramp_to_zero)) wrong("it did not hold");

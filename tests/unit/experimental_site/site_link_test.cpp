@@ -45,30 +45,23 @@ class SiteLinkTest : public testing::Test {
     coordinator_is(LifecycleState::running);
     advance();
   }
-  void loop_says(LoopReport::Kind kind, FaultFlags fault = FaultFlags::none) {
-    LoopReport report;
-    report.kind = kind;
-    report.fault = fault;
-    report.observed = 2.0;
-    report.limit = 1.0;
-    reports_.send(report);
-  }
+  void loop_says(const LoopReport& report) { reports_.send(report); }
   void loop_measured(Step step, double force_n, MeasurementFlags flags = MeasurementFlags::none) {
-    LoopReport report;
-    report.measurement.step = step;
-    report.measurement.model_time_s = 0.01 * static_cast<double>(step);
-    report.measurement.target_displacement_m = InterfaceVector::Constant(1, 1.0 * static_cast<double>(step));
-    report.measurement.imposed_displacement_m = InterfaceVector::Constant(1, 1.1 * static_cast<double>(step));
-    report.measurement.measured_displacement_m = InterfaceVector::Constant(1, 1.2 * static_cast<double>(step));
-    report.measurement.force_n = InterfaceVector::Constant(1, force_n);
-    report.measurement.flags = flags;
-    reports_.send(report);
+    StepMeasurement measurement;
+    measurement.step = step;
+    measurement.model_time_s = 0.01 * static_cast<double>(step);
+    measurement.target_displacement_m = InterfaceVector::Constant(1, 1.0 * static_cast<double>(step));
+    measurement.imposed_displacement_m = InterfaceVector::Constant(1, 1.1 * static_cast<double>(step));
+    measurement.measured_displacement_m = InterfaceVector::Constant(1, 1.2 * static_cast<double>(step));
+    measurement.force_n = InterfaceVector::Constant(1, force_n);
+    measurement.flags = flags;
+    reports_.send(measurement);
   }
   void start() {
     join();
     control(ControlVerb::arm);
     advance();
-    loop_says(LoopReport::Kind::armed);
+    loop_says(loop_report::Armed{});
     advance();
     control(ControlVerb::start);
     advance();
@@ -93,9 +86,9 @@ class SiteLinkTest : public testing::Test {
   std::vector<Step> take_targets() {
     std::vector<Step> steps;
     for (const LoopRequest& request : take_requests()) {
-      EXPECT_EQ(request.kind, LoopRequest::Kind::target);
-      EXPECT_EQ(request.target.displacement_m[0], static_cast<double>(request.target.step));
-      steps.push_back(request.target.step);
+      const CommandPoint& point = std::get<loop_request::Target>(request).point;
+      EXPECT_EQ(point.displacement_m[0], static_cast<double>(point.step));
+      steps.push_back(point.step);
     }
     return steps;
   }
@@ -139,9 +132,9 @@ TEST_F(SiteLinkTest, IsArmedWhenItsLoopIsArmed) {
   advance();
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 1U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::arm);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Arm>(requests[0]));
   EXPECT_EQ(presence_.state(), LifecycleState::ready);
-  loop_says(LoopReport::Kind::armed);
+  loop_says(loop_report::Armed{});
   advance();
   EXPECT_EQ(presence_.state(), LifecycleState::armed);
 }
@@ -151,7 +144,7 @@ TEST_F(SiteLinkTest, LoopThatCannotArmIsAFault) {
   control(ControlVerb::arm);
   advance();
   take_events();
-  loop_says(LoopReport::Kind::arm_failed, FaultFlags::rig_fault);
+  loop_says(loop_report::ArmFailed{});
   advance();
   EXPECT_EQ(presence_.state(), LifecycleState::ready);
   EXPECT_EQ(presence_.faults(), FaultFlags::rig_fault);
@@ -182,15 +175,15 @@ TEST_F(SiteLinkTest, CommandBeforeStartStartsTheLoop) {
   join();
   control(ControlVerb::arm);
   advance();
-  loop_says(LoopReport::Kind::armed);
+  loop_says(loop_report::Armed{});
   advance();
   take_requests();
   commands_.send(command(0));
   advance();
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 2U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::start);
-  EXPECT_EQ(requests[1].kind, LoopRequest::Kind::target);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Start>(requests[0]));
+  EXPECT_TRUE(std::holds_alternative<loop_request::Target>(requests[1]));
   EXPECT_EQ(presence_.state(), LifecycleState::running);
 }
 
@@ -256,8 +249,8 @@ TEST_F(SiteLinkTest, AnswersRepeatedCommandFromMemory) {
 TEST_F(SiteLinkTest, ReportsFaultOfTheLoop) {
   start();
   take_events();
-  loop_says(LoopReport::Kind::fault, FaultFlags::force_limit);
-  loop_says(LoopReport::Kind::fault, FaultFlags::command_age);
+  loop_says(loop_report::Fault{FaultFlags::force_limit, 2.0, 1.0});
+  loop_says(loop_report::Fault{FaultFlags::command_age, 2.0, 1.0});
   advance();
   EXPECT_EQ(presence_.faults(), FaultFlags::force_limit | FaultFlags::command_age);
   const auto events = take_events();
@@ -275,12 +268,12 @@ TEST_F(SiteLinkTest, IsFinishedWhenTheRigIsAtRest) {
   advance();
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 1U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Stop>(requests[0]));
   EXPECT_EQ(presence_.state(), LifecycleState::stopping);
   control(ControlVerb::stop, StopReason::completed);
   advance();
   EXPECT_TRUE(take_requests().empty()) << "a repeated stop is the same stop";
-  loop_says(LoopReport::Kind::at_rest);
+  loop_says(loop_report::AtRest{});
   EXPECT_EQ(advance(), kNever);
   EXPECT_TRUE(link_.is_done());
   EXPECT_EQ(link_.stop_reason(), StopReason::completed);
@@ -306,7 +299,7 @@ TEST_F(SiteLinkTest, StopsWhenTheCoordinatorIsLost) {
   advance(milliseconds{1});
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 1U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Stop>(requests[0]));
   EXPECT_EQ(link_.stop_reason(), StopReason::coordinator_lost);
 }
 
@@ -316,7 +309,7 @@ TEST_F(SiteLinkTest, StopsOnRequest) {
   advance();
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 1U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::stop);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Stop>(requests[0]));
   EXPECT_EQ(link_.stop_reason(), StopReason::interrupted);
 }
 
@@ -326,7 +319,7 @@ TEST_F(SiteLinkTest, PassesEmergencyStopToLoopFirst) {
   advance();
   const auto requests = take_requests();
   ASSERT_GE(requests.size(), 1U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::emergency_stop);
+  EXPECT_TRUE(std::holds_alternative<loop_request::EmergencyStop>(requests[0]));
   EXPECT_EQ(link_.stop_reason(), StopReason::interlock);
   EXPECT_EQ(presence_.faults(), FaultFlags::emergency_stop);
 }
@@ -338,8 +331,8 @@ TEST_F(SiteLinkTest, PassesPauseAndResume) {
   advance();
   const auto requests = take_requests();
   ASSERT_EQ(requests.size(), 2U);
-  EXPECT_EQ(requests[0].kind, LoopRequest::Kind::pause);
-  EXPECT_EQ(requests[1].kind, LoopRequest::Kind::resume);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Pause>(requests[0]));
+  EXPECT_TRUE(std::holds_alternative<loop_request::Resume>(requests[1]));
 }
 
 TEST_F(SiteLinkTest, BatchesSignalsForLiveViews) {
