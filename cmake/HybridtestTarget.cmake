@@ -71,7 +71,8 @@ endfunction()
 # hybridtest_library(<name> [EXPORT <set>] [SOURCES <files>…] [PUBLIC <targets>…] [PRIVATE <targets>…])
 #
 # A static library of this folder: the SOURCES or, without them, all .cpp files below it but main.cpp. Targets whose
-# headers its own headers include are PUBLIC. With EXPORT it is installed with its headers as hybridtest::<name>.
+# headers its own headers include are PUBLIC. With EXPORT it is installed with its headers as hybridtest::<name>; a
+# subfolder with a CMakeLists.txt is another target, and its headers are not installed with this one.
 function(hybridtest_library name)
   cmake_parse_arguments(ARG "" "EXPORT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target hybridtest_${name})
@@ -85,26 +86,36 @@ function(hybridtest_library name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   hybridtest_compile(${target} hybridtest_precompiled)
   if(ARG_EXPORT)
-    set(headers ${ARG_SOURCES})
-    list(TRANSFORM headers REPLACE "\\.cpp$" ".hpp")
-    file(GLOB_RECURSE all_headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
-    target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${all_headers})
+    file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+    file(GLOB other_targets RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*/CMakeLists.txt)
+    foreach(other ${other_targets})
+      cmake_path(GET other PARENT_PATH folder)
+      list(FILTER headers EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+    endforeach()
+    target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-    install(TARGETS ${target} EXPORT ${ARG_EXPORT}
-      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
-      FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hybridtest COMPONENT development)
+    set_property(GLOBAL APPEND PROPERTY hybridtest_public_headers ${headers})
+    set_property(GLOBAL APPEND PROPERTY hybridtest_exported_targets ${target})
+    if(HYBRIDTEST_INSTALL)
+      install(TARGETS ${target} EXPORT ${ARG_EXPORT}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hybridtest COMPONENT development)
+    endif()
   else()
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   endif()
 endfunction()
 
-# hybridtest_program(<name> SOURCES <files>… LINK <targets>…): in bin/ of the build folder.
+# hybridtest_program(<name> [INSTALL] SOURCES <files>… LINK <targets>…): in bin/ of the build folder.
 function(hybridtest_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_compile_features(${name} PRIVATE cxx_std_20)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   hybridtest_compile(${name} hybridtest_precompiled)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  if(ARG_INSTALL AND HYBRIDTEST_INSTALL)
+    install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+  endif()
 endfunction()

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       "Distributed hybrid tests: structures stepped through an earthquake, part of them computed, part of\n"
       "them a specimen in a laboratory or its simulation.",
       "hybridtest"};
-  app.set_version_flag("--version", std::string{hybridtest::kVersion});
+  app.set_version_flag("--version", "hybridtest " + std::string{hybridtest::software_version()});
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 completed, 2 configuration or participant missing, 3 ended early (interlock, participant\n"

@@ -29,8 +29,14 @@ struct RthsOptions : StudyOptions {
   std::filesystem::path ground_motions;
 };
 
+/// Beside the folder of this program, in the build folder as where it is installed.
+std::filesystem::path shipped_scenarios() {
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  return program.parent_path().parent_path() / "share/hybridtest/scenarios";
+}
+
 struct FoundingOptions : StudyOptions {
-  std::filesystem::path scenarios = std::filesystem::path{HYBRIDTEST_SCENARIOS} / "founding_study";
+  std::filesystem::path scenarios = shipped_scenarios() / "founding_study";
 };
 
 void say_where(const std::filesystem::path& directory, std::string_view files) {

@@ -20,6 +20,7 @@
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/run_directory.hpp"
+#include "runtime/version.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
 namespace hybridtest {
@@ -237,6 +238,7 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
 
 int participant_main(int argc, char** argv, Role role) {
   CLI::App app{"One participant of a hybrid test: " + std::string{name(role)}, std::string{name(role)}};
+  app.set_version_flag("--version", app.get_name() + " " + std::string{software_version()});
   ParticipantProcessOptions options;
   NetworkOptions network;
   app.add_option("--scenario", options.scenario_file, "The test's scenario file, the same for every participant")

@@ -71,7 +71,7 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
   header.scenario_digest = scenario.digest;
   header.incarnation = incarnation;
   header.start_time_utc = utc_text("%Y-%m-%dT%H:%M:%SZ");
-  header.software_version = kVersion;
+  header.software_version = software_version();
   header.structure_dofs = scenario.dofs;
   for (const SubstructureScenario& substructure : scenario.substructures) {
     header.substructure_ids.push_back(substructure.id);

@@ -23,10 +23,9 @@ add_executable(simulate_digest_unoptimised system/simulate_digest/main.cpp ${par
 target_compile_features(simulate_digest_unoptimised PRIVATE cxx_std_20)
 target_include_directories(simulate_digest_unoptimised PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(simulate_digest_unoptimised PRIVATE Eigen3::Eigen yaml-cpp HDF5::HDF5 nlohmann_json::nlohmann_json
-  OpenSSL::Crypto Threads::Threads)
+  OpenSSL::Crypto Threads::Threads hybridtest_version)
 # After the build type's own flags, so these win.
 target_compile_options(simulate_digest_unoptimised PRIVATE -O0 -UNDEBUG -g0)
-target_compile_definitions(simulate_digest_unoptimised PRIVATE HYBRIDTEST_VERSION="${PROJECT_VERSION}")
 set_target_properties(simulate_digest_unoptimised PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
   UNITY_BUILD ${HYBRIDTEST_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 16 UNITY_BUILD_UNIQUE_ID hybridtest_unity_id)
