@@ -11,8 +11,8 @@ namespace hybridtest {
 [[nodiscard]] std::string shown(std::string_view text);
 /// `a, b, c`; the first 20 of a longer list.
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
-/// `; did you mean 'type'? <Label>: a, b, c`, without the question where no known name is near.
-/// @param label   in lower case, such as "known here".
+/// `; did you mean 'type'? Known here: a, b, c`, without the question where no known name is near.
+/// @param label   of the list, in lower case: "known here".
 [[nodiscard]] std::string name_advice(std::string_view name, const std::vector<std::string>& known,
                                       std::string_view label);
 

@@ -31,7 +31,7 @@ class Effect {
   virtual void before(const StageSample& /*sample*/, Motion& /*motion*/) noexcept {}
   /// Changes what comes out: displacement [m] of a transfer system or displacement sensor, force
   /// [N], positive when it resists a positive displacement, of a specimen or force sensor.
-  /// @param motion   as the base was given it.
+  /// The motion is the one that the base was given.
   virtual void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& /*output*/) noexcept {}
   /// As new.
   virtual void reset() noexcept = 0;
