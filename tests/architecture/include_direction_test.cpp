@@ -12,8 +12,9 @@ using testing::IsEmpty;
 
 TEST(IncludeDirection, TreeFollowsTheTableOfParts) {
   const std::vector<SourceFile> files = read_sources(HYBRIDTEST_SOURCE_DIR);
-  for (const char* folder : {"core/", "mechanics/", "compensation/", "coordinator/", "numerical_substructure/",
-                             "experimental_site/", "transport/", "recording/", "launch/", "tests/"}) {
+  for (const char* folder :
+       {"core/", "mechanics/", "compensation/", "coordinator/", "numerical_substructure/", "experimental_site/",
+        "transport/", "recording/", "diagnosis/runs/", "launch/", "tests/"}) {
     EXPECT_TRUE(std::ranges::any_of(files, [&](const SourceFile& file) { return file.path.starts_with(folder); }))
         << folder << " was not read";
   }
@@ -54,6 +55,31 @@ INSTANTIATE_TEST_SUITE_P(
         ForbiddenLine{"common/words.hpp", "", "common/words.hpp: a folder that the table of parts does not have"}));
 
 INSTANTIATE_TEST_SUITE_P(
+    Subfolders, Forbidden,
+    testing::Values(
+        ForbiddenLine{"diagnosis/verdict/verdict.cpp", "#include \"diagnosis/runs/diagnose_run.hpp\"",
+                      "diagnosis/verdict/verdict.cpp includes diagnosis/runs/diagnose_run.hpp: no arrow from diagnosis "
+                      "to it"},
+        ForbiddenLine{"diagnosis/diagnose.cpp", "#include \"runtime/simulation.hpp\"",
+                      "diagnosis/diagnose.cpp includes runtime/simulation.hpp: no arrow from diagnosis to it"},
+        ForbiddenLine{"experimental_site/rigs/udp_rig.cpp", "#include \"plant/specimens/specimen.hpp\"",
+                      "experimental_site/rigs/udp_rig.cpp includes plant/specimens/specimen.hpp: no arrow from "
+                      "experimental_site to it"},
+        ForbiddenLine{"experimental_site/control_loop.hpp", "#include \"experimental_site/rigs/simulated_rig.hpp\"",
+                      "experimental_site/control_loop.hpp includes experimental_site/rigs/simulated_rig.hpp: no arrow "
+                      "from experimental_site to it"},
+        ForbiddenLine{"validation/blind_batches/plant/plant.cpp", "#include \"core/random.hpp\"",
+                      "validation/blind_batches/plant/plant.cpp includes core/random.hpp: no arrow from "
+                      "validation/blind_batches/plant to it"},
+        ForbiddenLine{"validation/blind_batches/plant/plant.cpp",
+                      "#include \"validation/blind_batches/make_batch.hpp\"",
+                      "validation/blind_batches/plant/plant.cpp includes validation/blind_batches/make_batch.hpp: no "
+                      "arrow from validation/blind_batches/plant to it"},
+        ForbiddenLine{
+            "report/plotting/page.cpp", "#include \"diagnosis/diagnose.hpp\"",
+            "report/plotting/page.cpp includes diagnosis/diagnose.hpp: no arrow from report/plotting to it"}));
+
+INSTANTIATE_TEST_SUITE_P(
     Libraries, Forbidden,
     testing::Values(
         ForbiddenLine{"runtime/participant.cpp", "#include <fastdds/dds/topic/Topic.hpp>",
@@ -65,6 +91,12 @@ INSTANTIATE_TEST_SUITE_P(
         ForbiddenLine{"scenario/scenario.cpp", "#include <yaml-cpp/yaml.h>",
                       "scenario/scenario.cpp includes yaml-cpp/yaml.h: a header of yaml-cpp, which has no "
                       "business here"},
+        ForbiddenLine{"diagnosis/verdict/verdict.cpp", "#include <ceres/ceres.h>",
+                      "diagnosis/verdict/verdict.cpp includes ceres/ceres.h: a header of Ceres, which has no business "
+                      "here"},
+        ForbiddenLine{"runtime/executor.cpp", "#include <boost/asio.hpp>",
+                      "runtime/executor.cpp includes boost/asio.hpp: a header of a library that the table of libraries "
+                      "does not have"},
         ForbiddenLine{"core/faults.cpp", "#  include <spdlog/spdlog.h>",
                       "core/faults.cpp includes spdlog/spdlog.h: a header of spdlog, which has no business "
                       "here"}));
@@ -91,6 +123,10 @@ TEST(IncludeDirection, AllowedIncludesAreNotReported) {
   EXPECT_THAT(violations({
                   {"coordinator/main.cpp", "#include \"runtime/participant_process.hpp\"\n"},
                   {"experimental_site/rigs/simulated_rig.cpp", "#include \"mechanics/laws/law.hpp\"\n"},
+                  {"diagnosis/runs/diagnose_run.cpp", "#include \"runtime/simulation.hpp\"\n"},
+                  {"diagnosis/identification/fit_effects.cpp", "#include <ceres/ceres.h>\n"},
+                  {"experimental_site/rigs/simulated_rig.cpp", "#include \"plant/site_model.hpp\"\n"},
+                  {"runtime/executor.cpp", "#include <sys/mman.h>\n#include <vector>\n"},
                   {"transport/fast_dds/ports.cpp", "#include <fastdds/dds/topic/Topic.hpp>\n"},
                   {"core/config/yaml_reader.cpp", "#include <yaml-cpp/parser.h>\n"},
                   {"runtime/executor.cpp", "std::this_thread::sleep_until(t);\n"},

@@ -1,7 +1,6 @@
 #include "tests/architecture/source_tree.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -10,12 +9,6 @@
 
 namespace hybridtest::architecture {
 namespace {
-
-bool is_left_out(const std::filesystem::path& directory) {
-  constexpr std::array<std::string_view, 2> kLeftOut{"build", "runs"};
-  const std::string name = directory.filename().string();
-  return name.starts_with('.') || std::ranges::find(kLeftOut, name) != kLeftOut.end();
-}
 
 /// Where the comment or literal that begins at `begin` ends; `begin` itself when none does.
 std::size_t end_of_blank(std::string_view text, std::size_t begin) {
@@ -41,11 +34,16 @@ std::size_t end_of_blank(std::string_view text, std::size_t begin) {
 
 }  // namespace
 
+bool is_output(const std::filesystem::path& directory, int depth) {
+  const std::string name = directory.filename().string();
+  return name.starts_with('.') || name == "__pycache__" || (depth == 0 && (name == "build" || name == "runs"));
+}
+
 std::vector<SourceFile> read_sources(const std::filesystem::path& root) {
   std::vector<SourceFile> files;
   for (auto entry = std::filesystem::recursive_directory_iterator{root};
        entry != std::filesystem::recursive_directory_iterator{}; ++entry) {
-    if (entry->is_directory() && is_left_out(entry->path())) entry.disable_recursion_pending();
+    if (entry->is_directory() && is_output(entry->path(), entry.depth())) entry.disable_recursion_pending();
     const std::filesystem::path extension = entry->path().extension();
     if (!entry->is_regular_file() || (extension != ".hpp" && extension != ".cpp")) continue;
     std::ifstream stream{entry->path()};

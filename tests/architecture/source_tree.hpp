@@ -13,6 +13,9 @@ struct SourceFile {
   std::string text;
 };
 
+/// What is built or recorded in the tree, and hidden folders. @param depth   0 for a folder of the root.
+[[nodiscard]] bool is_output(const std::filesystem::path& directory, int depth);
+
 /// Every .hpp and .cpp below the folders of the root; not what is built or recorded there.
 [[nodiscard]] std::vector<SourceFile> read_sources(const std::filesystem::path& root);
 
