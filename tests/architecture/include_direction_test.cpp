@@ -21,7 +21,7 @@ TEST(IncludeDirection, TreeFollowsTheTableOfParts) {
   EXPECT_THAT(violations(files), IsEmpty());
 }
 
-// Controls: each rule finds what it is there for.
+// Controls: each rule reports a violation.
 
 struct ForbiddenLine {
   const char* path;

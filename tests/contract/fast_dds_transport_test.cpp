@@ -1,5 +1,5 @@
-// What the Fast DDS transport does beyond the common contract: processes that die, stall or send
-// what is no message; settings.
+// What the Fast DDS transport does beyond the common contract: processes that are killed, stall or send invalid
+// messages; settings.
 
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
@@ -61,7 +61,7 @@ class PeerProcess {
   });
 }
 
-// The lease bounds the silence; what the operating system adds under load is given as much again.
+// The lease limits the silence; the operating system may add as much again under load.
 constexpr Duration kLossTime = 2 * kTestLease;
 
 TEST(FastDdsTransport, ReportsKilledProcessLostWithinLease) {
@@ -124,7 +124,7 @@ TEST(FastDdsTransport, SilentParticipantIsNotLostBeforeMotionIsPossible) {
   EXPECT_FALSE(slow_lost);
 }
 
-/// Writes bytes of its own choosing under the name of a true type.
+/// Writes any bytes under the name of a valid type.
 class ForgedType final : public fast_dds::dds::TopicDataType {
  public:
   explicit ForgedType(std::vector<std::uint8_t> bytes) : bytes_{std::move(bytes)} {

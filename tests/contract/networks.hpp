@@ -59,7 +59,7 @@ struct FastDdsSharedMemoryNetwork {
 };
 
 /// Waits until `condition()` holds, looking again whenever the participant is signalled.
-/// @return false after a time so long that only a fault explains it.
+/// @return false after a long time, which only a fault explains.
 template <class Condition>
 [[nodiscard]] bool eventually(Transport& participant, Condition condition) {
   using Clock = std::chrono::steady_clock;

@@ -1,4 +1,4 @@
-// What every Transport promises (transport/transport.hpp), asked of each of them.
+// The contract of every Transport (transport/transport.hpp), tested on each of them.
 
 #include <gtest/gtest.h>
 
@@ -305,7 +305,7 @@ TYPED_TEST(TransportContract, ReportsSilentLeaverLostOnce) {
   expected.state = LifecycleState::lost;
   EXPECT_EQ(lost.front(), expected);
 
-  // Someone else comes and goes; in between nobody is reported a second time, and not the polite.
+  // Another participant joins and leaves; meanwhile no loss is reported twice, and no regular leaver is reported.
   auto last = this->join();
   auto last_status = last->status_outbox();
   ASSERT_TRUE(passes(*observer, *last_status, *statuses, sample_status("last"), received));
@@ -325,7 +325,7 @@ TYPED_TEST(TransportContract, FullInboxRejectsCountsAndRecovers) {
   ASSERT_TRUE(test.ready);
   constexpr std::size_t kCapacity = kInboxCapacity<DisplacementCommand>;
   Step step = 0;
-  // Returns from every send although nobody takes: sending never waits for a receiver.
+  // Every send returns although no receiver reads: sending never waits.
   ASSERT_TRUE(eventually(*test.site, [&] {
     test.commands->send(sample_command(0, step++));
     return test.site->counters().overflowed > 0;

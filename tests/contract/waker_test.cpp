@@ -35,7 +35,7 @@ TEST(Waker, SignalFromAnotherThreadEndsWait) {
   other.join();
 }
 
-// A lost signal would leave both threads waiting for ever.
+// A lost signal would make both threads wait for ever.
 TEST(Waker, LosesNoSignalBetweenTwoThreads) {
   constexpr int kRounds = 20000;
   Waker ping;

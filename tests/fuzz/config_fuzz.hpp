@@ -5,7 +5,7 @@
 
 namespace hybridtest {
 
-/// What became of one input.
+/// Result of one input.
 enum class ConfigFuzzOutcome {
   refused,      // not a configuration at all
   with_errors,  // read to the end, errors listed

@@ -105,7 +105,7 @@ TEST(ConfigFuzzReplay, SurvivesMutationsOfTheCorpus) {
   constexpr std::uint64_t kSeed = 1;
   constexpr std::uint64_t kMutations = 2000;
   std::vector<std::string> texts;
-  // Most changes to a good configuration spoil it, so the good ones are drawn more often.
+  // Most changes make a valid configuration invalid, so valid ones are drawn more often.
   for (const auto& [name, text] : corpus()) texts.insert(texts.end(), name.starts_with("accepted_") ? 8 : 1, text);
   std::map<ConfigFuzzOutcome, int> outcomes;
   std::string text;

@@ -7,9 +7,8 @@
 #include "tests/realtime/forbidden_calls.hpp"
 #include "tests/realtime/ring_coupling.hpp"
 
-/// What has a deadline allocates, locks, logs and reads clocks nowhere, from its first to its last
-/// run: joining, arming, stepping, faults and the return to zero included. That the guards see
-/// what they are for is shown beside them, in forbidden_calls_test.cpp.
+/// The nodes with deadlines do not allocate, lock, log or read a clock from their first to their last run: joining,
+/// arming, stepping, faults and the return to zero included. forbidden_calls_test.cpp holds the controls of the guards.
 namespace hybridtest {
 namespace {
 
@@ -22,7 +21,7 @@ std::string text(const ForbiddenCalls& calls) {
          std::to_string(calls.writes) + " writes, " + std::to_string(calls.clocks) + " looks at a clock";
 }
 
-/// A control loop on its own, told what to do by the test.
+/// A control loop alone, driven by the test.
 class LoopOnRings {
  public:
   LoopOnRings(CouplingMode mode, bool compensates)
@@ -128,7 +127,7 @@ TEST_P(ControlPath, ControlLoopMakesNoForbiddenCall) {
     calls = count.calls();
   }
   EXPECT_EQ(calls, kNone) << text(calls);
-  // It did what it was watched for.
+  // Control: the loop did its work.
   EXPECT_GE(story.measured, 1000);
   EXPECT_TRUE(story.has_tripped);
   EXPECT_GE(loop.rows(), 5000U);
@@ -171,7 +170,7 @@ TEST(SystemCallsOfTheControlPath, AreNone) {
     const auto calls = system_calls_of([] {
       static_cast<void>(run(*watched_loop));
       for (int i = 0; i < 20000 && !watched_coupling->is_done(); ++i) watched_coupling->advance(microseconds{500});
-      // One system call for a test that did not come to its end, so that the parent learns of it.
+      // One system call when the test did not reach its end, so that the parent sees it.
       if (!watched_coupling->is_done()) std::abort();
     });
     if (!calls) GTEST_SKIP() << "this kernel does not let a process turn away its own system calls";

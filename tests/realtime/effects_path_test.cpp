@@ -12,8 +12,8 @@
 #include "plant/transfer_systems/servo_hydraulic.hpp"
 #include "tests/realtime/forbidden_calls.hpp"
 
-/// A simulated rig is exercised by the same control path as a laboratory: its exchange keeps the same rules, whatever
-/// effects it has. That the guard sees what it is for: forbidden_calls_test.cpp.
+/// A simulated rig runs in the same control path as a laboratory: its exchange follows the same rules with any effects.
+/// forbidden_calls_test.cpp holds the controls of the guard.
 namespace hybridtest {
 namespace {
 
@@ -72,7 +72,7 @@ ForbiddenCalls calls_of(SimulatedRig& rig) {
     calls = count.calls();
   }
   EXPECT_EQ(faults, 0);
-  EXPECT_NE(feedback.displacement_m[0], 0.0);  // it did what it was watched for
+  EXPECT_NE(feedback.displacement_m[0], 0.0);  // control: it did its work
   return calls;
 }
 

@@ -110,7 +110,7 @@ std::optional<std::vector<int>> system_calls_of(void (*work)()) {
   if (has_ended && !(WIFEXITED(status) && WEXITSTATUS(status) == kUnable)) {
     const int count = std::min(tried->count.load(), static_cast<int>(tried->numbers.size()));
     numbers.emplace(tried->numbers.begin(), tried->numbers.begin() + count);
-    // A child that did not come to its end did something that it should not, whatever it was.
+    // A child that did not reach its end did something forbidden.
     if (!WIFEXITED(status) || WEXITSTATUS(status) != kDone) numbers->push_back(-1);
   }
   munmap(shared, sizeof(TriedCalls));

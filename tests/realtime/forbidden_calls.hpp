@@ -15,10 +15,10 @@ struct ForbiddenCalls {
   bool operator==(const ForbiddenCalls&) const = default;
 };
 
-/// False where a sanitizer has these functions for itself.
+/// False where a sanitizer replaces these functions.
 [[nodiscard]] bool can_count_forbidden_calls() noexcept;
 
-/// While it lives, forbidden calls of this thread are counted; they still do what they do.
+/// During its lifetime, forbidden calls of this thread are counted; they still have their effect.
 class ForbiddenCallCount {
  public:
   ForbiddenCallCount() noexcept;
@@ -31,8 +31,8 @@ class ForbiddenCallCount {
 };
 
 /// Runs `work` in a child process in which the kernel turns every system call away, and returns
-/// the numbers of those tried, at most 64; nothing when the kernel cannot do so. Whatever waits,
-/// logs, reads a file or gets memory from the system ends in one.
+/// the numbers of those tried, at most 64; nothing when the kernel cannot do so. Waiting, logging, reading a file and
+/// getting memory from the system all end in a system call.
 [[nodiscard]] std::optional<std::vector<int>> system_calls_of(void (*work)());
 
 }  // namespace hybridtest

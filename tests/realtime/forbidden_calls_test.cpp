@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-/// The guards of the control path see what they are there to see.
+/// Controls: the guards of the control path detect forbidden calls.
 namespace hybridtest {
 namespace {
 
@@ -30,7 +30,7 @@ class ForbiddenCallsTest : public testing::Test {
   }
 };
 
-/// Keeps the compiler from leaving out what nobody reads.
+/// Keeps the compiler from removing unused results.
 template <class Value>
 void keep(const Value& value) {
   asm volatile("" : : "g"(&value) : "memory");

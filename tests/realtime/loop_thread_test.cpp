@@ -14,7 +14,7 @@
 #include "tests/realtime/forbidden_calls.hpp"
 #include "tests/realtime/ring_coupling.hpp"
 
-/// The thread of a control loop beside the rest of a test, by the clock of the machine.
+/// The thread of a control loop beside the rest of a test, measured with the clock of the machine.
 namespace hybridtest {
 namespace {
 
@@ -22,7 +22,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr Duration kControlPeriod = microseconds{500};
-constexpr double kCommandAge_s = 1.0;  // longer than a shared machine stands still
+constexpr double kCommandAge_s = 1.0;  // longer than a shared machine pauses
 constexpr Step kEndless = 20000;
 
 /// What the control loop recorded of one period.
@@ -58,8 +58,8 @@ class LoopThreadTest : public testing::Test {
         std::ranges::find_if(rows_, [&](const Row& row) { return any(row.faults & fault); }) - rows_.begin());
   }
 
-  /// Everyone but the loop stands still, or all but the link: the loop records twice as many periods
-  /// as a command may be old, whatever else this machine does, and its interlock holds.
+  /// All participants except the loop pause, or only the link: the loop still records twice as many periods as a
+  /// command may be old, and its interlock holds.
   template <class Meanwhile>
   void expect_runs_on_and_holds(Meanwhile meanwhile) {
     run_periods(1000);
@@ -103,7 +103,7 @@ TEST_F(LoopThreadTest, HangingNetworkStopsNeitherLoopNorInterlock) {
   EXPECT_TRUE(any(coupling_.site_faults() & FaultFlags::command_age));
 }
 
-/// Is held up once, on its own thread.
+/// Delays its own thread once.
 class HeldUp final : public Node {
  public:
   explicit HeldUp(Node& node) : node_{node} {}
@@ -133,7 +133,7 @@ TEST_F(LoopThreadTest, DelayedLoopShowsInItsTiming) {
   EXPECT_GE(thread.timing().overruns, 598);
 }
 
-/// Looks at what its thread does from its second run to its last.
+/// Counts the calls of its thread from the second run to the last.
 class Watched final : public Node {
  public:
   explicit Watched(Node& node, bool allocates) : node_{node}, allocates_{allocates} {}

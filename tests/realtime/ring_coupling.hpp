@@ -50,7 +50,7 @@ class RingCoupling {
 
   RingCoupling(CouplingMode mode, Step last_step, bool compensates, double command_age_s = 1.0);
 
-  /// Everyone runs once, `passed` later.
+  /// All participants run once, `passed` later.
   void advance(Duration passed) noexcept;
   /// For a control loop on a thread of its own: everyone else runs once, or the site's link alone,
   /// as when the network hangs.

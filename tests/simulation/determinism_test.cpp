@@ -13,7 +13,7 @@ TEST_P(Determinism, SameSeedGivesSameBytes) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const DrawnCase drawn = draw_case(seed, GetParam());
     SCOPED_TRACE(drawn.command());
-    // Read anew each time, so that nothing is carried over.
+    // Read again each time, so that no state is shared.
     const auto digest = [&] {
       return keep_simulation(shipped_scenario(drawn.scenario, drawn.overrides), drawn.settings).digest();
     };

@@ -18,7 +18,7 @@
 #include "tests/simulation/recorded_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
-/// Run, diagnose, add, run again: the gap is gone. The rig has a friction that the model beside it lacks.
+/// Run, diagnose, add the effect, run again: the gap is closed. The rig has friction that its model does not have.
 namespace hybridtest {
 namespace {
 
@@ -42,7 +42,7 @@ class DiagnosisLoop : public testing::Test {
     EXPECT_EQ(simulation.run(settings), StopReason::completed);
     return scenario;
   }
-  /// Of every degree of freedom, one behind the other.
+  /// Of all degrees of freedom, concatenated.
   [[nodiscard]] std::vector<double> response(const std::string& run) const {
     const RunFileReader coordinator{directory_ / run / "coordinator.h5"};
     std::vector<double> all = coordinator.column("steps", "displacement_floor_1_m");
@@ -118,7 +118,7 @@ TEST_F(DiagnosisLoop, NamesWrongMassAndClosesTheTestGap) {
   simulate("real", {in_rig(kModel + kNoise), mass});
   simulate("taken", {in_rig(kModel + kNoise)});
   const std::filesystem::path taken = directory_ / "taken" / "scenario.yaml";
-  SiteDiagnosis diagnosis;  // of a site that was not at fault
+  SiteDiagnosis diagnosis;  // of a site without an error
   diagnosis.diagnosis.report.verdict = report::Verdict::none;
   diagnose_structure_of(diagnosis, directory_ / "real", taken);
   const report::DiagnosisReport& report = diagnosis.diagnosis.report;
@@ -135,7 +135,7 @@ TEST_F(DiagnosisLoop, NamesWrongMassAndClosesTheTestGap) {
   add_response(diagnosis, model, directory_ / "real", "storey_1", taken, [](double) {});
   ASSERT_TRUE(report.response_shrink.has_value()) << report.why_no_response;
   EXPECT_GT(report.response_shrink->nrmse_before, 0.05);
-  // The same test but for the last digits of the mass.
+  // The same test; only the last digits of the mass differ.
   EXPECT_LT(report.response_shrink->nrmse_after, 1e-9);
 }
 

@@ -84,7 +84,7 @@ DrawnCase draw_case(std::uint64_t seed, CouplingMode mode) {
   network.reordering = pick<double, 4>(random, {0.0, 0.01, 0.1, 0.3});
   const auto anybody = [&] { return participants[random.below(participants.size())]; };
   if (random.uniform() < 0.3) {
-    // Below a lease less the two heartbeats that it can swallow besides its own length.
+    // Shorter than a lease minus two heartbeats, which the outage can also hide.
     const Duration begin = between(random, 0, 4000);
     network.outages.push_back({anybody(), begin, begin + between(random, 50, 600)});
   }

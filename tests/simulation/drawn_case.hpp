@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// Set for every run of these tests: a motion that is strong from its first step on.
+/// Set for every run of these tests: a motion that is strong from the first step.
 inline constexpr const char* kPulse = "excitation.ground_motion=../../tests/simulation/ground_motions/pulse.txt";
 
 /// A whole-system run with faults, drawn by its seed.
@@ -18,7 +18,7 @@ struct DrawnCase {
   SimulationSettings settings;
   bool has_long_outage = false;
 
-  /// Nothing that was drawn can end the test: nobody dies, heartbeats come through in time.
+  /// The faults drawn cannot end the test: no participant is killed, and heartbeats arrive in time.
   [[nodiscard]] bool is_harmless() const;
   [[nodiscard]] bool is_killed(const std::string& participant) const;
   /// The command that runs the same case.

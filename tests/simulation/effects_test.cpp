@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kRig = "substructures[storey_1].rig.effects=";
 
-/// The first seconds of a building whose first storey is a site with an actuator that lags.
+/// The first seconds of a building whose first storey is a site with a lagging actuator.
 KeptSimulation shaken(const std::vector<std::string>& overrides) {
   std::vector<std::string> all{
       "time={mode: lockstep, step_s: 0.001, duration_s: 4.0}", "substructures[storey_1].rig.sensors={}",
@@ -51,7 +51,7 @@ double scale_of(const SearchRange& range) {
 
 std::string written(const EffectType& type) {
   std::string text = "[{interface: " + std::string{name_of(type.interface)} + ", effect: " + std::string{type.name};
-  // What has a fallback is left to it, unless that switches the effect off.
+  // Parameters with a default keep it, unless the default switches the effect off.
   const bool has_to_be_given =
       std::ranges::any_of(type.parameters, [](const EffectParameter& p) { return std::isnan(p.fallback); });
   for (const EffectParameter& parameter : type.parameters) {

@@ -8,7 +8,7 @@
 #include "tests/simulation/invariants.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 
-/// One kind of bad luck at a time, and exactly what it must lead to.
+/// One kind of fault at a time, and the exact outcome it must have.
 namespace hybridtest {
 namespace {
 
@@ -19,14 +19,14 @@ using std::chrono::seconds;
 constexpr Duration kLease = seconds{2};
 constexpr Duration kHeartbeat = kLease / 4;
 
-/// Patient with commands, so that it is the lease that ends a test.
+/// Long command timeouts, so that the lease ends the test.
 Scenario two_storeys(std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.begin(),
                    {kPulse, "time.duration_s=1.0", "substructures[storey_1].limits.command_age_s=10.0"});
   return shipped_scenario("two_storey_one_site", overrides);
 }
 
-/// On a network so slow that stepping goes on from about 0.6 s to 4.6 s of simulated time.
+/// On a slow network: the test steps from about 0.6 s to 4.6 s of simulated time.
 SimulationSettings slow_network() {
   SimulationSettings settings;
   settings.network.latency = milliseconds{2};
@@ -197,7 +197,7 @@ TEST(Interlock, EndsTheTestAndTheSiteReturnsToZero) {
     EXPECT_EQ(run.count(EventCode::interlock_tripped, "storey_1", "displacement_limit"), 1U);
     EXPECT_EQ(final_command_m(run, "storey_1"), 0.0);
     expect_sound(run, scenario);
-    // From the trip on no period's command grows.
+    // After the trip no command grows.
     const auto faults = run.table("storey_1", "control").column_values("faults");
     const auto commands_m = run.table("storey_1", "control").column_values("command_displacement_m");
     const auto tripped =
@@ -210,7 +210,7 @@ TEST(Interlock, EndsTheTestAndTheSiteReturnsToZero) {
 }
 
 TEST(Uncompensated, EnergyErrorTripsInterlock) {
-  // 20 ms of delay on a period of 0.8 s feed energy into the structure until the monitor ends it.
+  // 20 ms of delay on a period of 0.8 s add energy to the structure until the interlock ends the test.
   const std::vector<std::string> delayed{
       kPulse,
       "time.duration_s=1.2",
@@ -231,7 +231,7 @@ TEST(Uncompensated, EnergyErrorTripsInterlock) {
   EXPECT_EQ(keep_simulation(with, SimulationSettings{}).result.coordinator.reason, StopReason::completed);
 }
 
-/// Paced runs with an ideal, noiseless rig, so that every effect seen is the coupling's.
+/// Paced runs with an ideal rig without noise, so that the coupling causes every difference.
 class Paced : public testing::Test {
  protected:
   static Scenario ideal(std::vector<std::string> overrides = {}) {
@@ -273,13 +273,13 @@ TEST_F(Paced, KeepsTimeAndMotionOfLockstepOnFastNetwork) {
   const Scenario paced = ideal({"time.time_scale=2.0"});
   const KeptSimulation run = keep_simulation(paced, SimulationSettings{});
   ASSERT_EQ(run.result.coordinator.reason, StopReason::completed);
-  // Every target is there before 60 % of its step have passed: nothing is late.
+  // Every target arrives before 60 % of its step has passed: none is late.
   EXPECT_EQ(count(flags(run), MeasurementFlags::late), 0U);
   EXPECT_EQ(count(flags(run), MeasurementFlags::held), 0U);
   // Stepping runs at most one step ahead: 600 steps of 2 ms, less that one.
   EXPECT_NEAR(to_seconds(run.result.coordinator.running_time), 1.2, 0.004);
   const KeptSimulation lockstep = keep_simulation(ideal({"time.mode=lockstep"}), SimulationSettings{});
-  // Each is measured where it was sent, up to the rounding of the path: some 1e-16 of a
+  // Each is measured at its target within the rounding of the path: some 1e-16 of a
   // millimetre's path per step, carried on by 600 steps.
   EXPECT_LT(difference(run, lockstep), 1e-11);
 }
@@ -287,7 +287,7 @@ TEST_F(Paced, KeepsTimeAndMotionOfLockstepOnFastNetwork) {
 TEST_F(Paced, LateTargetsSlowActuatorWithoutJumps) {
   const Scenario scenario = ideal();
   SimulationSettings settings;
-  settings.network.latency = microseconds{600};  // there and back more than a step
+  settings.network.latency = microseconds{600};  // the round trip takes more than a step
   const KeptSimulation run = keep_simulation(scenario, settings);
   ASSERT_EQ(run.result.coordinator.reason, StopReason::completed);
   EXPECT_GT(count(flags(run), MeasurementFlags::late), 500U);
@@ -328,7 +328,7 @@ TEST_F(Paced, OutageBeyondCommandAgeTripsInterlock) {
   EXPECT_EQ(run.result.coordinator.reason, StopReason::interlock);
   EXPECT_EQ(run.count(EventCode::command_overdue, "storey_1"), 1U);
   EXPECT_EQ(run.outcome("storey_1").faults, FaultFlags::command_age);
-  // It holds until it is told to stop, then returns.
+  // It holds until it receives the stop, then returns.
   const auto faults = run.table("storey_1", "control").column_values("faults");
   const auto commands_m = run.table("storey_1", "control").column_values("command_displacement_m");
   const auto tripped =

@@ -149,7 +149,7 @@ bool tells_of_interlock(const KeptSimulation& run) {
          0;
 }
 
-/// The coordinator's reason is one that what was drawn explains, and an event tells of it.
+/// The faults drawn explain the coordinator's stop reason, and an event reports it.
 void expect_explained(const KeptSimulation& run, const KeptSimulation& reference, const Scenario& scenario,
                       const DrawnCase& drawn, Violations& found) {
   const StopReason reason = run.result.coordinator.reason;
@@ -188,7 +188,7 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
   }
 }
 
-/// One that was killed before its work was done is named by the others.
+/// The others name a participant that was killed before the end of its test.
 void expect_kills_told(const KeptSimulation& run, Violations& found) {
   for (const SimulatedOutcome& outcome : run.result.participants) {
     if (!outcome.was_killed) continue;
@@ -204,7 +204,7 @@ void expect_kills_told(const KeptSimulation& run, Violations& found) {
                run.count(EventCode::participant_lost, kCoordinatorId) +
                        run.count(EventCode::participant_missing, kCoordinatorId) ==
                    0) {
-      // Another one may have ended the test before the lease of the dead one ran out.
+      // Another participant may have ended the test before the lease of the killed one expired.
       found.push_back(outcome.participant + " was killed and nobody is named");
     }
   }

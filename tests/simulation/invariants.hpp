@@ -6,14 +6,14 @@
 #include "tests/simulation/drawn_case.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 
-/// What holds for every run, whatever the network did to it. Each returns what is violated, one
+/// What must hold for every run under any network faults. Each function returns the violations, one
 /// sentence each.
 namespace hybridtest {
 
 using Violations = std::vector<std::string>;
 
-/// Steps completed once and in order; every substructure went once through each of them, at the
-/// displacement that the coordinator recorded; the restoring force recorded is theirs.
+/// Each step was completed once and in order. Every substructure took each step once, at the displacement that the
+/// coordinator recorded. The recorded restoring force is that of the substructures.
 [[nodiscard]] Violations steps_violated(const KeptSimulation& run, const Scenario& scenario);
 
 /// No command of a site, from the first control period to the last, beyond its displacement
@@ -27,16 +27,16 @@ using Violations = std::vector<std::string>;
 ///
 ///   1/2 h^T M h |_{1/2}^{n-1/2} + sum dt v_i^T (C v_i + r_i + M iota ag_i) = 0,  i = 1 .. n - 1,
 ///
-/// is an identity of both explicit integrators, whatever the restoring force; what remains is
+/// is an identity of both explicit integrators for any restoring force; the rest is
 /// rounding. @return nothing for fewer than three steps.
 [[nodiscard]] Violations energy_violated(const KeptSimulation& run, const Scenario& scenario);
 
-/// Everyone came to an end, for a reason that what was drawn explains and an event tells of.
+/// Every participant ended, for a reason that the faults drawn explain and an event reports.
 /// @param reference   the same scenario without faults.
 [[nodiscard]] Violations ending_violated(const KeptSimulation& run, const KeptSimulation& reference,
                                          const Scenario& scenario, const DrawnCase& drawn);
 
-/// In lockstep: bit for bit the history of the run without faults, as far as it came.
+/// In lockstep: the same bits as the history without faults, up to the end of the run.
 [[nodiscard]] Violations history_violated(const KeptSimulation& run, const KeptSimulation& reference);
 
 }  // namespace hybridtest

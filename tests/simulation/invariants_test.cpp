@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-/// Each invariant holds for a good run and is seen to be violated when that run is spoilt.
+/// Controls: each invariant holds for a valid run and reports a violation when one record of the run is changed.
 namespace hybridtest {
 namespace {
 

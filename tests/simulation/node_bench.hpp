@@ -14,8 +14,8 @@
 
 namespace hybridtest {
 
-/// Participants on a simulated network, put together one by one: also those that no scenario
-/// would put together, such as two of one id.
+/// Participants on a simulated network, added one by one: also combinations that a scenario does not
+/// allow, such as two participants of one id.
 class NodeBench {
  public:
   explicit NodeBench(const simulated::NetworkConditions& conditions = {}, std::uint64_t seed = 1)
@@ -39,12 +39,12 @@ class NodeBench {
   /// @param start      simulated time at which its clock starts and it runs first.
   Seat& add_coordinator(const Scenario& scenario, Duration start = {});
   Seat& add_substructure(const Scenario& scenario, std::string_view id, Duration start = {});
-  /// Somebody on the network who is no participant: an operator, an impostor.
+  /// A sender that is not a participant: an operator or an impostor.
   Transport& add_outsider();
 
-  /// Runs everyone up to this simulated time.
+  /// Runs all participants up to this simulated time.
   void run_until(Duration time);
-  /// Runs until everyone is done. @return false when somebody is not by then.
+  /// Runs until every participant has ended. @return false when one has not ended by then.
   [[nodiscard]] bool run_to_end(Duration time_limit);
   [[nodiscard]] Duration now() const noexcept { return now_.time_since_epoch(); }
 

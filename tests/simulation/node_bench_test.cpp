@@ -10,7 +10,7 @@
 #include "tests/simulation/kept_simulation.hpp"
 #include "tests/support/scripted_substructure.hpp"
 
-/// Participants that do not belong together, forged messages, operators, models that break.
+/// Conflicting participants, forged messages, operators, failing models.
 namespace hybridtest {
 namespace {
 
@@ -199,7 +199,7 @@ TEST_F(NodeBenchTest, WrongForceVectorSizeEndsTest) {
   forged.substructure = 1;
   forged.sender = model_->incarnation();
   forged.force_n = InterfaceVector::Zero(2);
-  // The answer has to be there before the true one.
+  // This answer has to arrive before the true one.
   const auto outbox = impostor.measurement_outbox();
   while (coordinator_->reason() == StopReason::none && bench_.now() < seconds{10}) {
     forged.step = completed();

@@ -15,7 +15,7 @@ namespace hybridtest {
 /// A simulation whose participants record into the files of a run directory.
 class RecordedSimulation {
  public:
-  /// @param ring_rows   what may come between two steps without being dropped.
+  /// @param ring_rows   rows that fit between two steps without being dropped.
   RecordedSimulation(const Scenario& scenario, const std::filesystem::path& directory, std::size_t ring_rows)
       : scenario_{scenario}, directory_{directory}, ring_rows_{ring_rows} {
     make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario));

@@ -7,8 +7,8 @@
 #include "tests/simulation/recorded_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
-/// Runs recorded into files through rings that are sometimes too small for what comes between
-/// two drains: whatever was dropped, the verdict knows.
+/// Runs recorded through rings that are sometimes too small for the rows between two drains: the verdict reports every
+/// dropped row.
 namespace hybridtest {
 namespace {
 
@@ -17,7 +17,7 @@ TEST(Recording, DroppedRecordFailsTheRun) {
   int with_holes = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     DrawnCase drawn = draw_case(seed, CouplingMode::lockstep);
-    // A file that a killed process left is invalid for that alone.
+    // The file of a killed process is invalid for that reason alone.
     drawn.settings.kills.clear();
     SCOPED_TRACE(drawn.command());
     const Scenario scenario = shipped_scenario(drawn.scenario, drawn.overrides);

@@ -10,7 +10,7 @@
 #include "tests/simulation/kept_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
-/// Whole tests with rigs that stand for another: the structure must not see the difference.
+/// Whole tests with rigs that replace another rig: the response of the structure must stay the same.
 namespace hybridtest {
 namespace {
 

@@ -61,7 +61,7 @@ TEST_F(RunRecording, HoldsControlTableAndSentCommands) {
   const std::string bytes{std::istreambuf_iterator<char>{file}, std::istreambuf_iterator<char>{}};
   EXPECT_EQ(recording.sha256, hex(sha256(bytes)));
 
-  // No network trouble: what arrived is what was sent.
+  // Without network faults the commands that arrived are those that were sent.
   const std::vector<double>& sent = dof.of(Channel::sent_displacement);
   const std::vector<double>& target = dof.of(Channel::target_displacement);
   const double peak_m = std::abs(*std::ranges::max_element(sent, {}, [](double value) { return std::abs(value); }));

@@ -46,7 +46,7 @@ class Seeds : public testing::TestWithParam<CouplingMode> {
 TEST_P(Seeds, KeepTheInvariants) {
   for (std::uint64_t seed = 1; seed <= kSeeds && !HasFailure(); ++seed) run(seed);
   for (const auto& [reason, count] : endings_) RecordProperty(std::string{name(reason)}, count);
-  // The faults that are drawn do reach the nodes, and do not end every test.
+  // The faults drawn reach the nodes, and do not end every test.
   EXPECT_GE(endings_[StopReason::completed], 80);
   EXPECT_GE(endings_[StopReason::participant_lost], 10);
   EXPECT_GE(endings_[StopReason::interlock], 10);

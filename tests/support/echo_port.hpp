@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// A controller without memory or network: takes every command, follows it when it is active, and answers
+/// A controller without state or network: accepts every command, follows it when it is active, and answers
 /// at once. Allocates nothing; may be sent to from several threads.
 class EchoPort final : public DatagramPort {
  public:

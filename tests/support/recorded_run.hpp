@@ -18,7 +18,7 @@ class RecordedRun {
   [[nodiscard]] const std::filesystem::path& directory() const noexcept { return directory_; }
   [[nodiscard]] std::filesystem::path file(std::string_view participant) const;
   [[nodiscard]] RunFileReader open(std::string_view participant) const { return RunFileReader{file(participant)}; }
-  /// @throws nlohmann::json::exception when `summary.json` is not there or no JSON.
+  /// @throws nlohmann::json::exception when `summary.json` is missing or not JSON.
   [[nodiscard]] nlohmann::json summary() const;
   [[nodiscard]] std::vector<double> column(std::string_view participant, std::string_view table,
                                            std::string_view name) const;

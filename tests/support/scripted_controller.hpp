@@ -40,7 +40,7 @@ class ScriptedController {
   std::uint16_t status = 0;
   InterfaceVector displacement_m;
   std::vector<CommandDatagram> commands;  // every one that came
-  /// What becomes of an answer on its way; at once and whole unless a test says otherwise.
+  /// How an answer is delivered: at once and complete by default.
   std::function<void(ScriptedPort::Datagram answer, std::deque<ScriptedPort::Datagram>& arriving)> deliver =
       [](ScriptedPort::Datagram answer, std::deque<ScriptedPort::Datagram>& arriving) {
         arriving.push_back(std::move(answer));

@@ -10,8 +10,8 @@
 
 namespace hybridtest {
 
-/// A peer made of a lambda: it sees each datagram sent and decides what arrives, and when. Takes no time:
-/// patience is used up at once when nothing has arrived.
+/// A peer made of a lambda: it receives each datagram sent and decides what arrives, and when. Waiting takes no time:
+/// the timeout ends at once when nothing has arrived.
 class ScriptedPort final : public DatagramPort {
  public:
   using Datagram = std::vector<std::byte>;

@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// A rig made of a lambda that keeps what it was sent.
+/// A rig made of a lambda that keeps the commands it received.
 class ScriptedRig final : public Rig {
  public:
   using Answer = std::function<RigStatus(const ActuatorCommand& command, RigFeedback& feedback)>;
@@ -35,7 +35,7 @@ class ScriptedRig final : public Rig {
   Answer answer_;
 };
 
-/// Goes where it is told at once and answers like a spring.
+/// Follows its command at once and measures a spring.
 [[nodiscard]] inline ScriptedRig::Answer ideal_spring_rig(double stiffness_n_per_m) {
   return [stiffness_n_per_m](const ActuatorCommand& command, RigFeedback& feedback) {
     feedback.displacement_m = command.displacement_m;

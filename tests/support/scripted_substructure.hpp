@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// What a scripted substructure was asked to do, in order.
+/// The calls of a scripted substructure, in order.
 struct SubstructureCalls {
   int trials = 0;
   int commits = 0;
@@ -18,7 +18,7 @@ struct SubstructureCalls {
   std::vector<InterfaceVector> committed_m;  // displacement of each committed trial
 };
 
-/// A substructure made of a lambda, with an account of what it was asked to do.
+/// A substructure made of a lambda that records its calls.
 class ScriptedSubstructure final : public SubstructureModel {
  public:
   /// Restoring force [N] at a displacement [m]; `trial` counts from 0. May return another size.

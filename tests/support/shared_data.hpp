@@ -8,13 +8,14 @@
 
 namespace hybridtest {
 
-/// A recorded file that is not part of the repository: it stands in `../shared/data` beside the checkout, or does not.
+/// A recorded file that is not part of the repository: it stands in `../shared/data` beside the checkout, and may be
+/// absent.
 inline std::filesystem::path shared_data(const std::filesystem::path& name) {
   return std::filesystem::path{HYBRIDTEST_SHARED_DATA} / name;
 }
 
 /// HYBRIDTEST_REQUIRE_DATA=1: absent data are a failure. Set where the data are known to be present, as in CI, so that
-/// a wrong path does not turn comparisons off without a word.
+/// a wrong path does not silently switch comparisons off.
 inline bool requires_shared_data() {
   const char* setting = std::getenv("HYBRIDTEST_REQUIRE_DATA");
   return setting != nullptr && std::string_view{setting} == "1";

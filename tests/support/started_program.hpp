@@ -12,25 +12,25 @@
 
 namespace hybridtest {
 
-/// Generous: what is waited for comes in a fraction of it, even on a machine that is busy with other things.
+/// Long: the awaited event comes in a fraction of it, also on a busy machine.
 inline constexpr std::chrono::seconds kPatience{60};
 
-/// Asks again and again until `condition` holds. @return whether it did in time.
+/// Polls until `condition` holds. @return whether it did in time.
 [[nodiscard]] bool wait_until(const std::function<bool()>& condition, std::chrono::milliseconds patience = kPatience);
 
 struct ProgramOptions {
   std::filesystem::path working_directory{};
-  /// No file may grow beyond it; writing further fails, as on a full disk. Children inherit it.
+  /// Largest size of a file; further writing fails, as on a full disk. Children inherit it.
   std::optional<std::uint64_t> file_bytes_max{};
 };
 
-/// A program of the build in a process of its own; what it prints is kept in files.
+/// A program of the build in its own process; its output is kept in files.
 ///
-/// Whoever is still there when this object goes, the program or a descendant, is killed.
+/// The destructor kills the program and its descendants when they still run.
 class StartedProgram {
  public:
   /// @param output   stem of the files `<output>.out` and `<output>.err`.
-  /// @throws std::runtime_error when there is no process to be had.
+  /// @throws std::runtime_error when no process can be started.
   StartedProgram(const std::filesystem::path& program, std::vector<std::string> arguments,
                  const std::filesystem::path& output, const ProgramOptions& options = {});
   ~StartedProgram();

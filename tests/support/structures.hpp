@@ -7,7 +7,7 @@
 #include "core/random.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 
-/// Structures that several tests shake.
+/// Structures that several tests use.
 namespace hybridtest::test {
 
 inline LinearStructure structure_of(const Eigen::MatrixXd& mass_kg, const Eigen::MatrixXd& damping_n_s_per_m,

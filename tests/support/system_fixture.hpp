@@ -16,8 +16,8 @@ namespace hybridtest {
 
 using Arguments = std::vector<std::string>;
 
-/// A test that starts the real programs. It has a directory, a test name and a DDS domain of its own, so that
-/// nothing else on the machine can be mistaken for a part of it. The directory of a failed test is left and named.
+/// A test that starts the real programs. It has its own directory, test name and DDS domain, so that other processes on
+/// the machine cannot join it. The directory of a failed test is kept and printed.
 class SystemTest : public ::testing::Test {
  protected:
   SystemTest();
@@ -31,15 +31,15 @@ class SystemTest : public ::testing::Test {
                                          const Arguments& more = {}, const ProgramOptions& options = {}) const;
   [[nodiscard]] StartedProgram start_simulate(const std::filesystem::path& scenario, const std::string& run,
                                               const Arguments& more = {}) const;
-  /// One of the three programs as from a terminal of its own, on this machine.
+  /// One of the three programs, as started from its own terminal on this machine.
   [[nodiscard]] StartedProgram start_participant(const std::string& program, const std::string& id,
                                                  const std::filesystem::path& scenario, const std::string& run,
                                                  const Arguments& more = {}, const ProgramOptions& options = {}) const;
-  /// Any subcommand of `hybridtest`, as it stands.
+  /// Any subcommand of `hybridtest`, without further arguments.
   [[nodiscard]] StartedProgram start_hybridtest(const Arguments& arguments, const std::string& output) const;
 
   [[nodiscard]] RecordedRun recorded(const std::string& run) const { return RecordedRun{directory_ / run}; }
-  /// Waits until the participant's file holds so many steps.
+  /// Waits until the participant's file holds this many steps.
   [[nodiscard]] bool has_recorded(const std::string& run, std::string_view participant, double step) const;
   /// Domain of the test, for every command that talks to others.
   [[nodiscard]] Arguments network() const { return {"--domain", std::to_string(domain_)}; }

@@ -6,7 +6,7 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// The three programs started one by one, as on three hosts: each with records of its own, brought together later.
+/// The three programs started one by one, as on three hosts: each with its own records, combined later.
 namespace hybridtest {
 namespace {
 
@@ -26,7 +26,7 @@ TEST_F(ByHand, ThreeProgramsStartedInAnyOrderCompleteATest) {
   EXPECT_THAT(site.wait(), Optional(kExitCompleted)) << site.standard_error();
   EXPECT_THAT(numerical.wait(), Optional(kExitCompleted)) << numerical.standard_error();
 
-  // What the coordinator alone brought home is not the whole test, but it is a valid part of it.
+  // The records of the coordinator alone are not the whole test, but a valid part of it.
   const std::filesystem::path together = directory() / "at_control";
   std::filesystem::copy(recorded("at_site").file("storey_1"), together);
   std::filesystem::copy(recorded("at_computer").file("storey_2"), together);

@@ -44,7 +44,7 @@ TEST_F(LateActuator, UncompensatedTestEndsByEnergyInterlock) {
   EXPECT_EQ(interlock["limit_name"], "energy_error");
   EXPECT_GT(interlock["observed"], interlock["limit"]);
 
-  // The late force does work on the structure: energy it was never given, more with every quarter of the test.
+  // The late force does work on the structure: energy from the delay, more in every quarter of the test.
   const auto steps = static_cast<std::size_t>(summary["completed_steps"]);
   const std::vector<double> energy_j = recorded("run").column("storey_1", "control", "energy_error_j");
   ASSERT_GT(energy_j.size(), steps);

@@ -11,7 +11,7 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// No room for records: the test goes on or ends, as the scenario says, and never passes for valid.
+/// No disk space for records: the test continues or ends, as the scenario says, and is never valid.
 namespace hybridtest {
 namespace {
 
@@ -56,7 +56,7 @@ TEST_F(DiskFull, ContinueCompletesTestWithInvalidData) {
   EXPECT_THAT(run.standard_error(), HasSubstr("recording failed"));
   const RecordedRun record = recorded("run");
   EXPECT_EQ(record.summary()["data_valid"], false);
-  // Once there is room again the files are made whole.
+  // With disk space again the files are repaired.
   StartedProgram summary = start_hybridtest({"summary", record.directory().string()}, "summary");
   ASSERT_THAT(summary.wait(), Optional(kExitDataInvalid)) << summary.standard_error();
   for (const char* participant : {"coordinator", "storey_1"}) {
@@ -112,7 +112,7 @@ TEST_P(OneDiskFull, DecidesOutcomeOfWholeTest) {
   ASSERT_THAT(summary.wait(), Optional(kExitDataInvalid)) << summary.standard_error();
   EXPECT_THAT(summary.standard_output(), HasSubstr(GetParam().participant));
   if (GetParam().participant == "coordinator") {
-    // Its own end is one of the things it could not write down.
+    // It could not record its own end either.
     EXPECT_EQ(recorded("run").summary()["data_valid"], false);
     const double reached = recorded("run").last_step("storey_2");
     EXPECT_TRUE(stops ? reached < kSteps : reached == kSteps) << reached;

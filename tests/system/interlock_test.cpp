@@ -7,7 +7,7 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// Limits that are passed and numbers that are none end a test safely, and the records say why.
+/// Exceeded limits and non-finite values end a test safely, and the records say why.
 namespace hybridtest {
 namespace {
 
@@ -50,7 +50,7 @@ TEST_F(Interlock, DivergingMotionEndsTest) {
   const RecordedRun record = recorded("run");
   EXPECT_EQ(record.summary()["stop_reason"], "not_finite");
   EXPECT_EQ(record.summary()["data_valid"], true) << record.summary()["data_faults"];
-  // What is no number was neither commanded nor counted as a step.
+  // The non-finite value was neither commanded nor counted as a step.
   for (const double displacement_m : record.column("coordinator", "steps", "displacement_floor_1_m")) {
     ASSERT_TRUE(std::isfinite(displacement_m));
   }
@@ -61,7 +61,7 @@ TEST_F(Interlock, DivergingMotionEndsTest) {
 }
 
 TEST_F(Interlock, NonFiniteForceEndsTestAtSite) {
-  // So much stiffer than claimed that the integration runs away, and its own force overflows first.
+  // So much stiffer than stated that the integration diverges, and its own force overflows first.
   StartedProgram run = start_run(system_scenario("falls_over"), "run",
                                  {"--set", "substructures[storey_1].rig.specimen.stiffness_n_per_m=1.0e12"});
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();

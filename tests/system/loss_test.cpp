@@ -14,17 +14,17 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// Participants that never come, die, freeze or are orphaned.
+/// Participants that never appear, are killed, freeze or lose their parent process.
 namespace hybridtest {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
-/// Far longer than any of these tests is left to run.
+/// Much longer than any of these tests runs.
 const std::string kEndless = "time.duration_s=600";
 constexpr double kLease_s = 2.0;  // the scenarios' default
-/// Scheduling and teardown of several processes on a machine that is busy with other things.
+/// Scheduling and teardown of several processes on a busy machine.
 constexpr double kMargin_s = 2.0;
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -47,7 +47,7 @@ TEST_F(Loss, NamesMissingParticipantAfterDiscoveryTimeout) {
   EXPECT_EQ(missing[0].subject, ParticipantId{"storey_2"});
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "not_assembled");
   EXPECT_EQ(recorded("run").summary()["exit_code"], kExitConfiguration);
-  // The site that did come left of itself.
+  // The site that did appear exited by itself.
   EXPECT_TRUE(recorded("run").open("storey_1").counters().closed_cleanly);
 }
 

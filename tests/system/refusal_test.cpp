@@ -6,7 +6,7 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// Who does not belong to a test is refused, and the test does not notice.
+/// Participants that do not belong to a test are refused, without an effect on the test.
 namespace hybridtest {
 namespace {
 
@@ -16,7 +16,7 @@ using ::testing::Optional;
 class Refusal : public SystemTest {};
 
 TEST_F(Refusal, DuplicatesExitAndTestContinues) {
-  // Paced, so that the test lasts as long as it takes to be turned away.
+  // Paced, so that the test lasts longer than the refusal takes.
   const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
   const Arguments paced{"--set", "time.mode=paced", "--set", "time.step_s=0.01", "--set", "time.duration_s=8"};
   StartedProgram run = start_run(scenario, "run", paced);

@@ -10,7 +10,7 @@
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// The control loop of a site by itself when those above it fail.
+/// The control loop of a site when the coordinator or the link fails.
 namespace hybridtest {
 namespace {
 
@@ -31,7 +31,7 @@ TEST_F(SiteKeepsTime, LoopRunsWhileCoordinatorIsFrozen) {
   StartedProgram site = start_participant("experimental_site", "storey_1", scenario_, "run", paced_);
   ASSERT_TRUE(has_recorded("run", "storey_1", 100.0)) << site.standard_error();
   coordinator.signal(SIGSTOP);
-  // The lease on the coordinator is 2 s; the loop has to get along by itself until then.
+  // The lease on the coordinator is 2 s; until then the loop runs without commands.
   ASSERT_THAT(site.wait(), Optional(kExitEndedEarly)) << site.standard_error();
   coordinator.signal(SIGKILL);
 
@@ -39,7 +39,7 @@ TEST_F(SiteKeepsTime, LoopRunsWhileCoordinatorIsFrozen) {
   const auto overdue = record.events("storey_1", EventCode::command_overdue);
   ASSERT_EQ(overdue.size(), 1U);
   EXPECT_GT(overdue[0].values[0], kCommandAge_s);
-  // By the loop itself, and not by the lease; the rest is for a machine that stands still meanwhile.
+  // The loop detects it, not the lease; the margin is for a machine that pauses meanwhile.
   EXPECT_LT(overdue[0].values[0], kCommandAge_s + 0.5);
 
   const std::vector<double> sample = record.column("storey_1", "control", "sample");
@@ -57,7 +57,7 @@ TEST_F(SiteKeepsTime, LoopRunsWhileCoordinatorIsFrozen) {
   std::cout << "start lateness p99 " << record.column("storey_1", "loop_timing", "start_lateness_p99_us").at(0)
             << " us, max " << record.column("storey_1", "loop_timing", "start_lateness_max_us").at(0) << " us, "
             << overruns << " overruns of " << starts << '\n';
-  // How late it starts belongs to the machine; that it does not wait for the coordinator, to us.
+  // The machine decides how late it starts; the test checks that it does not wait for the coordinator.
   EXPECT_LT(record.column("storey_1", "loop_timing", "start_lateness_p50_us").at(0), 1e4);
 }
 

@@ -10,7 +10,7 @@
 
 #include "tests/support/system_fixture.hpp"
 
-/// A site with a rig of type `udp`, and a controller at the other end in a process of its own.
+/// A site with a rig of type `udp`, and a controller in its own process at the other end.
 namespace hybridtest {
 namespace {
 

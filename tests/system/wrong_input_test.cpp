@@ -6,7 +6,7 @@
 
 #include "tests/support/system_fixture.hpp"
 
-/// What a user gets wrong is answered with what, where, what was expected, and exit code 2.
+/// Errors of a user are reported with what, where and what was expected, and exit code 2.
 namespace hybridtest {
 namespace {
 
@@ -17,7 +17,7 @@ using ::testing::Optional;
 
 class WrongInput : public SystemTest {
  protected:
-  /// The program's complaint.
+  /// The error message of the program.
   [[nodiscard]] std::string refusal(const std::string& program_name, const Arguments& arguments) const {
     StartedProgram started{
         program(program_name), arguments, directory() / program_name, {.working_directory = directory()}};

@@ -1,5 +1,4 @@
-// contract_peer TEST: takes part in the test as `peer` over Fast DDS and repeats its status until
-// it is killed, which is what it is for.
+// contract_peer TEST: joins the test as `peer` over Fast DDS and repeats its status until a contract test kills it.
 
 #include <sys/prctl.h>
 

@@ -1,5 +1,5 @@
-// What every Rig promises (experimental_site/rigs/rig.hpp), asked of each of them. A rig of your own: write a bench
-// as those below and add it to AllRigs.
+// The contract of every Rig (experimental_site/rigs/rig.hpp), tested on each of them. For your own rig: write a bench
+// like those below and add it to AllRigs.
 
 #include <gtest/gtest.h>
 

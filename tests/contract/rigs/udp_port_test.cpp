@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Of somebody who certainly has sent.
+/// Receives from a sender that has certainly sent.
 constexpr Duration kPatience = 10s;
 
 std::uint16_t free_port() {

@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// A forked child; the test talks with it through a pair of pipes, so that nobody waits for time.
+/// A forked child; the test communicates with it through a pair of pipes, so that no one waits for a fixed time.
 class ChildProcess {
  public:
   template <class Body>
