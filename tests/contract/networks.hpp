@@ -5,18 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <memory>
 #include <string>
 
-#include "transport/fast_dds/fast_dds_transport.hpp"
 #include "transport/in_process/hub.hpp"
 
 namespace hybridtest {
-
-/// Its UDP ports lie in 29150 … 29400, below the range that systems hand out by themselves.
-inline constexpr std::uint32_t kTestDomain = 87;
-inline constexpr Duration kTestLease = std::chrono::milliseconds{600};
 
 /// Partition of this test in this run, so that tests which run at the same time do not meet.
 inline std::string unique_test_name(const char* qualifier = "") {
@@ -27,35 +21,10 @@ inline std::string unique_test_name(const char* qualifier = "") {
   return name;
 }
 
-inline fast_dds::FastDdsSettings test_settings() {
-  fast_dds::FastDdsSettings settings;
-  settings.domain = kTestDomain;
-  settings.loopback_only = true;
-  settings.loopback_participants = 200;  // one process makes many, one after another
-  settings.lease = kTestLease;
-  settings.heartbeat_deadline = kTestLease;
-  return settings;
-}
-
-// The transports that the contract holds for.
-
+/// Transport between the threads of one process.
 struct InProcessNetwork {
   in_process::Hub hub;
   std::unique_ptr<Transport> join(const std::string& test_name) { return hub.join(test_name); }
-};
-
-struct FastDdsUdpNetwork {
-  static std::unique_ptr<Transport> join(const std::string& test_name) {
-    return fast_dds::make_fast_dds_transport(test_settings(), test_name);
-  }
-};
-
-struct FastDdsSharedMemoryNetwork {
-  static std::unique_ptr<Transport> join(const std::string& test_name) {
-    fast_dds::FastDdsSettings settings = test_settings();
-    settings.shared_memory = true;
-    return fast_dds::make_fast_dds_transport(settings, test_name);
-  }
 };
 
 /// Waits until `condition()` holds, looking again whenever the participant is signalled.

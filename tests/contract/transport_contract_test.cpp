@@ -11,6 +11,9 @@
 
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
+#ifdef CONTRACT_OVER_FAST_DDS
+#include "tests/contract/fast_dds/fast_dds_networks.hpp"
+#endif
 
 namespace hybridtest {
 namespace {
@@ -25,7 +28,11 @@ class TransportContract : public ::testing::Test {
   Network network_;
 };
 
+#ifdef CONTRACT_OVER_FAST_DDS
 using Networks = ::testing::Types<InProcessNetwork, FastDdsUdpNetwork, FastDdsSharedMemoryNetwork>;
+#else
+using Networks = ::testing::Types<InProcessNetwork>;
+#endif
 TYPED_TEST_SUITE(TransportContract, Networks);
 
 /// Sends until a message comes out (before both ends know each other one may be lost) that

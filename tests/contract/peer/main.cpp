@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "tests/contract/networks.hpp"
+#include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/sample_messages.hpp"
 
 int main(int argc, char** argv) {

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
 #include "transport/fast_dds/dds_version.hpp"
