@@ -7,6 +7,8 @@ if(GIT)
   # A repository above the checkout is another project's. A checkout of another owner, as in a container, is read too.
   cmake_path(GET SOURCE PARENT_PATH above)
   set(ENV{GIT_CEILING_DIRECTORIES} ${above})
+  # Beside a git command of the developer, no lock is taken.
+  set(ENV{GIT_OPTIONAL_LOCKS} 0)
   execute_process(
     COMMAND ${GIT} -c safe.directory=${SOURCE} -C ${SOURCE} describe --always --exclude=* --abbrev=12 --dirty
     OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE result)
