@@ -37,7 +37,7 @@ fs::path beside(const fs::path& directory, const char* ending) {
   return fs::path{without_slash(directory).string() + ending};
 }
 
-/// On so many threads, with a line that tells how far it is.
+/// On `threads` threads, with a progress line.
 blind::ForEach in_parallel(unsigned threads) {
   return [threads](std::size_t count, const std::function<void(std::size_t)>& one) {
     StudyProgress progress{count, stderr};
@@ -105,7 +105,7 @@ CLI::App* add(CLI::App& commands, const char* name, const char* what, const std:
     action = [options, act] {
       try {
         return act(*options);
-      } catch (const std::runtime_error& error) {  // a batch, key or answer that is not as it was made
+      } catch (const std::runtime_error& error) {  // a batch, key or answer was changed after it was made
         fmt::print(stderr, "{}\n", error.what());
         return kExitDataInvalid;
       }
@@ -115,7 +115,7 @@ CLI::App* add(CLI::App& commands, const char* name, const char* what, const std:
 }
 
 void add_threads(CLI::App& command, const std::shared_ptr<BlindOptions>& options) {
-  command.add_option("--threads", options->threads, "Cases at a time; the files do not depend on it")
+  command.add_option("--threads", options->threads, "Number of cases at the same time; the files do not depend on it")
       ->check(CLI::Range(1U, 1024U))
       ->capture_default_str();
 }
@@ -123,32 +123,35 @@ void add_threads(CLI::App& command, const std::shared_ptr<BlindOptions>& options
 }  // namespace
 
 void add_blind_command(CLI::App& app, CommandAction& action) {
-  CLI::App* commands =
-      app.add_subcommand("blind", "Check the diagnosis on recordings whose effect is withheld from it");
+  CLI::App* commands = app.add_subcommand(
+      "blind", "Measure how often the diagnosis is right, on recordings whose effect is withheld from it");
   commands->require_subcommand(1);
   const auto options = std::make_shared<BlindOptions>();
 
   CLI::App* making =
-      add(*commands, "make", "Draw sites, recordings and what is wrong with them", options, make, action);
-  making->add_option("--cases", options->make.cases, "How many")->required()->check(CLI::Range(1, 9999));
-  making->add_option("--seed", options->make.seed, "The same seed gives the same files")->required();
-  making->add_option("--out", options->make.directory, "New directory of the batch")->required();
-  making->add_option("--key", options->key, "File for the truth")->default_str("<out>.key.json");
+      add(*commands, "make", "Make a batch: sites, recordings with hidden effects, and a key with the answers", options,
+          make, action);
+  making->add_option("--cases", options->make.cases, "Number of cases")->required()->check(CLI::Range(1, 9999));
+  making->add_option("--seed", options->make.seed, "Seed of the batch; the same seed gives the same files")->required();
+  making->add_option("--out", options->make.directory, "Directory to create for the batch")->required();
+  making->add_option("--key", options->key, "File to write the key to")->default_str("<out>.key.json");
   add_threads(*making, options);
 
   CLI::App* running =
-      add(*commands, "run", "Diagnose every case that is not answered yet, without the key", options, run, action);
+      add(*commands, "run", "Diagnose every case that has no answer yet, without the key", options, run, action);
   running->add_option("BATCH", options->batch, "Directory of the batch")->required()->check(CLI::ExistingDirectory);
   running->add_option("--out", options->answers, "Directory for the answers")->default_str("<batch>.answers");
-  running->add_option("--seed", options->seed, "Of the diagnosis")->capture_default_str();
+  running->add_option("--seed", options->seed, "Seed of the diagnosis")->capture_default_str();
   add_threads(*running, options);
 
-  CLI::App* scoring = add(*commands, "score", "Open the key and judge the answers", options, score, action);
+  CLI::App* scoring =
+      add(*commands, "score", "Open the key and score the answers; writes score.json into the directory of the answers",
+          options, score, action);
   scoring->add_option("BATCH", options->batch, "Directory of the batch")->required()->check(CLI::ExistingDirectory);
   scoring->add_option("--answers", options->answers, "Directory with <case>/diagnosis.json")
       ->default_str("<batch>.answers")
       ->check(CLI::ExistingDirectory);
-  scoring->add_option("--key", options->key, "The truth")->default_str("<batch>.key.json");
+  scoring->add_option("--key", options->key, "File with the key")->default_str("<batch>.key.json");
 }
 
 }  // namespace hybridtest

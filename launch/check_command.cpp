@@ -38,7 +38,7 @@ void print_site(const Scenario& scenario, const VibrationModes& modes, const std
   const Eigen::VectorXd shares = stiffness_share_by_mode(scenario.structure, modes, sites[position]);
   const CriticalDelay critical = critical_delay(scenario.structure, sites, position);
   fmt::print("\nsite {}: {} rig\n", substructure.id, site.rig_type);
-  fmt::print("  control rate        {:.6g} Hz asked, {:.6g} Hz used ({} per step)\n", site.control_rate_hz,
+  fmt::print("  control rate        {:.6g} Hz requested, {:.6g} Hz used ({} per step)\n", site.control_rate_hz,
              site.periods_per_step / (scenario.time.step_s * scenario.time.time_scale), site.periods_per_step);
   fmt::print("  stiffness share    ");
   for (const double share : shares) fmt::print(" {:.1f} %", 100.0 * share);
@@ -47,15 +47,15 @@ void print_site(const Scenario& scenario, const VibrationModes& modes, const std
     fmt::print("  critical delay      {:.3f} ms, at {:.2f} Hz\n", 1e3 * critical.delay_s,
                critical.frequency_rad_per_s / (2.0 * std::numbers::pi));
   } else {
-    fmt::print("  critical delay      none: stable with any delay\n");
+    fmt::print("  critical delay      none: stable at any delay\n");
   }
   const double left_s = site.transfer_delay_s - site.compensated_delay_s;
-  fmt::print("  transfer system     {:.3f} ms late at low frequency, {:.3f} ms of it compensated\n",
+  fmt::print("  transfer system     {:.3f} ms delay at low frequency, {:.3f} ms of it compensated\n",
              1e3 * site.transfer_delay_s, 1e3 * site.compensated_delay_s);
   if (!std::isfinite(critical.delay_s)) return;
   fmt::print(
-      "  margin left         {:.3f} ms{}\n", 1e3 * (critical.delay_s - std::abs(left_s)),
-      std::abs(left_s) < critical.delay_s ? "" : "   UNSTABLE: expect growing motion until an interlock ends it");
+      "  delay margin        {:.3f} ms{}\n", 1e3 * (critical.delay_s - std::abs(left_s)),
+      std::abs(left_s) < critical.delay_s ? "" : "   UNSTABLE: the motion will grow until an interlock ends the test");
 }
 
 int check(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -84,10 +84,12 @@ int check(const std::filesystem::path& file, const std::vector<std::string>& ove
 void add_check_command(CLI::App& app, CommandAction& action) {
   auto file = std::make_shared<std::filesystem::path>();
   auto overrides = std::make_shared<std::vector<std::string>>();
-  CLI::App* command =
-      app.add_subcommand("check", "Validate a scenario; print modes, stability limit and each site's delay margin");
-  command->add_option("FILE", *file, "Scenario")->required();
-  command->add_option("--set", *overrides, "Override one value, key.path=value; repeatable");
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Check a scenario and list all its errors; print modes, the stability limit of the step, and the\n"
+      "critical delay and delay margin of each site");
+  command->add_option("FILE", *file, "Scenario file (YAML)")->required();
+  command->add_option("--set", *overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->callback([file, overrides, &action] { action = [file, overrides] { return check(*file, *overrides); }; });
 }
 

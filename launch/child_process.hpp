@@ -7,8 +7,8 @@
 
 namespace hybridtest {
 
-/// A participant started on this machine. Its output goes to a log file; a Ctrl-C at the
-/// terminal does not reach it; when its parent dies it is asked to stop safely.
+/// A participant started on this machine. Its output goes to a log file. Ctrl-C at the terminal does
+/// not reach it. When its parent dies, it receives SIGTERM and stops safely.
 class ChildProcess {
  public:
   /// @throws std::runtime_error when it cannot be started.
@@ -17,7 +17,7 @@ class ChildProcess {
 
   [[nodiscard]] const std::string& id() const noexcept { return id_; }
   [[nodiscard]] const std::filesystem::path& log_file() const noexcept { return log_file_; }
-  /// Whether it is still there; learns its exit code when it is not.
+  /// Whether it still runs; stores its exit code when it has ended.
   [[nodiscard]] bool is_running() noexcept;
   /// Exit code, 128 + signal when a signal ended it; nothing while it runs.
   [[nodiscard]] std::optional<int> exit_code() const noexcept { return exit_code_; }

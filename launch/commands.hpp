@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-/// The subcommands of `hybridtest`, one source each. Each adds itself to the command line and
-/// says what to run when it is chosen; what runs returns the exit code.
+/// The subcommands of `hybridtest`, one source each. Each function adds its subcommand to the command line
+/// and sets the action to run when it is selected. The action returns the exit code.
 namespace hybridtest {
 
 using CommandAction = std::function<int()>;

@@ -16,8 +16,7 @@ struct ControlOptions {
   NetworkOptions network;
 };
 
-/// Sends a control message once the coordinator of the test is found, and again until it is
-/// seen to be obeyed or the time is up.
+/// Waits for the coordinator of the test, then repeats a control message until the coordinator obeys or the time is up.
 class OperatorNode final : public Node {
  public:
   OperatorNode(ControlVerb verb, Transport& transport)
@@ -89,17 +88,22 @@ int send_control(const ControlOptions& options, ControlVerb verb) {
   fast_dds::FastDdsSettings settings = options.network.settings();
   Outcome outcome = try_on(settings, options.test_name, verb);
   if (outcome == Outcome::not_found && !settings.loopback_only) {
-    // A test all of whose processes run on this machine talks over the loopback interface alone.
+    // A test that runs on this machine only uses only the loopback interface.
     settings.loopback_only = true;
     outcome = try_on(settings, options.test_name, verb);
   }
   switch (outcome) {
     case Outcome::obeyed: fmt::print("{}: done\n", options.test_name); return kExitCompleted;
     case Outcome::not_obeyed:
-      fmt::print(stderr, "{}: the coordinator did not obey within 15 s\n", options.test_name);
+      fmt::print(
+          stderr,
+          "{}: the coordinator was found but did not obey within 15 s; send the command again, or stop the rigs by "
+          "hand\n",
+          options.test_name);
       return kExitEndedEarly;
     case Outcome::not_found:
-      fmt::print(stderr, "{}: no coordinator of this test was found; check the name and --domain\n", options.test_name);
+      fmt::print(stderr, "{}: no coordinator of this test was found; check the test name, --domain and --peer\n",
+                 options.test_name);
       return kExitConfiguration;
   }
   return kExitInternal;
@@ -109,7 +113,7 @@ void add(CLI::App& app, CommandAction& action, const std::string& command_name, 
          ControlVerb verb) {
   auto options = std::make_shared<ControlOptions>();
   CLI::App* command = app.add_subcommand(command_name, what);
-  command->add_option("NAME", options->test_name, "Name of the test, as in its scenario")->required();
+  command->add_option("NAME", options->test_name, "Name of the test: the key `name` of its scenario")->required();
   options->network.add_to(*command);
   command->callback([options, &action, verb] { action = [options, verb] { return send_control(*options, verb); }; });
 }
@@ -117,10 +121,13 @@ void add(CLI::App& app, CommandAction& action, const std::string& command_name, 
 }  // namespace
 
 void add_control_commands(CLI::App& app, CommandAction& action) {
-  add(app, action, "stop", "Stop a running test safely", ControlVerb::stop);
-  add(app, action, "emergency-stop", "Take the motion out of every rig of a test at once", ControlVerb::emergency_stop);
-  add(app, action, "pause", "Hold a running test where it stands", ControlVerb::pause);
-  add(app, action, "resume", "Go on with a paused test", ControlVerb::resume);
+  add(app, action, "stop", "Stop a running test safely: every rig comes to rest, all records are closed",
+      ControlVerb::stop);
+  add(app, action, "emergency-stop", "Stop the motion of every rig of a running test at once",
+      ControlVerb::emergency_stop);
+  add(app, action, "pause", "Pause a running test: the rigs hold their position", ControlVerb::pause);
+  add(app, action, "resume", "Continue a paused test; clear interlocks that wait for the operator",
+      ControlVerb::resume);
 }
 
 }  // namespace hybridtest

@@ -26,7 +26,7 @@ struct DiagnoseOptions {
   std::size_t threads = 0;
 };
 
-/// The first run directory, of those held out if there is one: it knows of what test the site was a part.
+/// The first run directory, preferably a held-out one: only a run directory holds the whole test of the site.
 std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& options) {
   for (const auto* files : {&options.held_out, &options.recordings}) {
     const auto run = std::ranges::find_if(*files, [](const auto& file) { return std::filesystem::is_directory(file); });
@@ -38,7 +38,9 @@ std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& option
 int run_diagnosis(const DiagnoseOptions& options) {
   const std::optional<std::filesystem::path> run = run_to_repeat(options);
   if (!run && !options.scenario.empty()) {
-    throw ConfigError{"--scenario: a CSV does not hold what the structure received; give a run directory"};
+    throw ConfigError{
+        "--scenario: it needs a run directory as --recording or --held-out; a CSV file does not hold the commands and "
+        "forces of the structure"};
   }
   const SiteModelFile model = read_site_model(options.model, options.site);
   std::vector<Recording> recordings;
@@ -67,20 +69,30 @@ int run_diagnosis(const DiagnoseOptions& options) {
 
 void add_diagnose_command(CLI::App& app, CommandAction& action) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command =
-      app.add_subcommand("diagnose",
-                         "Tell where recordings of a site and its model disagree, which effect causes it, and how far\n"
-                         "the gap shrinks with it. Exit code 4: the recordings cannot tell.");
-  command->add_option("--model", options->model, "Model of the site: a rig section, or a scenario")->required();
-  command->add_option("--site", options->site, "Id of the substructure, where a scenario or run has several");
-  command->add_option("--recording", options->recordings, "CSV or run directory to find the cause in; repeatable")
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "Find where recordings of a site and its model disagree, which unmodelled effect explains the gap,\n"
+      "and how much of the gap remains with it. Exit code 4: the recordings cannot tell.");
+  command->add_option("--model", options->model, "Model of the site: a site file, or a scenario")->required();
+  command->add_option("--site", options->site, "Id of the site; required if the scenario or run has several sites");
+  command
+      ->add_option("--recording", options->recordings,
+                   "CSV file or run directory in which to find the cause; repeatable")
       ->required();
-  command->add_option("--held-out", options->held_out, "CSV or run directory to measure the shrinking on; repeatable");
-  command->add_option("--scenario", options->scenario,
-                      "Scenario with the structure as you take it to be; without one, that of the run directory");
-  command->add_option("--out", options->out, "Directory for diagnosis.json and augmented_model.yaml")->required();
-  command->add_option("--seed", options->seed, "Of the resampling behind intervals")->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads to fit on; 0: one per core")->capture_default_str();
+  command->add_option(
+      "--held-out", options->held_out,
+      "CSV file or run directory, not used for fitting, on which the remaining gap is measured; repeatable");
+  command->add_option(
+      "--scenario", options->scenario,
+      "Scenario with your numbers of the structure (mass, damping, stiffness, step), to check them; default: the\n"
+      "scenario of the run directory");
+  command->add_option("--out", options->out, "Directory for diagnosis.html, diagnosis.json and augmented_model.yaml")
+      ->required();
+  command->add_option("--seed", options->seed, "Seed of the resampling for the confidence intervals")
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads, "Number of threads; 0: one per core")
+      ->capture_default_str();
   command->callback([options, &action] { action = [options] { return run_diagnosis(*options); }; });
 }
 

@@ -14,7 +14,7 @@ void show_fits(std::size_t done, std::size_t all) {
 
 void show_rerun(double done) {
   if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\rthe whole test again: {:3.0f} %{}", 100.0 * done, done >= 1.0 ? "\n" : "");
+  fmt::print(stderr, "\rrunning the whole test again: {:3.0f} %{}", 100.0 * done, done >= 1.0 ? "\n" : "");
 }
 
 }  // namespace hybridtest

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// How far a diagnosis is: a line on standard error that is rewritten, on a terminal only.
+/// Progress of a diagnosis: one line on standard error, rewritten in place; on a terminal only.
 namespace hybridtest {
 
 void show_fits(std::size_t done, std::size_t all);

@@ -9,10 +9,10 @@
 namespace hybridtest {
 
 void add_effects_command(CLI::App& app, CommandAction& action) {
-  CLI::App* command =
-      app.add_subcommand("effects", "List the effects that a simulated rig can have: equations, parameters, bounds");
+  CLI::App* command = app.add_subcommand(
+      "effects", "List all effects of simulated rigs: equation, source, parameters, units, bounds, defaults");
   auto markdown = std::make_shared<bool>(false);
-  command->add_flag("--markdown", *markdown, "As the tables of the documentation");
+  command->add_flag("--markdown", *markdown, "Print the tables of docs/scenario.md");
   command->callback([markdown, &action] {
     action = [markdown] {
       fmt::print("{}", *markdown ? effects_markdown() : effects_text());

@@ -26,11 +26,12 @@ int export_run(const ExportOptions& options) try {
 
 void add_export_command(CLI::App& app, CommandAction& action) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write the records of a run as CSV, one file per table");
+  CLI::App* command = app.add_subcommand("export", "Write the recordings of a run as CSV, one file per table");
   command->add_option("RUN", options->run, "Run directory")->required()->check(CLI::ExistingDirectory);
   auto csv = std::make_shared<bool>(false);
-  command->add_flag("--csv", *csv, "Comma-separated values, the only format there is")->required();
-  command->add_option("--out", options->out, "Directory for the files")->default_str("RUN/csv");
+  command->add_flag("--csv", *csv, "Write comma-separated values; required, because it is the only format so far")
+      ->required();
+  command->add_option("--out", options->out, "Directory for the CSV files")->default_str("RUN/csv");
   command->callback([options, csv, &action] { action = [options] { return export_run(*options); }; });
 }
 

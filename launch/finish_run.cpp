@@ -13,14 +13,14 @@
 namespace hybridtest {
 namespace {
 
-/// A file that cannot be repaired is still read as far as it goes.
+/// A file that cannot be repaired is still read up to its last valid row.
 void repair_files(const std::filesystem::path& directory) {
   for (const auto& entry : std::filesystem::directory_iterator{directory}) {
     if (entry.path().extension() != kRunFileExtension) continue;
     try {
       static_cast<void>(repair(entry.path()));
     } catch (const RecordingError& error) {
-      fmt::print(stderr, "not repaired: {}\n", error.what());
+      fmt::print(stderr, "file not repaired: {}\n", error.what());
     }
   }
 }
@@ -31,13 +31,13 @@ int finish_run(const std::filesystem::path& directory, int exit_code) {
   repair_files(directory);
   try {
     const RunSummary summary = summarise(directory);
-    // First to the one who waits: on a full disk there is no room for the file.
+    // Print first: on a full disk the file cannot be written.
     print_summary(summary, std::cout);
     write_summary_json(summary, directory / "summary.json");
-    // A coordinator that a signal ended has no say in how the test ended.
+    // If a signal ended the coordinator, its exit code does not say how the test ended.
     return exit_code == kExitCompleted || exit_code >= 128 ? summary.exit_code : exit_code;
   } catch (const RecordingError& error) {
-    fmt::print(stderr, "no summary.json: {}\n", error.what());
+    fmt::print(stderr, "summary.json was not written: {}\n", error.what());
     return exit_code == kExitCompleted ? kExitDataInvalid : exit_code;
   }
 }

@@ -4,10 +4,10 @@
 
 namespace hybridtest {
 
-/// Makes files that a killed process left openable, writes `summary.json`, prints the summary.
+/// Repairs the files of killed processes, prints the summary, writes `summary.json`.
 /// @param exit_code   of the coordinator.
-/// @return the exit code of the whole: the coordinator's, or that of the summary when the
-///         coordinator saw nothing wrong.
+/// @return the exit code of the test: that of the coordinator, or that of the summary if the coordinator
+///         reported no error.
 int finish_run(const std::filesystem::path& directory, int exit_code);
 
 }  // namespace hybridtest

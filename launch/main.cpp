@@ -9,14 +9,15 @@
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Distributed hybrid tests: structures stepped through an earthquake, part of them computed, part of\n"
-      "them a specimen in a laboratory or its simulation.",
+      "Distributed hybrid tests: one part of a structure is computed, the rest is a specimen in a laboratory\n"
+      "or a simulated specimen; both are coupled at every step of an earthquake.\n"
+      "'hybridtest COMMAND --help' describes the options of a command.",
       "hybridtest"};
   app.set_version_flag("--version", "hybridtest " + std::string{hybridtest::software_version()});
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 completed, 2 configuration or participant missing, 3 ended early (interlock, participant\n"
-      "lost, stopped by hand), 4 data invalid, 70 internal error.");
+      "Exit codes: 0 completed; 2 configuration error, or a participant missing or refused; 3 ended early\n"
+      "(interlock, lost participant, stopped by the operator); 4 data missing or invalid; 70 internal error.");
   hybridtest::CommandAction action;
   hybridtest::add_check_command(app, action);
   hybridtest::add_run_command(app, action);

@@ -48,7 +48,7 @@ void Progress::learn(const ParticipantStatus& status) {
   const auto known = states_.find(id);
   if (known == states_.end() || known->second != status.state) {
     states_[id] = status.state;
-    if (is_terminal_) next_show_ = Instant{};  // worth showing at once
+    if (is_terminal_) next_show_ = Instant{};  // show it at once
   }
 }
 
@@ -91,10 +91,10 @@ std::string Progress::line() const {
     text +=
         fmt::format("  {:.0f} steps/s  {} left", rate, clock_text(static_cast<double>(planned - completed_) / rate));
   }
-  if (states_.empty()) return text;  // nobody tells, as in a simulation
+  if (states_.empty()) return text;  // no statuses, as in a simulation
   const auto add_state = [&](std::string_view id) {
     const auto known = states_.find(id);
-    text += fmt::format("  {}: {}", id, known == states_.end() ? "awaited" : name(known->second));
+    text += fmt::format("  {}: {}", id, known == states_.end() ? "not found yet" : name(known->second));
   };
   add_state(kCoordinatorId);
   for (const SubstructureScenario& substructure : scenario_.substructures) {

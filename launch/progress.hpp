@@ -13,11 +13,11 @@ namespace hybridtest {
 
 [[nodiscard]] std::string_view name(LifecycleState state) noexcept;
 
-/// What a person sees while a test runs: on a terminal one line that is rewritten, elsewhere a
-/// plain line now and then. Events are printed above it.
+/// The display of a running test: on a terminal one line, rewritten in place; otherwise one plain line
+/// every few seconds. Events are printed above it.
 class Progress {
  public:
-  /// @param out   standard error, as a rule; standard output stays free for the summary.
+  /// @param out   usually standard error; standard output is for the summary.
   Progress(const Scenario& scenario, std::FILE* out);
   /// Ends the rewritten line.
   ~Progress();
@@ -29,7 +29,7 @@ class Progress {
   /// The newest step that is completed.
   void set_completed(Step step, Instant now);
   void print(const Event& event);
-  /// Shows where the test stands, if it is time to.
+  /// Shows the state of the test, if the next display is due.
   void show(Instant now);
 
  private:

@@ -43,10 +43,11 @@ int replay_recording(const ReplayOptions& options) {
     channels += replays.back().size();
   }
   if (channels == 0) {
-    fmt::print(stderr,
-               "{}: nothing to compare. A command with a measured displacement, or a measured displacement with a "
-               "measured force and a specimen in the model, would be.\n",
-               recording.file);
+    fmt::print(
+        stderr,
+        "{}: nothing to compare. Expected: command and measured displacement; or measured displacement and measured "
+        "force, with a specimen in the model\n",
+        recording.file);
     return kExitDataInvalid;
   }
   print_gaps(replays);
@@ -61,14 +62,14 @@ int replay_recording(const ReplayOptions& options) {
 
 void add_replay_command(CLI::App& app, CommandAction& action) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command =
-      app.add_subcommand("replay",
-                         "Drive a model of a site stage by stage with what was recorded, and print the gap of each\n"
-                         "interface. Exit code 4: the recording has nothing to compare.");
-  command->add_option("--model", options->model, "Model of the site: a rig section, or a scenario")->required();
-  command->add_option("--site", options->site, "Id of the substructure, where a scenario or run has several");
-  command->add_option("--recording", options->recording, "CSV or run directory")->required();
-  command->add_option("--out", options->out, "CSV for the recorded and predicted channels")->required();
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "Drive a model of a site stage by stage with a recording, and print the gap of each interface.\n"
+      "Exit code 4: the recording has nothing to compare.");
+  command->add_option("--model", options->model, "Model of the site: a site file, or a scenario")->required();
+  command->add_option("--site", options->site, "Id of the site; required if the scenario or run has several sites");
+  command->add_option("--recording", options->recording, "CSV file or run directory")->required();
+  command->add_option("--out", options->out, "CSV file to write: recorded and predicted channels")->required();
   command->callback([options, &action] { action = [options] { return replay_recording(*options); }; });
 }
 

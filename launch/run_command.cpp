@@ -32,7 +32,8 @@ struct RunOptions {
 
 void check_remote(const RunOptions& options, const Scenario& scenario) {
   for (const std::string& id : options.remote) {
-    if (scenario.find(id) == nullptr) throw ConfigError{"--remote " + id + ": the scenario has no such substructure"};
+    if (scenario.find(id) == nullptr)
+      throw ConfigError{"--remote " + id + ": the scenario has no substructure of this id"};
   }
 }
 
@@ -58,10 +59,10 @@ std::vector<std::unique_ptr<ChildProcess>> start_processes(const RunOptions& opt
   return children;
 }
 
-/// What a process said that ended with a code nobody planned for.
+/// The log of a process that ended with an unexpected exit code.
 void print_log(const ChildProcess& child) {
   std::ifstream log{child.log_file()};
-  fmt::print(stderr, "{} ended with exit code {}; its log {} says:\n", child.id(), *child.exit_code(),
+  fmt::print(stderr, "{} ended with exit code {}; its log {}:\n", child.id(), *child.exit_code(),
              child.log_file().string());
   for (std::string line; std::getline(log, line);) fmt::print(stderr, "  {}\n", line);
 }
@@ -74,7 +75,7 @@ int run(RunOptions options) {
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);
   if (options.remote.empty()) options.network.set_loopback_only(true);
-  fmt::print(stderr, "{}: {} steps of {} s, records go to {}\n", scenario.name, scenario.time.last_step,
+  fmt::print(stderr, "{}: {} steps of {} s, recordings in {}\n", scenario.name, scenario.time.last_step,
              scenario.time.step_s, options.directory.string());
 
   const ProcessClock clock;
@@ -105,14 +106,14 @@ int run(RunOptions options) {
 
 void add_run_command(CLI::App& app, CommandAction& action) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Run a test: every process of it on this machine, over DDS");
-  command->add_option("FILE", options->scenario_file, "Scenario")->required();
-  command->add_option("--out", options->directory, "Run directory")->default_str("runs/<name>_<time>");
+  CLI::App* command = app.add_subcommand("run", "Run a test: start its processes on this machine, connected by DDS");
+  command->add_option("FILE", options->scenario_file, "Scenario file (YAML)")->required();
+  command->add_option("--out", options->directory, "Run directory to create")->default_str("runs/<name>_<time>");
   command->add_flag("--diagnose", options->diagnose,
-                    "In the end, diagnose every site against the `model` beside its rig, into RUN/diagnosis");
-  command->add_option("--set", options->overrides, "Override one value, key.path=value; repeatable");
+                    "After the test, diagnose every site against the `model` beside its rig; results in RUN/diagnosis");
+  command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->add_option("--remote", options->remote,
-                      "Id of a substructure that is started by hand on another machine; repeatable");
+                      "Id of a substructure that you start on another machine; repeatable");
   options->network.add_to(*command);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

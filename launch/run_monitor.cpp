@@ -46,7 +46,7 @@ void RunMonitor::listen(Instant now) {
 void RunMonitor::pass_on_stop() {
   if (!stop_was_requested() || stop_was_passed_on_) return;
   stop_was_passed_on_ = true;
-  // The coordinator brings everyone to rest; without one each does so itself.
+  // The coordinator stops all participants; without a coordinator each stops by itself.
   if (!children_.empty()) children_.front()->send_signal(SIGTERM);
 }
 
@@ -58,7 +58,7 @@ void RunMonitor::watch_children(Instant now) {
   }
   const bool someone_left = std::cmp_less(running, children_.size());
   if (someone_left && stop_by_ == kNever) {
-    // Whoever is left notices within the lease and comes to rest within its stop timeout.
+    // The others notice the loss within the lease and come to rest within the stop timeout.
     stop_by_ = now + scenario_.timeouts.liveliness_lease + scenario_.timeouts.stop + kGrace;
     kill_by_ = stop_by_ + scenario_.timeouts.stop + kGrace;
     const bool before_the_start = std::ranges::any_of(

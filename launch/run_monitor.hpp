@@ -12,9 +12,8 @@
 
 namespace hybridtest {
 
-/// Watches over the processes that `hybridtest run` has started: shows what they say, passes a
-/// Ctrl-C on as a safe stop, and sees to it that all of them end. Itself part of no test; it
-/// listens in.
+/// Monitors the processes that `hybridtest run` has started: shows their statuses and events, forwards
+/// Ctrl-C as a safe stop, and makes sure that all of them end. It only listens; it is not a participant.
 class RunMonitor final : public Node {
  public:
   /// @param children   the coordinator first, if it runs on this machine.
@@ -36,8 +35,8 @@ class RunMonitor final : public Node {
   std::unique_ptr<Inbox<Event>> events_;
   std::unique_ptr<Inbox<SignalBlock>> signals_;
   std::vector<std::unique_ptr<ChildProcess>> children_;
-  Instant stop_by_ = kNever;  // children that still run are asked to stop
-  Instant kill_by_ = kNever;  // and made to
+  Instant stop_by_ = kNever;  // then running children receive SIGTERM
+  Instant kill_by_ = kNever;  // then SIGKILL
   bool stop_was_passed_on_ = false;
   bool is_done_ = false;
 };

@@ -42,14 +42,14 @@ std::pair<std::string, std::vector<Duration>> id_and_times(const std::string& te
                                                            const Scenario& scenario, const std::string& option) {
   std::vector<std::string> parts = CLI::detail::split(text, ':');
   const auto fail = [&](const std::string& what) { throw ConfigError{option + " " + text + ": " + what}; };
-  if (parts.size() != times + 1)
-    fail("expected ID followed by " + std::to_string(times) + " times in s, joined by ':'");
-  if (parts[0] != kCoordinatorId && scenario.find(parts[0]) == nullptr) fail("no participant '" + parts[0] + "'");
+  if (parts.size() != times + 1) fail("expected ID and " + std::to_string(times) + " times in s, separated by ':'");
+  if (parts[0] != kCoordinatorId && scenario.find(parts[0]) == nullptr)
+    fail("the scenario has no participant '" + parts[0] + "'");
   std::vector<Duration> durations;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     double seconds = 0.0;
     if (!CLI::detail::lexical_cast(parts[i], seconds) || !(seconds >= 0.0) || seconds > 1e9) {
-      fail("'" + parts[i] + "' is no time in s");
+      fail("'" + parts[i] + "' is not a time; expected 0 to 1e9 s");
     }
     durations.push_back(from_seconds(seconds));
   }
@@ -103,7 +103,7 @@ class SimulatedRecording {
   }
 
  private:
-  /// More than the rows of a step that can come between two calls of drain().
+  /// More rows than one step can append between two calls of drain().
   static constexpr std::size_t kRingRows = 1U << 16U;
 
   void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
@@ -135,7 +135,7 @@ int simulate_scenario(SimulateOptions options) {
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);
-  fmt::print(stderr, "{}: {} steps of {} s under simulated time, seed {}, records go to {}\n", scenario.name,
+  fmt::print(stderr, "{}: {} steps of {} s under simulated time, seed {}, recordings in {}\n", scenario.name,
              scenario.time.last_step, scenario.time.step_s, options.seed, options.directory.string());
 
   SimulatedRecording recording{scenario, options.directory, options.seed};
@@ -179,29 +179,36 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
   const CLI::Range probability{0.0, 0.9};
   CLI::App* command =
       app.add_subcommand("simulate", "Run a test in one process under simulated time and a simulated network");
-  command->add_option("FILE", options->scenario_file, "Scenario")->required();
-  command->add_option("--seed", options->seed, "Draws the network and the clocks; the same seed gives the same bytes")
+  command->add_option("FILE", options->scenario_file, "Scenario file (YAML)")->required();
+  command
+      ->add_option("--seed", options->seed,
+                   "Seed of the simulated network and clocks; the same seed gives the same results")
       ->required();
-  command->add_option("--out", options->directory, "Run directory")->default_str("runs/<name>_simulated_<time>");
+  command->add_option("--out", options->directory, "Run directory to create")
+      ->default_str("runs/<name>_simulated_<time>");
   command->add_flag("--diagnose", options->diagnose,
-                    "In the end, diagnose every site against the `model` beside its rig, into RUN/diagnosis");
-  command->add_option("--set", options->overrides, "Override one value, key.path=value; repeatable");
-  command->add_option("--latency-us", options->latency_us, "Time of every message on its way")
+                    "After the test, diagnose every site against the `model` beside its rig; results in RUN/diagnosis");
+  command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");
+  command->add_option("--latency-us", options->latency_us, "Latency of every message, in microseconds")
       ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
-  command->add_option("--jitter-us", options->jitter_us, "Added to it, uniformly distributed up to")
+  command
+      ->add_option("--jitter-us", options->jitter_us,
+                   "Largest additional latency, in microseconds; uniformly distributed from 0")
       ->check(CLI::Range(0.0, 1e7))
       ->capture_default_str();
-  command->add_option("--loss", options->loss, "Share of messages lost")->check(probability)->capture_default_str();
-  command->add_option("--duplication", options->duplication, "Share of messages that come twice")
+  command->add_option("--loss", options->loss, "Probability that a message is lost")
       ->check(probability)
       ->capture_default_str();
-  command->add_option("--reordering", options->reordering, "Share of messages that later ones overtake")
+  command->add_option("--duplication", options->duplication, "Probability that a message arrives twice")
+      ->check(probability)
+      ->capture_default_str();
+  command->add_option("--reordering", options->reordering, "Probability that later messages overtake a message")
       ->check(probability)
       ->capture_default_str();
   command->add_option("--outage", options->outages,
-                      "ID:BEGIN:END, nothing from or to this participant arrives, in s; repeatable");
-  command->add_option("--kill", options->kills, "ID:AT, this participant dies, in s; repeatable");
+                      "ID:BEGIN:END: no message from or to this participant arrives in this time, in s; repeatable");
+  command->add_option("--kill", options->kills, "ID:AT: this participant is killed at this time, in s; repeatable");
   command->callback([options, &action] { action = [options] { return simulate_scenario(*options); }; });
 }
 

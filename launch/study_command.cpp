@@ -48,7 +48,7 @@ int study_rths_benchmark(const RthsOptions& options) {
   const rths::BenchmarkInputs inputs{rths::ground_motion_directory(options.ground_motions)};
   prepare_output_directory(options.directory);
 
-  fmt::print("The harness against the published values of the released controller:\n\n");
+  fmt::print("Check of the benchmark harness against the published values of the released controller:\n\n");
   const rths::HarnessCheck check = rths::check_harness(inputs, options.threads);
   fmt::print("{}\n", rths::to_markdown(check));
   std::fflush(stdout);
@@ -67,7 +67,7 @@ int study_rths_benchmark(const RthsOptions& options) {
   write_output_file(options.directory / "errors.svg", rths::error_figure(inputs, candidates, runs));
   write_output_file(options.directory / "plots.html", rths::page_html(inputs, candidates, runs, settings));
   for (const rths::Target& target : rths::judge_ours(rths::means_of(inputs, candidates, runs))) {
-    fmt::print("{:7} {}: {} (asked: {})\n", target.is_met ? "met" : "MISSED", target.what, target.found, target.limit);
+    fmt::print("{:7} {}: {} (target: {})\n", target.is_met ? "met" : "MISSED", target.what, target.found, target.limit);
   }
   say_where(options.directory, "summary.md, table.csv, tracking.csv, plots.html, errors.svg");
   return kExitCompleted;
@@ -113,9 +113,9 @@ template <class Options>
 CLI::App* add_study(CLI::App& studies, const std::string& name, const std::string& what,
                     const std::shared_ptr<Options>& options, int (*run)(const Options&), CommandAction& action) {
   CLI::App* study = studies.add_subcommand(name, what);
-  study->add_option("--out", options->directory, "Directory for the results; files of an earlier study are replaced")
+  study->add_option("--out", options->directory, "Directory for the results; replaces the files of an earlier study")
       ->required();
-  study->add_option("--threads", options->threads, "Runs at a time; the results do not depend on it")
+  study->add_option("--threads", options->threads, "Number of runs at the same time; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U))
       ->capture_default_str();
   study->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
@@ -125,29 +125,32 @@ CLI::App* add_study(CLI::App& studies, const std::string& name, const std::strin
 }  // namespace
 
 void add_study_command(CLI::App& app, CommandAction& action) {
-  CLI::App* studies = app.add_subcommand("study", "Run many simulated tests side by side and compare them");
+  CLI::App* studies = app.add_subcommand("study", "Run many simulated tests and compare them in tables and plots");
   studies->require_subcommand(1);
 
   const auto benchmark = std::make_shared<RthsOptions>();
-  CLI::App* rths_benchmark =
-      add_study(*studies, "rths_benchmark", "Every compensator on the virtual RTHS benchmark (Silva et al., 2020)",
-                benchmark, study_rths_benchmark, action);
+  CLI::App* rths_benchmark = add_study(
+      *studies, "rths_benchmark",
+      "Every compensator on the virtual RTHS benchmark (Silva et al., 2020). Exit code 4: the harness does not\n"
+      "reproduce the published values",
+      benchmark, study_rths_benchmark, action);
   rths_benchmark
       ->add_option("--ground-motions", benchmark->ground_motions,
                    "Directory with rths_benchmark_elcentro.csv, _kobe.csv and _morgan.csv")
       ->default_str("$HYBRIDTEST_GROUND_MOTIONS");
-  rths_benchmark->add_option("--plants", benchmark->plants, "Perturbed plants besides the nominal one")
+  rths_benchmark->add_option("--plants", benchmark->plants, "Number of perturbed plants in addition to the nominal one")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  rths_benchmark->add_option("--seed", benchmark->seed, "Draws the perturbed plants and the sensor noise")
+  rths_benchmark->add_option("--seed", benchmark->seed, "Seed of the perturbed plants and of the sensor noise")
       ->capture_default_str();
   rths_benchmark->add_option("--compensator", benchmark->compensators,
-                             "Only these; a name without +pi takes both arrangements of it");
+                             "Run only these compensators; a name without +pi selects both variants");
 
   const auto founding_study = std::make_shared<FoundingOptions>();
-  add_study(*studies, "founding_study", "The methods of the founding study on its two-storey, two-actuator test",
-            founding_study, study_founding_study, action)
-      ->add_option("--scenarios", founding_study->scenarios, "Directory with the study's scenarios")
+  add_study(*studies, "founding_study",
+            "The compensation methods of the founding study, on its two-storey test with two actuators", founding_study,
+            study_founding_study, action)
+      ->add_option("--scenarios", founding_study->scenarios, "Directory with the scenarios of the study")
       ->capture_default_str();
 
   add_study(*studies, "compensators", "Frequency response, noise gain and stability limit of every compensator",

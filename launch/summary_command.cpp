@@ -7,7 +7,7 @@ namespace hybridtest {
 void add_summary_command(CLI::App& app, CommandAction& action) {
   auto directory = std::make_shared<std::filesystem::path>();
   CLI::App* command = app.add_subcommand(
-      "summary", "Print the summary of a run again and write its summary.json, from the records in the directory");
+      "summary", "Print the summary of a run and write its summary.json, from the recordings in its directory");
   command->add_option("RUN", *directory, "Run directory")->required()->check(CLI::ExistingDirectory);
   command->callback([directory, &action] { action = [directory] { return finish_run(*directory, kExitCompleted); }; });
 }

@@ -1,17 +1,18 @@
-"""A controller after docs/udp_rig.md: states, watchdog, enable. It is handed the time and owns no socket."""
+"""A controller that implements docs/udp_rig.md: states, watchdog, enable line. It receives the time as an
+argument and owns no socket."""
 
 import datagrams
 from datagrams import ACTIVE, INACTIVE, STOPPED
 
-# A longer gap in the loop counts is no loss but another loop.
+# A larger gap in the loop counts does not come from lost datagrams: another control loop is sending.
 _STEPS_MAX = 1000
 
 
 class Controller:
-    """Takes command datagrams and answers each that it takes.
+    """Accepts command datagrams and answers each accepted one.
 
-    With `rate_hz` the plant moves on by the clock, else by the loop counts of the commands. The enable of the
-    actuators is on while the state is active, and goes off with the watchdog."""
+    With `rate_hz` the clock advances the plant; otherwise the loop counts of the commands do. The enable line of
+    the actuators is on while the state is active; the watchdog switches it off."""
 
     def __init__(self, make_plant, actuators, watchdog_s, rate_hz=None, say=print):
         self._make_plant = make_plant
@@ -28,21 +29,21 @@ class Controller:
         self._newest = 0
         self._loop_count = 0
         self._command_m = [0.0] * actuators
-        self._alive_at_s = None  # when the site's loop was last known to run
+        self._alive_at_s = None  # time of the last change of the loop count
         self._stepped_at_s = None
 
     def take(self, data, now_s):
-        """Returns the answer's bytes, or None when the datagram does not count."""
+        """Returns the bytes of the answer, or None for a rejected datagram."""
         try:
             command = datagrams.decode_command(data)
             if len(command.displacement_m) != self._actuators:
                 raise datagrams.NotADatagram(f"{len(command.displacement_m)} actuators; this rig has {self._actuators}")
         except datagrams.NotADatagram as defect:
             if self._discarded == 0:
-                self._say(f"a datagram that does not count: {defect}")
+                self._say(f"rejected datagram: {defect}; later ones are only counted")
             self._discarded += 1
             return None
-        # Whoever is not active may begin anew, with any sequence number.
+        # A controller that is not active may start again with any sequence number.
         begins = self.state != ACTIVE and command.request == INACTIVE
         if not begins and not _is_newer(command.sequence, self._newest):
             self._discarded += 1
@@ -52,10 +53,10 @@ class Controller:
         return self._measurement(now_s)
 
     def advance(self, now_s):
-        """Moves the plant by the clock, if it has one, and watches whether the site's loop still runs."""
+        """Advances the plant by the clock, if it has one, and checks that the control loop of the site runs."""
         if self.state == ACTIVE and self._watchdog_s and now_s - self._alive_at_s > self._watchdog_s:
             self._status |= datagrams.WATCHDOG_EXPIRED
-            self._enter(STOPPED, f"the site's loop stood still for {self._watchdog_s} s")
+            self._enter(STOPPED, f"watchdog: the control loop of the site did not run for {self._watchdog_s} s")
         if self.state == ACTIVE and self._rate_hz is not None:
             while now_s - self._stepped_at_s >= 1.0 / self._rate_hz:
                 self._plant.step(self._command_m)
@@ -65,14 +66,14 @@ class Controller:
         if command.request == INACTIVE:
             self._status &= ~datagrams.WATCHDOG_EXPIRED
             self._make_new_plant(command)
-            self._enter(INACTIVE, "asked")
+            self._enter(INACTIVE, "requested by the site")
         elif command.request == STOPPED:
-            self._enter(STOPPED, "asked")
+            self._enter(STOPPED, "requested by the site")
         elif self.state == INACTIVE and self._plant is not None:
             self._command_m = list(command.displacement_m)
             self._loop_count = command.loop_count
             self._stepped_at_s = self._alive_at_s = now_s
-            self._enter(ACTIVE, "asked")
+            self._enter(ACTIVE, "requested by the site")
         if self.state == ACTIVE:
             self._follow(command, now_s)
 
@@ -84,7 +85,7 @@ class Controller:
         self._period_s = period_s
 
     def _follow(self, command, now_s):
-        """The command at this datagram; those that were lost on the way lay straight between the last and this."""
+        """Executes the command of this datagram. Lost commands are interpolated linearly."""
         loops = (command.loop_count - self._loop_count) & 0xFFFFFFFF
         if loops > 0:
             self._alive_at_s = now_s
@@ -118,5 +119,5 @@ class Controller:
 
 
 def _is_newer(sequence, than):
-    """In a count of 32 bits that wraps."""
+    """For 32-bit counts that wrap around."""
     return 0 < (sequence - than) & 0xFFFFFFFF < 0x80000000

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 VERSION = 1
 ACTUATORS_MAX = 12
 
-# What is asked of a controller (request) and what it does (state).
+# Values of the request of a command and of the state of a controller.
 INACTIVE, ACTIVE, STOPPED, FAULT = range(4)
 
 # Bits of a measurement's status.
@@ -21,7 +21,7 @@ MEASUREMENT_BYTES = _MEASUREMENT.size + _CHECKSUM.size
 
 
 class NotADatagram(Exception):
-    """The bytes are no datagram of this protocol; says why."""
+    """The bytes are not a datagram of this protocol; the text gives the reason."""
 
 
 @dataclass
@@ -82,20 +82,20 @@ def _sealed(data):
 
 
 def _opened(data, magic, layout, highest_state):
-    """Checks what both datagrams have in common; returns the fields behind the size."""
+    """Checks the common parts of both datagrams; returns the fields after the size."""
     if len(data) < 8 or data[:4] != magic:
-        raise NotADatagram("another beginning than " + magic.decode())
+        raise NotADatagram(f"it does not start with {magic.decode()}")
     version, size = struct.unpack_from("<HH", data, 4)
     if version != VERSION:
         raise NotADatagram(f"protocol version {version}; expected {VERSION}")
     if len(data) != size or size != layout.size + _CHECKSUM.size:
-        raise NotADatagram(f"{len(data)} bytes")
+        raise NotADatagram(f"{len(data)} bytes; expected {layout.size + _CHECKSUM.size}")
     (checksum,) = _CHECKSUM.unpack_from(data, layout.size)
     if checksum != zlib.crc32(data[:layout.size]):
-        raise NotADatagram("a wrong checksum")
+        raise NotADatagram("the checksum is wrong")
     fields = layout.unpack_from(data)[3:]
     if not 1 <= fields[3] <= ACTUATORS_MAX:
-        raise NotADatagram(f"{fields[3]} actuators")
+        raise NotADatagram(f"{fields[3]} actuators; expected 1 to {ACTUATORS_MAX}")
     if fields[2] > highest_state:
-        raise NotADatagram(f"state {fields[2]}")
+        raise NotADatagram(f"request or state {fields[2]}; expected 0 to {highest_state}")
     return fields

@@ -1,16 +1,16 @@
 """The plant of the scenario's `type: simulated`: a transfer system and a law for each actuator, one step per
-control period. Sections have the keys of docs/scenario.md. Commands run straight from step to step, and every
-transfer system is integrated exactly for that, so there is no discretisation error between the two programs."""
+control period. The sections have the keys of docs/scenario.md. Commands are linear between steps, and every
+transfer system is integrated exactly for such commands, so the two programs have no discretisation error."""
 
 import cmath
 import math
 
 
 class DelayLine:
-    """The command some time ago; straight between its samples, zero before the first."""
+    """The delayed command: linear between its samples, zero before the first."""
 
     def __init__(self, delay_s, period_s):
-        # In whole nanoseconds, as the site counts time: 4 periods of 1 ms are then 4 ms and no rounding more.
+        # In whole nanoseconds, as the site counts time, so that 4 periods of 1 ms are exactly 4 ms.
         delay_ns, period_ns = round(delay_s * 1e9), round(period_s * 1e9)
         self._whole = delay_ns // period_ns
         self.fraction = (delay_ns % period_ns) / period_ns
@@ -24,7 +24,7 @@ class DelayLine:
         return (1.0 - self.fraction) * self._samples[self._whole] + self.fraction * self.corner()
 
     def corner(self):
-        """Where the two straight lines between the last two values of value() meet."""
+        """The corner of the command between the last two results of value()."""
         return self._samples[self._whole + 1]
 
 
@@ -39,7 +39,7 @@ class Delay:
 
 class SecondOrder:
     """x'' + 2 zeta omega x' + omega^2 x = omega^2 u(t - delay), by its closed solution for u = a + b t:
-    the particular solution a + b t - 2 zeta b / omega, and e^(A t) times what the state is off it."""
+    the particular solution a + b t - 2 zeta b / omega, plus e^(A t) times the deviation of the state from it."""
 
     def __init__(self, natural_frequency_hz, damping_ratio, delay_s, period_s):
         self._omega = 2.0 * math.pi * natural_frequency_hz
@@ -81,7 +81,7 @@ class Elastic:
 
 
 class Bilinear:
-    """An elastic spring beside one that is elastic and ideally plastic."""
+    """An elastic spring in parallel with an elastic, ideally plastic spring."""
 
     def __init__(self, stiffness_n_per_m, yield_force_n, hardening_ratio):
         self._beside = hardening_ratio * stiffness_n_per_m
@@ -107,7 +107,7 @@ _LAWS = {
 
 
 def _read(section, table, what):
-    """Returns what makes the section's type, and its keys with defaults filled in."""
+    """Returns the class for the type of the section, and its keys with defaults filled in."""
     values = dict(section)
     kind = values.pop("type", None)
     if kind not in table:
@@ -123,7 +123,7 @@ def _read(section, table, what):
 
 
 class Plant:
-    """Actuators alike, each on a specimen of its own; made anew for each control period that is asked for."""
+    """Equal actuators, each with its own specimen. A new plant is made for each new control period."""
 
     def __init__(self, actuators, transfer_system, specimen, period_s):
         make_transfer_system, settings = _read(transfer_system, _TRANSFER_SYSTEMS, "transfer system")

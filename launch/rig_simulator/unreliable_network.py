@@ -1,4 +1,4 @@
-"""Loss, doubling, overtaking and delay of datagrams, repeatable by a seed."""
+"""Loss, duplication, reordering and delay of datagrams, repeatable by a seed."""
 
 import heapq
 import random
@@ -13,7 +13,7 @@ class UnreliableNetwork:
         self._random = random.Random(seed)
         self._under_way = []  # heap of (due, number, datagram)
         self._number = 0
-        self._overtaken = None  # goes on its way behind the next one
+        self._overtaken = None  # sent after the next one
 
     def send(self, datagram, now_s):
         if self._random.random() < self._loss:
@@ -29,7 +29,7 @@ class UnreliableNetwork:
             self._overtaken = None
 
     def due(self, now_s):
-        """Takes those that have arrived by now."""
+        """Returns the datagrams that have arrived by now."""
         arrived = []
         while self._under_way and self._under_way[0][0] <= now_s:
             arrived.append(heapq.heappop(self._under_way)[2])

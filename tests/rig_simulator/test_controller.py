@@ -55,7 +55,7 @@ class States(unittest.TestCase):
         answer = self.site.exchange(0.05)
         self.assertEqual((answer.state, answer.displacement_m), (STOPPED, [0.01]))
         self.assertEqual(self.site.send(INACTIVE, sequence=1).state, INACTIVE)
-        self.assertEqual(self.site.said, ["enable on", "enable off: asked"])
+        self.assertEqual(self.site.said, ["enable on", "enable off: requested by the site"])
 
     def test_nothing_moves_unasked(self):
         self.assertIsNone(self.site.exchange(0.01).displacement_m[0] or None)
@@ -90,7 +90,7 @@ class Watchdog(unittest.TestCase):
         self.assertEqual(site.controller.state, ACTIVE)
         site.controller.advance(10.051)
         self.assertEqual(site.controller.state, STOPPED)
-        self.assertEqual(site.said, ["enable on", "enable off: the site's loop stood still for 0.05 s"])
+        self.assertEqual(site.said, ["enable on", "enable off: watchdog: the control loop of the site did not run for 0.05 s"])
         answer = site.exchange(0.01, now_s=10.06)
         self.assertEqual(answer.state, STOPPED)
         self.assertTrue(answer.status & datagrams.WATCHDOG_EXPIRED)

@@ -172,7 +172,7 @@ TEST_F(UdpRigTest, DeadSiteDropsTheEnableAtController) {
   ASSERT_NE(site, 0);
   ASSERT_EQ(::kill(site, SIGKILL), 0);
   EXPECT_TRUE(wait_until([&] {
-    return controller.program().standard_output().find("enable off: the site's loop stood still") != std::string::npos;
+    return controller.program().standard_output().find("enable off: watchdog: the control loop of the site did not run") != std::string::npos;
   })) << controller.program().standard_output();
   EXPECT_THAT(udp.wait(), Optional(kExitEndedEarly)) << udp.standard_error();
 }
@@ -182,7 +182,7 @@ TEST_F(UdpRigTest, EndOfTestStopsController) {
   StartedProgram udp = start_with_udp(controller.port(), "pace: datagrams", {"--set", "time.duration_s=0.1"});
   ASSERT_THAT(udp.wait(), Optional(kExitCompleted)) << udp.standard_error();
   EXPECT_TRUE(wait_until([&] {
-    return controller.program().standard_output().find("enable off: asked") != std::string::npos;
+    return controller.program().standard_output().find("enable off: requested by the site") != std::string::npos;
   })) << controller.program().standard_output();
 }
 
