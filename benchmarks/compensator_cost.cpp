@@ -1,7 +1,7 @@
 // Cost of one call of every compensator and delay estimator, as a ratio to that of `none`, measured in one run.
 //
-// The kinds take turns in short rounds, so that what else the machine does meets all of them; the median over the
-// rounds counts. A call costs what its virtual dispatch, its arithmetic and its memory cost, on a warm cache.
+// The kinds take turns in short rounds, so that other work on the machine affects all of them alike. The result is
+// the median over the rounds. A call includes virtual dispatch, arithmetic and memory access, with a warm cache.
 
 #include <algorithm>
 #include <chrono>
@@ -53,7 +53,7 @@ struct Sample {
   DelaySample delay;
 };
 
-/// A second of a structure's motion; its end joins its beginning.
+/// One second of motion of a structure, periodic.
 std::vector<Sample> one_second() {
   std::vector<Sample> samples;
   for (int i = 0; i < static_cast<int>(kControlRate_hz); ++i) {

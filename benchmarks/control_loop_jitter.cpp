@@ -1,10 +1,10 @@
 // control_loop_jitter [--seconds N] [--cpu N] [--domain N]
 //
-// In one run, on one machine: how late the periods of a site's control loop start at 1024 Hz, beside
-// the coordinator and the numerical substructure, and how late cyclictest (Debian package rt-tests)
-// wakes at the same priority and nearly the same rate. Both are measured at the same time, so that
-// what else the machine does falls on both alike. What counts is the ratio of their 99th percentiles:
-// exit code 1 when it exceeds 2. Without cyclictest it says so and leaves with 0.
+// Measures, in one run on one machine, the start lateness of the control periods of a site at 1024 Hz,
+// beside the coordinator and the numerical substructure, and the wake-up lateness of cyclictest (Debian
+// package rt-tests) at the same priority and nearly the same rate. Both are measured at the same time, so
+// that other work on the machine affects both. The result is the ratio of their 99th percentiles: exit
+// code 1 when it exceeds 2. Without cyclictest it prints a message and exits with 0.
 
 #include <unistd.h>
 
@@ -111,7 +111,8 @@ class Run {
   [[nodiscard]] Lateness loop() const {
     const RunFileReader file{out_ / "storey_1.h5"};
     const auto value = [&](const char* column) { return file.column("loop_timing", column).at(0); };
-    if (value("fifo_priority") != kPriority) std::printf("the loop had no SCHED_FIFO: see storey_1.log\n");
+    if (value("fifo_priority") != kPriority)
+      std::printf("the control loop did not get SCHED_FIFO; see storey_1.log for the reason\n");
     std::printf("overruns %.0f, busy p99 %.1f us\n", value("overruns"), value("busy_p99_us"));
     return {value("start_lateness_p50_us"), value("start_lateness_p99_us"), value("start_lateness_max_us"),
             static_cast<long long>(value("starts"))};
@@ -157,12 +158,14 @@ int run(int seconds, int cpu, unsigned domain) {
 }  // namespace hybridtest::benchmarks
 
 int main(int argc, char** argv) {
-  CLI::App app{"How late a control loop's periods start, against cyclictest in the same run"};
+  CLI::App app{"Start lateness of the control periods of a site, compared with cyclictest in the same run"};
   int seconds = 60;
   int cpu = -1;
   unsigned domain = 97;
-  app.add_option("--seconds", seconds, "How long")->check(CLI::Range(1, 1'000'000))->capture_default_str();
-  app.add_option("--cpu", cpu, "Both stay on this cpu; any, if it is not given");
+  app.add_option("--seconds", seconds, "Duration of the measurement in s")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--cpu", cpu, "Run both on this processor; default: any");
   app.add_option("--domain", domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {

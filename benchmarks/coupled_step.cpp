@@ -1,9 +1,9 @@
 // coupled_step [--rounds N] [--steps N] [--json FILE]
 //
-// In one run, on one machine: the time of one coupled step (command out, two substructures in
-// processes of their own answer, integrator done, step recorded, next command out), a bare Fast
-// DDS echo with the same payload, QoS and number of peers, and a raw UDP echo. The three take
-// turns, so that what else the machine does falls on all alike. What counts are the ratios.
+// Measures, in one run on one machine: the time of one coupled step (send the command, two substructures
+// in their own processes answer, the integrator advances, the step is recorded, send the next command); a
+// plain Fast DDS echo with the same payload, QoS and number of peers; and a plain UDP echo. The three take
+// turns, so that other work on the machine affects all of them. The results are the ratios.
 
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kWarmUpSteps = 500;
 
-/// From the sending of one step's commands to that of the next one's, as the coordinator records it.
+/// Time between the sending of commands of consecutive steps, as the coordinator records it.
 std::vector<double> coupled_step_us(int steps, unsigned domain) {
   const std::filesystem::path out =
       std::filesystem::temp_directory_path() / ("coupled_step_" + std::to_string(getpid()));
@@ -99,14 +99,14 @@ int run(int rounds, EchoSettings settings, const std::string& json_file) {
 int main(int argc, char** argv) {
   using namespace hybridtest::benchmarks;
   if (const std::optional<int> code = echo_peer_main(argc, argv)) return *code;
-  CLI::App app{"Time of a coupled step against a bare Fast DDS echo and a UDP echo, measured in one run"};
+  CLI::App app{"Time of a coupled step, as a ratio to a plain Fast DDS echo and to a UDP echo, measured in one run"};
   EchoSettings settings;
   int rounds = 5;
   std::string json_file;
-  app.add_option("--steps", settings.samples, "Steps and echoes that count, per round")
+  app.add_option("--steps", settings.samples, "Number of measured steps and echoes per round")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--rounds", rounds, "Rounds")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--rounds", rounds, "Number of rounds")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
   app.add_option("--json", json_file, "Also write the three lines of JSON to this file");
   CLI11_PARSE(app, argc, argv);

@@ -1,6 +1,6 @@
 // echo [fast_dds|udp|transport|all] [--samples N] [--rounds N] [--network …] [--wait …]
-// Prints one line of JSON per round and kind; kinds alternate, so that what else the machine does
-// falls on all alike.
+// Prints one line of JSON per round and kind. The kinds alternate, so that other work on the machine
+// affects all of them.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -13,17 +13,17 @@ int main(int argc, char** argv) {
   using namespace hybridtest::benchmarks;
   if (const std::optional<int> code = echo_peer_main(argc, argv)) return *code;
 
-  CLI::App app{"Round-trip time of one command to two peers in processes of their own, both answers in"};
+  CLI::App app{"Round-trip time of one command to two peers in their own processes, until both answers have arrived"};
   EchoSettings settings;
   std::string kind = "all";
   int rounds = 1;
   app.add_option("kind", kind, "fast_dds, udp, transport or all")
       ->check(CLI::IsMember({"fast_dds", "udp", "transport", "all"}));
-  app.add_option("--samples", settings.samples, "round trips that count, per round")->check(CLI::PositiveNumber);
-  app.add_option("--rounds", rounds, "rounds")->check(CLI::PositiveNumber);
+  app.add_option("--samples", settings.samples, "number of measured round trips per round")->check(CLI::PositiveNumber);
+  app.add_option("--rounds", rounds, "number of rounds")->check(CLI::PositiveNumber);
   app.add_option("--network", settings.network, "udp, shared_memory (besides UDP) or library_default")
       ->check(CLI::IsMember({"udp", "shared_memory", "library_default"}));
-  app.add_option("--wait", settings.wait, "bare Fast DDS: listener or waitset")
+  app.add_option("--wait", settings.wait, "plain Fast DDS: listener or waitset")
       ->check(CLI::IsMember({"listener", "waitset"}));
   app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 232));
   CLI11_PARSE(app, argc, argv);

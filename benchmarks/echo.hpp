@@ -7,15 +7,15 @@
 
 namespace hybridtest::benchmarks {
 
-/// What a coupled step costs without our software: one command out to two peers in processes of
-/// their own, both answers in. The yardsticks that the coupled step is compared with.
+/// The references for the coupled step, without our software: one command is sent to two peers in their
+/// own processes, and both answers are received.
 struct EchoSettings {
   int samples = 5000;
-  int warm_up = 500;  // round trips before the first that counts
+  int warm_up = 500;  // round trips before the first measured one
   std::uint32_t domain = 93;
-  /// Fast DDS alone: `udp`, `shared_memory` (besides UDP), `library_default`.
+  /// Plain Fast DDS only: `udp`, `shared_memory` (in addition to UDP), `library_default`.
   std::string network = "udp";
-  /// Fast DDS alone: how arrival is noticed. `listener`: peers answer in the callback, the
+  /// Plain Fast DDS only: how a sample is noticed. `listener`: peers answer in the callback, the
   /// initiator's callback notifies its thread. `waitset`: every thread blocks in WaitSet::wait.
   std::string wait = "listener";
 };

@@ -1,4 +1,4 @@
-// A bare Fast DDS echo, written as its documentation advises for low latency: fixed-size types,
+// A plain Fast DDS echo, written as its documentation advises for low latency: fixed-size types,
 // preallocated histories, synchronous publishing, and either listeners or wait sets. Uses none of
 // our classes, only the same wire types and quality of service (RELIABLE, KEEP_LAST 16).
 
@@ -71,13 +71,13 @@ dds::DomainParticipantQos participant_quality(const std::string& network) {
   return qos;
 }
 
-/// The entities that both ends need: one writer, one reader, a topic each way.
+/// The entities of both ends: one writer, one reader, one topic in each direction.
 class Endpoint {
  public:
   Endpoint(const EchoSettings& settings, int run, bool initiator, dds::DataReaderListener* listener) {
     auto* factory = dds::DomainParticipantFactory::get_instance();
     participant_ = factory->create_participant(settings.domain, participant_quality(settings.network));
-    if (participant_ == nullptr) throw std::runtime_error{"no participant"};
+    if (participant_ == nullptr) throw std::runtime_error{"Fast DDS could not create a participant"};
     const dds::TypeSupport command{new wire::DisplacementCommandPubSubType};
     const dds::TypeSupport measurement{new wire::ForceMeasurementPubSubType};
     command.register_type(participant_);
@@ -97,7 +97,8 @@ class Endpoint {
     reader = participant_->create_subscriber(subscriber_qos)
                  ->create_datareader(initiator ? measurements : commands, quality<dds::DataReaderQos>(), listener,
                                      dds::StatusMask::data_available());
-    if (writer == nullptr || reader == nullptr) throw std::runtime_error{"no writer or reader"};
+    if (writer == nullptr || reader == nullptr)
+      throw std::runtime_error{"Fast DDS could not create a writer or reader"};
   }
   ~Endpoint() {
     participant_->delete_contained_entities();
@@ -121,7 +122,7 @@ class Endpoint {
   dds::DomainParticipant* participant_ = nullptr;
 };
 
-/// Answers every command, in whichever thread finds it.
+/// Answers every command, in the thread that receives it.
 class Answerer : public dds::DataReaderListener {
  public:
   explicit Answerer(int index) { measurement_.substructure(static_cast<std::uint16_t>(index)); }
@@ -142,7 +143,7 @@ class Answerer : public dds::DataReaderListener {
   dds::SampleInfo info_;
 };
 
-/// Counts answers to the step under way.
+/// Counts the answers to the current step.
 class Collector : public dds::DataReaderListener {
  public:
   /// From the callback of Fast DDS.
@@ -245,7 +246,7 @@ std::vector<double> fast_dds_echo_us(const EchoSettings& settings) {
       endpoint.writer->write(&command);
       constexpr std::chrono::milliseconds kRepeat{200};
       answered = by_listener ? collector.wait(kRepeat) : collector.wait(wait_set, endpoint.reader, kRepeat);
-      if (!answered && Clock::now() > start + kPatience) throw std::runtime_error{"an echo peer fell silent"};
+      if (!answered && Clock::now() > start + kPatience) throw std::runtime_error{"an echo peer stopped answering"};
     }
     const std::chrono::duration<double, std::micro> round_trip = Clock::now() - start;
     if (i >= settings.warm_up) times_us.push_back(round_trip.count());

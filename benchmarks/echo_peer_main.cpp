@@ -11,7 +11,7 @@ namespace hybridtest::benchmarks {
 
 std::optional<int> echo_peer_main(int argc, char** argv) {
   if (argc < 4 || std::string_view{argv[1]} != "echo_peer") return std::nullopt;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left behind when the benchmark is stopped
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // no peer survives a stopped benchmark
   try {
     const std::string_view kind{argv[2]};
     if (kind == "udp") udp_echo_peer(std::atoi(argv[3]));

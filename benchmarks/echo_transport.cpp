@@ -1,5 +1,5 @@
-// The echo through our Fast DDS transport, each participant's thread waiting on its Waker as the
-// executor does: what the transport costs above the bare echo.
+// The echo through our Fast DDS transport. The thread of each participant waits on its Waker, as the
+// executor does. Shows the cost of the transport in addition to the plain echo.
 
 #include <unistd.h>
 
@@ -74,7 +74,7 @@ std::vector<double> transport_echo_us(const EchoSettings& settings) {
         if (!answered[peer]) commands->send(command);
       }
       const Clock::time_point repeat = Clock::now() + std::chrono::milliseconds{200};
-      if (repeat > start + std::chrono::seconds{20}) throw std::runtime_error{"an echo peer fell silent"};
+      if (repeat > start + std::chrono::seconds{20}) throw std::runtime_error{"an echo peer stopped answering"};
       while ((!answered[0] || !answered[1]) && waker.wait_until(repeat)) {
         while (measurements->take(measurement)) {
           if (measurement.step == i && measurement.substructure < kEchoPeers) answered[measurement.substructure] = true;

@@ -1,4 +1,4 @@
-// The floor: the same numbers of bytes over bare UDP sockets on the loopback interface.
+// The lower bound: the same number of bytes over plain UDP sockets on the loopback interface.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -30,7 +30,7 @@ class LoopbackSocket {
     socklen_t size = sizeof(address);
     if (socket_ < 0 || ::bind(socket_, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
         ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-      throw std::runtime_error{"no UDP socket on the loopback interface"};
+      throw std::runtime_error{"cannot open a UDP socket on the loopback interface"};
     }
     port = ntohs(address.sin_port);
     const timeval timeout{.tv_sec = 20, .tv_usec = 0};
@@ -52,7 +52,7 @@ class LoopbackSocket {
     ::sendto(socket_, buffer_.data(), bytes, 0, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
   }
 
-  /// Blocks. @return who sent it; throws after 20 s of silence.
+  /// Blocks. @return the sender; throws after 20 s without a datagram.
   sockaddr_in receive() {
     sockaddr_in from{};
     socklen_t size = sizeof(from);
@@ -74,7 +74,7 @@ class LoopbackSocket {
 void udp_echo_peer(int port) {
   LoopbackSocket socket;
   const sockaddr_in initiator = LoopbackSocket::to(port);
-  socket.send(initiator, 1);  // tells its own port
+  socket.send(initiator, 1);  // announces its port
   while (true) {
     static_cast<void>(socket.receive());
     socket.send(initiator, measurement_bytes());

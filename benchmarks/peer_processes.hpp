@@ -6,7 +6,7 @@
 
 namespace hybridtest::benchmarks {
 
-/// Processes started from this program's own file; killed when this goes or the parent dies.
+/// Processes started from the file of this program; killed when this object or the parent ends.
 class PeerProcesses {
  public:
   PeerProcesses() = default;

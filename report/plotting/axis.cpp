@@ -29,7 +29,7 @@ std::vector<Tick> linear_ticks(double low, double high) {
   return ticks;
 }
 
-/// Decades; where they are few, also twice and five times them.
+/// Decades; if they are few, also their double and five-fold values.
 std::vector<Tick> logarithmic_ticks(double low, double high) {
   std::vector<Tick> ticks;
   const bool has_few = high - low < 2.5;

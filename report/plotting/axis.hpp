@@ -6,7 +6,7 @@
 
 namespace hybridtest::plot {
 
-/// What a drawing is told of one of its axes.
+/// The description of one axis of a drawing.
 struct Axis {
   std::string label;
   bool is_logarithmic = false;
@@ -22,10 +22,10 @@ struct Tick {
 /// Maps values of an axis onto 0 to 1.
 class Scale {
  public:
-  /// @param least, most   of the values; what the axis says goes before them. On a logarithmic axis positive.
+  /// @param least, most   of the values; limits given by the axis have priority. Positive on a logarithmic axis.
   Scale(const Axis& axis, double least, double most);
 
-  /// 0 at the low end, 1 at the high end; not finite where the value has no place.
+  /// 0 at the low end, 1 at the high end; not finite for a value that the axis cannot show.
   [[nodiscard]] double share(double value) const noexcept;
   [[nodiscard]] std::vector<Tick> ticks() const;
 

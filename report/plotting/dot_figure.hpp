@@ -15,7 +15,7 @@ struct DotRow {
   bool is_emphasised = false;
 };
 
-/// Values of many things side by side, a row for each.
+/// Values of many items side by side, one row for each.
 struct DotFigure {
   std::string title;
   Axis axis;

@@ -5,7 +5,7 @@
 
 namespace hybridtest::plot {
 
-/// A table of shares as shaded cells, the share written into each.
+/// A table of shares as shaded cells; each cell shows its share.
 struct HeatFigure {
   std::string title;
   std::string x_label;

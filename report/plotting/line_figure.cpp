@@ -17,7 +17,7 @@ constexpr double kBottom = 40.0;
 constexpr double kLegendRow = 18.0;
 constexpr double kLegendLetter = 7.3;  // [px] width
 
-/// After the last colour the same ones dashed.
+/// After the last colour, the same colours with dashed lines.
 constexpr std::array<std::string_view, 3> kDashes{"", "7 3", "2 2.5"};
 constexpr Stroke kBackground{"#b5b5b5", 3.0, ""};
 
@@ -123,7 +123,7 @@ class PanelPainter {
     end_piece();
   }
 
-  /// Of the points that share a pixel column: first, lowest, highest, last.
+  /// Keeps the first, lowest, highest and last of the points in one pixel column.
   [[nodiscard]] std::vector<Place> thinned(const std::vector<Place>& places) const {
     if (static_cast<double>(places.size()) < 2.0 * box_.width) return places;
     std::vector<Place> kept;

@@ -12,7 +12,7 @@ struct Line {
   std::string name;  // in the legend; the same name has the same colour in every panel
   std::vector<double> x{};
   std::vector<double> y{};
-  bool is_background = false;  // grey and behind: what the others are compared with
+  bool is_background = false;  // grey, behind the others: the reference
   bool is_emphasised = false;  // thicker
 };
 
@@ -31,7 +31,7 @@ struct LineFigure {
   double panel_height = 260.0;
 };
 
-/// Curves of many points are thinned to what the panel's width can show, extremes kept.
+/// Curves with many points are thinned to the width of the panel; extreme values are kept.
 [[nodiscard]] std::string to_svg(const LineFigure& figure);
 
 }  // namespace hybridtest::plot

@@ -5,14 +5,14 @@
 
 namespace hybridtest::plot {
 
-/// One figure of a page with what it shows.
+/// One figure of a page with its explanation.
 struct PageSection {
   std::string heading;
   std::string text;  // plain
   std::string svg;
 };
 
-/// A page that opens without a network: figures inline.
+/// A page that needs no network: all figures are inline.
 [[nodiscard]] std::string html_page(const std::string& title, const std::string& lead,
                                     const std::vector<PageSection>& sections);
 

@@ -31,7 +31,7 @@ void SvgCanvas::line(Place from, Place to, const Stroke& stroke) {
 
 void SvgCanvas::curve(std::span<const Place> places, const Stroke& stroke, const Box& clip) {
   if (places.size() < 2) return;
-  // Numbered by box, so that two drawings on one page mean the same by the same number.
+  // The id follows from the box, so that equal ids on one page mean equal boxes.
   const std::string id = fmt::format("clip_{:.0f}_{:.0f}_{:.0f}_{:.0f}", clip.left, clip.top, clip.width, clip.height);
   if (body_.find("id=\"" + id + "\"") == std::string::npos) {
     body_ += fmt::format(R"(<clipPath id="{}"><rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"/></clipPath>)"

@@ -7,7 +7,7 @@
 
 namespace hybridtest::plot {
 
-/// Colours that stay apart for colour-blind eyes (Okabe and Ito).
+/// Colours that colour-blind people can distinguish (Okabe and Ito).
 inline constexpr std::array<std::string_view, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                           "#e69f00", "#56b4e9", "#222222"};
 
@@ -34,19 +34,19 @@ struct Box {
   [[nodiscard]] double bottom() const noexcept { return top + height; }
 };
 
-/// An SVG drawing that stands by itself: no style sheet, no script, a white ground.
+/// A self-contained SVG drawing: no style sheet, no script, white background.
 class SvgCanvas {
  public:
   SvgCanvas(double width, double height);
 
   void line(Place from, Place to, const Stroke& stroke);
-  /// Clipped to the box; places further outside than it is large are moved nearer.
+  /// Clipped to the box; points far outside the box are moved nearer to it.
   void curve(std::span<const Place> places, const Stroke& stroke, const Box& clip);
   void dot(Place at, double radius, std::string_view colour, std::string_view outline = "none");
   void frame(const Box& box);
   void bar(const Box& box, std::string_view colour);
   void text(Place at, std::string_view text, Anchor anchor, double size = 12.0, bool is_bold = false);
-  /// Reads upwards.
+  /// Rotated text, read upwards.
   void vertical_text(Place at, std::string_view text, double size = 12.0);
 
   [[nodiscard]] std::string svg() const;
@@ -56,7 +56,7 @@ class SvgCanvas {
   std::string head_;
 };
 
-/// With what HTML and SVG take for themselves replaced.
+/// With the special characters of HTML and SVG replaced.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 }  // namespace hybridtest::plot

@@ -9,7 +9,7 @@
 
 namespace hybridtest::design_motion {
 
-/// What the tool can be asked for.
+/// The settings of the tool.
 struct DesignMotionSettings {
   std::uint64_t seed = 1;
   /// a_g on rock, in g: a region of high seismicity in southern Europe.
@@ -19,13 +19,13 @@ struct DesignMotionSettings {
   int iterations = 20;
 };
 
-/// A motion and how well it does.
+/// A motion and the quality of its fit.
 struct DesignMotion {
   std::vector<double> acceleration_m_per_s2;  // the first sample at time 0
   SpectralFit fit;                            // from 0.05 to 4 s, on a grid finer than the one matched
 };
 
-/// The spectrum that the settings ask for.
+/// The target spectrum of the settings.
 [[nodiscard]] ElasticSpectrum design_spectrum(const DesignMotionSettings& settings) noexcept;
 
 /// The spectrum at `count` periods from `first_s` to `last_s`.

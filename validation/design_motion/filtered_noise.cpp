@@ -8,7 +8,7 @@
 namespace hybridtest::design_motion {
 namespace {
 
-/// The filters run this long before the motion begins, so that it begins with stationary noise.
+/// The filters run for this time before the motion starts, so that their noise is stationary.
 constexpr double kSettling_s = 10.0;
 
 double damping_term(const Oscillator& oscillator, double ratio) {
@@ -45,7 +45,7 @@ std::vector<double> filtered_noise(Random& random, const GroundFilter& filter, c
     const double next_rock = random.normal();
     soil.advance(rock, next_rock);
     rock = next_rock;
-    // Of the top of the soil against fixed axes; of the second mass against its ground.
+    // Absolute acceleration of the top of the soil; relative acceleration of the second mass.
     const double next_surface = -damping_term(soil, filter.soil_damping_ratio) - stiffness_term(soil);
     high_pass.advance(surface, next_surface);
     surface = next_surface;

@@ -7,8 +7,8 @@
 
 namespace hybridtest::design_motion {
 
-/// Ground as two oscillators in a row: the layer of soil passes and amplifies (Kanai, 1957;
-/// Tajimi, 1960), the second takes the long periods out (Clough and Penzien, 1975).
+/// The ground as two oscillators in series: the soil layer transmits and amplifies (Kanai, 1957;
+/// Tajimi, 1960), the second removes long periods (Clough and Penzien, 1975).
 struct GroundFilter {
   double soil_frequency_rad_per_s = 12.0;  // medium soil: predominant period about 0.5 s
   double soil_damping_ratio = 0.6;
@@ -16,7 +16,7 @@ struct GroundFilter {
   double high_pass_damping_ratio = 0.6;
 };
 
-/// How strong the shaking is over time: quadratic rise, full strength, exponential decay (Jennings,
+/// Envelope of the shaking over time: quadratic rise, full strength, exponential decay (Jennings,
 /// Housner and Tsai, 1968), and zero at the end.
 struct Envelope {
   double rise_s = 3.0;

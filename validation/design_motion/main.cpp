@@ -13,7 +13,7 @@ constexpr double kLowestAllowed = 0.9;
 
 }  // namespace
 
-/// Makes the ground motion that the scenarios ship with, or another one like it.
+/// Makes the ground motion of the shipped scenarios, or another one with other settings.
 int main(int argc, char** argv) {
   hybridtest::design_motion::DesignMotionSettings settings;
   std::string file;
@@ -42,7 +42,8 @@ int main(int argc, char** argv) {
     stream << hybridtest::design_motion::at2_text(motion.acceleration_m_per_s2, settings);
     stream.close();
     if (!stream) {
-      std::fprintf(stderr, "design_motion: %s cannot be written; check the folder and the space on the disk\n",
+      std::fprintf(stderr,
+                   "design_motion: %s cannot be written; check that the folder exists and the disk is not full\n",
                    file.c_str());
       return 1;
     }

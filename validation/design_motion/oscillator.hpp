@@ -5,7 +5,7 @@
 namespace hybridtest::design_motion {
 
 /// A damped oscillator under ground acceleration, u'' + 2 ratio omega u' + omega^2 u = -a, solved
-/// exactly for accelerations that are straight between their samples (Nigam and Jennings, 1969).
+/// exactly for accelerations that are linear between their samples (Nigam and Jennings, 1969).
 class Oscillator {
  public:
   /// @param period_s   positive. @param damping_ratio   in [0, 1). @param dt_s   positive.
@@ -37,7 +37,7 @@ struct PeakResponse {
   double time_s = 0.0;
 };
 
-/// Samples between which the motion is straight are subdivided to at least 40 instants per period,
+/// Intervals between samples are subdivided to at least 40 instants per period (linear interpolation),
 /// so that the peak is underestimated by 1 - cos(pi/40) = 0.3 percent at most.
 /// The motion starts at time 0 with its first sample; the oscillator starts at rest.
 [[nodiscard]] PeakResponse peak_response(const std::vector<double>& acceleration_m_per_s2, double dt_s, double period_s,

@@ -15,9 +15,9 @@
 namespace hybridtest::design_motion {
 namespace {
 
-/// Share of the change that is made: peaks that move make the full one overshoot.
+/// Share of the computed change that is applied. The full change overshoots, because peaks move.
 constexpr double kRelaxation = 0.5;
-/// Weight of small amplitudes against a close fit; neighbouring wavelets are nearly alike.
+/// Regularisation: small amplitudes against a close fit. Neighbouring wavelets are nearly equal.
 constexpr double kRegularisation = 0.03;
 /// A wavelet is cut off where its envelope has fallen to exp(-9).
 constexpr double kReach = 3.0;
@@ -76,13 +76,13 @@ Eigen::VectorXd amplitudes_for(const Eigen::MatrixXd& influence, const Eigen::Ve
   // In units of each wavelet's own effect, so that the regularisation treats all alike.
   const Eigen::VectorXd own = influence.diagonal().cwiseAbs().cwiseMax(1e-12);
   const Eigen::MatrixXd scaled = influence * own.cwiseInverse().asDiagonal();
-  // The plain product: the blocked one adds in an order that depends on the machine's caches.
+  // The plain product: the order of additions of the blocked product depends on the caches of the machine.
   Eigen::MatrixXd normal = scaled.transpose().lazyProduct(scaled);
   normal.diagonal().array() += kRegularisation;
   return normal.ldlt().solve(scaled.transpose() * lacking).cwiseQuotient(own);
 }
 
-/// One round: adds the wavelets that the present peaks call for.
+/// One round: adds the wavelets that the current peaks require.
 void correct(std::vector<double>& acceleration, double dt_s, const SpectralTarget& target) {
   const double ratio = target.damping_ratio;
   const auto count = static_cast<Eigen::Index>(target.period_s.size());
@@ -148,7 +148,7 @@ std::vector<double> match_spectrum(std::vector<double> acceleration_m_per_s2, do
                                    double fade_s, int iterations) {
   std::vector<double> best = acceleration_m_per_s2;
   double best_misfit = spectral_fit(best, dt_s, target).misfit();
-  // Neighbouring wavelets are nearly alike; taken in turns, they leave no dips between them.
+  // Neighbouring wavelets are nearly equal; used in turns, they leave no dips between them.
   const std::array<SpectralTarget, 2> turns = {every_second(target, 0), every_second(target, 1)};
   for (int iteration = 0; iteration < iterations; ++iteration) {
     correct(acceleration_m_per_s2, dt_s, turns[static_cast<std::size_t>(iteration % 2)]);

@@ -4,7 +4,7 @@
 
 namespace hybridtest::design_motion {
 
-/// What a motion is to be fitted to.
+/// The target of a fit.
 struct SpectralTarget {
   std::vector<double> period_s;
   std::vector<double> pseudo_acceleration_m_per_s2;  // one per period, positive

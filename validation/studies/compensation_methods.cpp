@@ -21,11 +21,11 @@
 namespace hybridtest {
 namespace {
 
-/// The upper bound lies this much over the delay: more than the benchmark's uncertainty moves it.
+/// Margin of the upper bound over the delay: more than the uncertainty of the benchmark.
 constexpr double kUpperBoundMarginS = 0.004;
 
-/// Of the force lead's points: its noise is 1.2 times the load cell's, where neighbouring samples would make it
-/// 7 times, and two of these are still short against the motion.
+/// Spacing of the points of the force lead. Its noise is 1.2 times that of the load cell; with neighbouring samples it
+/// would be 7 times. Two spacings are still short compared with the motion.
 constexpr double kForcePointSpacingS = 0.004;
 
 using MakeCompensator = std::function<std::unique_ptr<Compensator>(double, double)>;
@@ -125,7 +125,7 @@ void add_force_methods(std::vector<CompensationMethod>& methods) {
                 })));
   methods.push_back(on_forces("force_correction", made_with<ForceCorrection>(force_correction)));
   methods.back().is_ours = true;
-  methods.back().remark = "force_correction_quadratic without its jumps";
+  methods.back().remark = "force_correction_quadratic without the jumps";
   methods.push_back(
       {"upper_bound_delay", MethodGroup::force, false, false, "with optimal_pick on the forces",
        made_with<UpperBoundDelay>([](double delay_s) -> UpperBoundDelay::Parameters {

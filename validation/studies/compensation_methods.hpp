@@ -23,7 +23,7 @@ struct CompensationMethod {
   std::string name;
   MethodGroup group = MethodGroup::extrapolation;
   bool is_ours = false;
-  bool needs_model = false;  // of the benchmark's transfer system; others are told a delay alone
+  bool needs_model = false;  // needs the model of the benchmark's transfer system; others get its delay only
   std::string remark;
   /// @param delay_s   of the transfer system at low frequency.
   std::function<std::unique_ptr<Compensator>(double delay_s, double period_s)> make_compensator;
@@ -33,7 +33,7 @@ struct CompensationMethod {
 /// Every method, `none` first.
 [[nodiscard]] std::vector<CompensationMethod> compensation_methods();
 
-/// Makes up for a force that is one sample late and held over one: in the mean one and a half periods.
+/// Compensates a force that is one sample late and held over one sample: one and a half periods on average.
 /// @param periods   of lead.
 [[nodiscard]] std::unique_ptr<ForceCompensator> make_force_lead(double periods, double period_s);
 inline constexpr double kLoopDelayPeriods = 1.5;

@@ -5,8 +5,8 @@
 
 namespace hybridtest {
 
-/// Calls run(0) … run(count - 1), each once, on so many threads. Which thread takes which is left to chance:
-/// a run may depend on its number alone. The first exception of a run is thrown on when all have ended.
+/// Calls run(0) … run(count - 1), each once, on `threads` threads. The assignment to threads is not fixed, so
+/// a run may depend only on its number. The first exception of a run is rethrown when all have ended.
 /// @param threads   at least 1.
 void run_in_parallel(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& run);
 

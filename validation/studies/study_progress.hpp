@@ -9,11 +9,11 @@
 
 namespace hybridtest {
 
-/// What a person sees while a study runs: on a terminal one line that is rewritten, elsewhere a plain line
-/// now and then. May be told from any thread.
+/// The progress display of a study: on a terminal one line, rewritten in place; otherwise one plain line
+/// every few seconds. Any thread may report.
 class StudyProgress {
  public:
-  /// @param runs   planned. @param out   standard error, as a rule; nullptr: nobody looks.
+  /// @param runs   planned. @param out   usually standard error; nullptr: no display.
   StudyProgress(std::size_t runs, std::FILE* out);
   /// Ends the rewritten line.
   ~StudyProgress();

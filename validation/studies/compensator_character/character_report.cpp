@@ -33,7 +33,7 @@ std::string delay_at(const CharacterStudy& study, const Character& character, Re
       nearest = i;
   }
   const std::complex<double> response = (character.*responses)[nearest];
-  if (!std::isfinite(response.real())) return "runs away";
+  if (!std::isfinite(response.real())) return "diverges";
   return fmt::format("{:+.2f} ms, {:.3f}", 1e3 * effective_delay_s(response, study.frequencies_hz[nearest]),
                      std::abs(response));
 }
@@ -116,11 +116,9 @@ std::string noise_gain_csv(const CharacterStudy& study) {
 
 std::string summary_markdown(const CharacterStudy& study) {
   std::string text = fmt::format(
-      "# What each compensator is like\n\nEffective delay and amplitude of the force that the structure gets, against "
-      "that "
-      "which the target would have; noise root mean square out over in; the first omega delay at which a structure "
-      "with "
-      "{:g} % damping, all of its stiffness behind the actuator, grows.\n\n"
+      "# Properties of each compensator\n\nEffective delay and amplitude of the force that the structure receives, "
+      "relative to the force that belongs to the target; noise gains (root mean square out over in); the first omega "
+      "delay at which a structure with {:g} % damping and all of its stiffness in the specimen becomes unstable.\n\n"
       "| compensator | pure delay of 20 ms, 1 Hz | 3.5 Hz | 10 Hz | benchmark actuator, 1 Hz | 3.5 Hz | 10 Hz | target "
       "noise to "
       "command | displacement noise to command | force noise to force | stable below omega delay |\n"
@@ -153,7 +151,7 @@ std::string benchmark_figure(const CharacterStudy& study) {
 
 std::string noise_figure(const CharacterStudy& study) {
   plot::DotFigure figure{
-      .title = "Noise out over noise in, root mean squares",
+      .title = "Noise gain: root mean square out over in",
       .axis = {.label = "gain", .is_logarithmic = true},
       .marks = {"target to command", "displacement sensor to command", "load cell to structure's force"},
       .rows = {}};

@@ -10,7 +10,7 @@
 
 namespace hybridtest::character {
 
-/// What one method is like.
+/// The measured properties of one method.
 struct Character {
   std::string name;
   MethodGroup group = MethodGroup::extrapolation;

@@ -7,7 +7,7 @@
 
 namespace hybridtest::character {
 
-/// Of the sines that the study drives.
+/// Amplitude of the sines that the study drives.
 inline constexpr double kAmplitudeM = 0.003;
 
 /// Displacement and its first two derivatives.
@@ -28,7 +28,7 @@ class DrivenTarget {
   double omega_;
 };
 
-/// Additions to what sensors and target say.
+/// Noise added to the sensors and to the target.
 struct Disturbance {
   double target_m = 0.0;
   double measured_displacement_m = 0.0;
@@ -37,7 +37,7 @@ struct Disturbance {
 
 struct LoopSample {
   double command_m = 0.0;
-  double structure_force_n = 0.0;  // that the structure gets at this sample
+  double structure_force_n = 0.0;  // received by the structure at this sample
 };
 
 /// A method on a stand, one sample at a time. Compensators on commands see the measurements of the sample before.

@@ -51,7 +51,7 @@ std::complex<double> measured_response(const CompensationMethod& method, const S
   const DrivenTarget target{kAmplitudeM, frequency_hz};
   MeasuredLoop loop{method, stand};
   SinePair fit;
-  // The force acts in the mean half a period after it is handed over, when the structure holds it.
+  // When the structure holds the force, it acts half a period late on average.
   const double handed_over_s = stand.has_loop_delay ? 0.5 * stand.period_s : 0.0;
   const auto samples = static_cast<long>((settle_s + measure_s) / stand.period_s);
   for (long i = 0; i < samples; ++i) {

@@ -10,9 +10,9 @@ namespace hybridtest::character {
 namespace {
 
 constexpr int kCycles = 40;
-/// Over which the logarithm of the amplitude is taken as straight: what comes before is start-up.
+/// Part of the record in which the logarithm of the amplitude is taken as linear; before it is start-up.
 constexpr int kFirstCycle = 12;
-/// Growth or decay by this factor is enough, and further would leave the range of numbers or of noise.
+/// The run ends after growth or decay by this factor; further values would leave the range of numbers or of noise.
 constexpr double kEnough = 1e8;
 
 /// Slope of a straight line by least squares.
@@ -37,7 +37,7 @@ class Slope {
 };
 
 /// Explicit Newmark of x'' + 2 zeta omega x' + f = 0, f the restoring force over the mass. The target's velocity
-/// and acceleration are those known when it is sent, as a coordinator has them.
+/// and acceleration are those that the coordinator knows when it sends the target.
 class FreeVibration {
  public:
   FreeVibration(double omega, double damping, double step_s)
@@ -83,7 +83,7 @@ double measured_loop_damping(const CompensationMethod& method, double omega_dela
     }
     const double amplitude = std::sqrt(square / per_cycle) / kAmplitudeM;
     const bool is_enough = !(amplitude < kEnough) || amplitude < 1.0 / kEnough;
-    // Fast growth does not wait for the start-up to be over.
+    // Fast growth can end the run during the start-up.
     if (!is_enough && (cycle >= kFirstCycle || amplitude > 1e3))
       slope.add(cycle * per_cycle * stand.period_s, std::log(amplitude));
     if (is_enough && slope.count() < 2) return amplitude > 1.0 || std::isnan(amplitude) ? -1.0 : 1.0;

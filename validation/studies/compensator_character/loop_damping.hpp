@@ -6,9 +6,9 @@
 
 namespace hybridtest::character {
 
-/// Damping ratio that a structure of one degree of freedom has when all of its stiffness stands behind an actuator that
-/// is late, measured on its free vibration: the slope of the logarithm of its amplitude. Explicit Newmark at 1 kHz,
-/// delay of 20 ms; the method is told the delay as it is.
+/// Damping ratio of a structure of one degree of freedom whose whole stiffness is tested with a delayed actuator,
+/// measured on its free vibration: the slope of the logarithm of its amplitude. Explicit Newmark at 1 kHz,
+/// delay of 20 ms; the method receives the exact delay.
 ///
 /// The closed form without compensation is the root s of s^2 + 2 zeta omega s + omega^2 exp(-s delay) = 0.
 /// @param omega_delay   natural angular frequency times delay [rad].
@@ -16,8 +16,8 @@ namespace hybridtest::character {
 /// @return minus the growth rate over omega; negative where the motion grows.
 [[nodiscard]] double measured_loop_damping(const CompensationMethod& method, double omega_delay, double damping);
 
-/// The least omega delay at which the motion neither grows nor decays, on a straight line between the last value at
-/// which it decays and the first at which it grows; the last value where it never grows.
+/// The smallest omega delay at which the motion neither grows nor decays, interpolated linearly between the last value
+/// at which it decays and the first at which it grows; the last value if it never grows.
 /// @param omega_delays   rising. @param dampings   at each.
 struct StabilityLimit {
   double omega_delay = 0.0;

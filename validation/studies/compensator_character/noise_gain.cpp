@@ -11,7 +11,7 @@ namespace {
 constexpr double kFrequencyHz = 1.0;
 constexpr double kNoiseSettleS = 8.0;
 constexpr double kNoiseMeasureS = 8.0;
-// The sensors of the benchmark; a target is as noisy as what it is integrated from makes it.
+// Sensor noise of the benchmark; the small noise of a target comes from the measured forces that it is integrated from.
 constexpr double kDisplacementNoiseM = 1.6e-5;
 constexpr double kForceNoiseN = 2.18;
 constexpr double kTargetNoiseM = 1e-6;

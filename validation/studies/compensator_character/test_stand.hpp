@@ -15,22 +15,22 @@ class TestStand {
   [[nodiscard]] virtual double force_n() const noexcept = 0;
 };
 
-/// A kind of stand and what belongs to it.
+/// A kind of test stand and its properties.
 struct StandKind {
   const char* name;
   double period_s;
-  double delay_s;  // that a method is told
+  double delay_s;  // given to the method
   double mass_kg;  // of the specimen: force = m a + c v + k x
   double damping_n_s_per_m;
   double stiffness_n_per_m;
-  /// The structure gets the force of the sample before and holds it over one, as in the benchmark; otherwise that of
-  /// this sample.
+  /// The structure receives the force of the previous sample and holds it over one, as in the benchmark; otherwise it
+  /// receives the force of this sample.
   bool has_loop_delay;
   bool fits_model;  // methods that need the benchmark's model can be measured
   std::function<std::unique_ptr<TestStand>()> make;
 };
 
-/// The command arrives 20 ms late and otherwise unchanged, at 1 kHz.
+/// The command arrives with a delay of 20 ms and is otherwise unchanged, at 1 kHz.
 [[nodiscard]] StandKind pure_delay_stand();
 /// The nominal plant of the virtual RTHS benchmark, at its rate.
 [[nodiscard]] StandKind benchmark_stand();

@@ -92,24 +92,25 @@ std::vector<Finding> find(std::span<const MethodRun> runs) {
   return {
       {"Without compensation the delay acts as negative damping: the motion grows until an interlock ends the test",
        fmt::format(
-           "largest error of floor 2 by quarters {:.2g}, {:.2g}, {:.2g}, {:.2g} mm; {:.0f} J given by the delay; {}",
+           "largest error of floor 2 by quarters {:.2g}, {:.2g}, {:.2g}, {:.2g} mm; {:.0f} J added by the delay; {}",
            1e3 * quarters[0], 1e3 * quarters[1], 1e3 * quarters[2], 1e3 * quarters[3], -uncompensated.energy_error_j,
            uncompensated.interlock.empty() ? "no interlock" : uncompensated.interlock),
        !uncompensated.is_complete && !uncompensated.interlock.empty() && grows(quarters) &&
            uncompensated.energy_error_j < 0.0},
-      {"Of the study's four methods, extrapolation of the displacement and Newmark's kinematics stay closest",
+      {"Of the four methods of the study, extrapolation of the displacement and Newmark kinematics have the smallest "
+       "errors",
        fmt::format("{:.2f} and {:.2f} % against {:.2f} and {:.2f} %", worst_rms(displacement), worst_rms(newmark),
                    worst_rms(force), worst_rms(quadratic)),
        displacement.is_complete && newmark.is_complete && closest_of_study < worst_rms(force) &&
            closest_of_study < worst_rms(quadratic)},
-      {"Extrapolation of the force is worse than that of the displacement",
+      {"Extrapolation of the force has larger errors than extrapolation of the displacement",
        fmt::format("{:.2f} against {:.2f} %", worst_rms(force), worst_rms(displacement)),
        worst_rms(force) > 2.0 * worst_rms(displacement)},
       {"Quadratic force correction jumps",
        fmt::format("{} jumps, the largest {:.0f} % of the peak force in one control period", quadratic.jumps,
                    quadratic.largest_change_percent),
        quadratic.jumps > 0},
-      {"Ours does not, and the method becomes usable",
+      {"Our force correction does not jump, and the method becomes usable",
        fmt::format("{} jumps, largest change {:.2f} %; {:.2f} % error against {:.2f} %", corrected.jumps,
                    corrected.largest_change_percent, worst_rms(corrected), worst_rms(quadratic)),
        corrected.is_complete && corrected.jumps == 0 && worst_rms(corrected) < worst_rms(quadratic)},

@@ -8,11 +8,11 @@
 
 namespace hybridtest::founding {
 
-/// A force that changes by more than this share of the exact specimen's peak force from one control period to
-/// the next has jumped: the exact one changes by less than a hundredth of its peak.
+/// A change of force by more than this share of the exact specimen's peak force from one control period to
+/// the next is a jump. The exact force changes by less than a hundredth of its peak.
 inline constexpr double kJumpShare = 0.05;
 
-/// A method against the exact specimen, over the time that it lasted.
+/// A method compared with the exact specimen, until its test ended.
 struct Distance {
   std::string name;
   bool is_complete = false;
@@ -22,17 +22,17 @@ struct Distance {
   std::array<double, kFloors> peak_percent{};  // largest error over the largest exact displacement of the whole test
   double largest_change_percent = 0.0;         // of a force in one control period, over the exact peak force
   int jumps = 0;                               // changes over kJumpShare
-  double energy_error_j = 0.0;                 // largest, negative: given to the structure
+  double energy_error_j = 0.0;                 // largest, negative: added to the structure
 };
 
 /// @param exact   of the same scenario; complete.
 [[nodiscard]] Distance distance_of(const MethodRun& run, const MethodRun& exact);
 
-/// Largest errors of the floors by quarters of the time that a method lasted [m]: growth shows in them.
+/// Largest errors of the floors in each quarter of the test of a method [m]; they show growth.
 [[nodiscard]] std::array<double, 4> error_by_quarters_m(const MethodRun& run, const MethodRun& exact,
                                                         std::size_t floor);
 
-/// What the study found, and whether these runs show it.
+/// A finding of the study, and whether these runs show it.
 struct Finding {
   std::string what;
   std::string shown_by;

@@ -38,7 +38,7 @@ const MethodRun& run_named(std::span<const MethodRun> runs, std::string_view nam
   return *std::ranges::find(runs, name, &MethodRun::name);
 }
 
-/// The forces of actuator 1 about the largest jump of the quadratic correction.
+/// The forces of actuator 1 near the largest jump of the quadratic correction.
 std::string jump_figure(std::span<const MethodRun> runs) {
   const MethodRun& quadratic = run_named(runs, "force_correction_quadratic");
   const auto& force_n = quadratic.force_n[0];
@@ -53,7 +53,7 @@ std::string jump_figure(std::span<const MethodRun> runs) {
   constexpr double kAboutS = 0.5;
   const double centre_s = quadratic.period_time_s[at];
   plot::Panel panel{
-      .title = "force of actuator 1 about the largest jump",
+      .title = "force of actuator 1 near the largest jump",
       .x = {.label = "time [s]", .is_logarithmic = false, .low = centre_s - kAboutS, .high = centre_s + kAboutS},
       .y = {.label = "force [kN]", .is_logarithmic = false, .low = -22.2, .high = 22.2},
       .lines = {}};
@@ -104,21 +104,23 @@ std::string summary_markdown(std::span<const MethodRun> runs) {
                          d.largest_change_percent, d.jumps);
   }
   return fmt::format(
-      "# The founding study: two storeys, two actuators, four methods against a delay\n\n"
-      "Actuators 10 ms late, load cells with noise, both storeys physical; simulated with the nodes of a real test.\n\n"
-      "## Findings\n\n{}\n## Methods against the exact specimen\n\n{}\n"
-      "- Errors over the time that a method lasted; rms over the exact rms of that time, peaks over the exact peak of "
-      "the "
-      "whole test. Forces over the exact peak force.\n"
+      "# The founding study: two storeys, two actuators, four methods of delay compensation\n\n"
+      "Actuators with a delay of 10 ms, load cells with noise, both storeys are specimens; simulated with the nodes of "
+      "a "
+      "real test.\n\n"
+      "## Findings\n\n{}\n## Methods compared with the exact specimen\n\n{}\n"
+      "- Errors are evaluated until the test of a method ended: rms over the exact rms of that time, peaks over the "
+      "exact "
+      "peak of the whole test, forces over the exact peak force.\n"
       "- A jump is a change of a force by more than {:.0f} % of the exact peak force from one control period to the "
       "next. "
-      "Those of polynomial_force are the load cell's noise, which it multiplies by 27 (root mean square), not jumps of "
-      "the method.\n"
-      "- On an elastic specimen and without noise, extrapolating the force and extrapolating the displacement are the "
-      "same "
-      "thing: the loop does not care on which side of the actuator the polynomial stands. What makes the force the "
-      "worse "
-      "side is that load cells are noisy and targets are not.\n",
+      "The jumps of polynomial_force are load cell noise, which it amplifies 27 times (root mean square), and not "
+      "jumps "
+      "of the method.\n"
+      "- With an elastic specimen and without noise, extrapolation of the force and of the displacement are "
+      "equivalent: it "
+      "does not matter on which side of the actuator the polynomial is. Extrapolation of the force is worse because "
+      "load cells are noisy and targets are not.\n",
       findings, table, 100.0 * kJumpShare);
 }
 
@@ -134,11 +136,11 @@ std::string page_html(std::span<const MethodRun> runs) {
   }
   sections.push_back(
       {"Jumps of the quadratic force correction",
-       "Where the parabola does not reach the desired displacement the published method falls back to the "
-       "uncorrected force. What the integrator got, each control period.",
+       "Where the parabola does not reach the desired displacement, the published method uses the uncorrected force. "
+       "The figure shows the force that the integrator received, in each control period.",
        jump_figure(runs)});
   return plot::html_page("The founding study's figures 9 to 13",
-                         "Displacement of each method against the exact specimen, two-storey test with two actuators.",
+                         "Displacement of each method and of the exact specimen; two-storey test with two actuators.",
                          sections);
 }
 

@@ -12,8 +12,8 @@
 namespace hybridtest::founding {
 namespace {
 
-/// Network and clocks of the simulation, not the sensors: those have their seed in the scenario. In lockstep
-/// over a network that loses nothing, no number depends on it.
+/// Seed of the simulated network and clocks; the sensors have their seed in the scenario. In lockstep, over a
+/// network without loss, no result depends on it.
 constexpr std::uint64_t kSeed = 1;
 
 using Tables = std::map<std::string, KeptTable, std::less<>>;

@@ -18,7 +18,7 @@ inline constexpr std::size_t kActuators = 2;
 /// One scenario of the study.
 struct Method {
   const char* name;    // of the scenario file, without its extension
-  const char* figure;  // what it is in the study
+  const char* figure;  // its place in the study
 };
 
 /// In the order of the study's figures; the exact specimen first.
@@ -32,16 +32,16 @@ inline constexpr std::array<Method, 7> kMethods{{
     {"force_correction", "figure 13 without its jumps"},
 }};
 
-/// What one scenario gave.
+/// The results of one scenario.
 struct MethodRun {
   std::string name;
   StopReason reason = StopReason::none;
-  std::string interlock;                                    // what tripped, as told to people; empty when none did
+  std::string interlock;                                    // the text of the interlock that tripped; empty if none did
   std::vector<double> time_s;                               // each step
   std::array<std::vector<double>, kFloors> displacement_m;  // by floor, each step
   std::vector<double> period_time_s;                        // each control period
-  std::array<std::vector<double>, kActuators> force_n;      // as the integrator gets it, each control period
-  std::vector<double> energy_error_j;                       // each control period; negative: given by the delay
+  std::array<std::vector<double>, kActuators> force_n;      // received by the integrator, each control period
+  std::vector<double> energy_error_j;                       // each control period; negative: added by the delay
 };
 
 /// Runs one scenario of the study in this thread under simulated time.

@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// A recorded table in memory, for a study to read back by the names of its columns.
+/// A recorded table in memory; a study reads it by the names of its columns.
 class KeptTable final : public RowSink {
  public:
   explicit KeptTable(TableLayout layout) : layout_{std::move(layout)} {}

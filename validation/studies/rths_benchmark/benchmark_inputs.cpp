@@ -36,9 +36,9 @@ std::filesystem::path ground_motion_directory(const std::filesystem::path& given
   const char* from_environment = std::getenv("HYBRIDTEST_GROUND_MOTIONS");
   if (from_environment != nullptr && *from_environment != '\0') return from_environment;
   throw ConfigError{
-      "where are the benchmark's ground motions? Give --ground-motions DIR or set HYBRIDTEST_GROUND_MOTIONS; expected "
-      "in "
-      "it: rths_benchmark_elcentro.csv, rths_benchmark_kobe.csv, rths_benchmark_morgan.csv"};
+      "the directory with the ground motions of the benchmark is not known: give --ground-motions DIR or set "
+      "HYBRIDTEST_GROUND_MOTIONS; expected in it: rths_benchmark_elcentro.csv, rths_benchmark_kobe.csv, "
+      "rths_benchmark_morgan.csv"};
 }
 
 }  // namespace hybridtest::rths

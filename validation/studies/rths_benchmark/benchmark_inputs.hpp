@@ -31,9 +31,9 @@ class BenchmarkInputs {
   std::vector<Reference> references_;
 };
 
-/// The directory with the benchmark's motions: what was given, else the environment variable
+/// The directory with the ground motions of the benchmark: `given`, or else the environment variable
 /// HYBRIDTEST_GROUND_MOTIONS.
-/// @throws ConfigError where neither names one, with what to do.
+/// @throws ConfigError when neither names one, with what to do next.
 [[nodiscard]] std::filesystem::path ground_motion_directory(const std::filesystem::path& given);
 
 }  // namespace hybridtest::rths

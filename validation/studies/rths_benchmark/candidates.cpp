@@ -52,7 +52,7 @@ Standing standing_of(const CompensationMethod& method) {
   return method.name == "none" ? Standing::yardstick : Standing::published;
 }
 
-/// Every method of the studies; in the second arrangement those that know nothing of the bare plant.
+/// Every method of the studies; in the second arrangement only those that need no model of the bare plant.
 void add_methods(Arrangement arrangement, std::vector<Candidate>& candidates) {
   const double delay_s = nominal_delay_s(arrangement);
   for (const CompensationMethod& method : compensation_methods()) {
@@ -95,7 +95,7 @@ void add_variants(std::vector<Candidate>& candidates) {
       maker_of<FeedforwardLqg>(no_feedback), kMeasuredForce);
   add("adaptive_model_inverse_part_lead", Standing::our_variant, "with 0.4 periods of force lead instead of 1.5",
       maker_of<AdaptiveModelInverse>({}), force_lead(0.4));
-  add("adaptive_model_inverse_no_lead", Standing::our_variant, "nothing on the forces",
+  add("adaptive_model_inverse_no_lead", Standing::our_variant, "without a force compensator",
       maker_of<AdaptiveModelInverse>({}), kMeasuredForce);
   AdaptiveModelInverse::Parameters fixed;
   fixed.adapts = false;

@@ -7,7 +7,7 @@
 
 namespace hybridtest::rths {
 
-/// What the controller of the benchmark knows at one sample.
+/// The inputs of the controller of the benchmark at one sample.
 struct ControlSample {
   double target_m = 0.0;                      // x_n1
   double target_velocity_m_per_s = 0.0;       // of the numerical part
@@ -17,7 +17,7 @@ struct ControlSample {
   double previous_force_n = 0.0;              // likewise
 };
 
-/// All that stands between the numerical part and the plant, converters included.
+/// The signal path between the numerical part and the plant, converters included.
 class ControlPath {
  public:
   virtual ~ControlPath() = default;
@@ -49,13 +49,13 @@ class ReleasedController final : public ControlPath {
   double output_m_ = 0.0;
 };
 
-/// Which transfer system a compensator finds before it.
+/// The transfer system that a compensator has to compensate.
 enum class Arrangement {
   straight,  // its command goes to the plant
   with_pi,   // its command is the input of the benchmark's loop
 };
 
-/// A compensator, with the measurements of the sample before.
+/// A compensator that receives the measurements of the previous sample.
 class CompensatedPath final : public ControlPath {
  public:
   CompensatedPath(std::unique_ptr<Compensator> compensator, Arrangement arrangement)

@@ -5,7 +5,7 @@
 
 namespace hybridtest::rths {
 
-/// With the mean removed. @param values   not empty.
+/// After removing the mean. @param values   not empty.
 [[nodiscard]] double standard_deviation(std::span<const double> values);
 [[nodiscard]] double largest_magnitude(std::span<const double> values);
 
@@ -21,7 +21,7 @@ namespace hybridtest::rths {
 /// sample, negative for a lead; for delays that are short against the motion.
 [[nodiscard]] double fitted_delay_s(std::span<const double> follower, std::span<const double> leader, double period_s);
 
-/// What a run recorded, one value per sample.
+/// The recorded signals of a run, one value per sample.
 struct TestSignals {
   std::span<const double> target_m;    // x_n of floor 1
   std::span<const double> measured_m;  // x_m, with sensor noise
@@ -29,7 +29,7 @@ struct TestSignals {
   std::span<const double> floor_3_m;
 };
 
-/// The structure as it ought to move.
+/// The motion of the reference structure.
 struct ReferenceSignals {
   std::span<const double> floor_1_m;
   std::span<const double> floor_2_m;
@@ -46,7 +46,7 @@ struct Criteria {
 };
 
 [[nodiscard]] Criteria evaluate_criteria(const TestSignals& test, const ReferenceSignals& reference, double period_s);
-/// All not a number, of a run that did not reach its end.
+/// All values NaN, for a run that did not reach its end.
 [[nodiscard]] Criteria no_criteria() noexcept;
 
 }  // namespace hybridtest::rths

@@ -9,7 +9,7 @@
 
 namespace hybridtest::rths {
 
-/// The benchmark's three-storey frame, or what is left of it when the specimen is taken out:
+/// The three-storey frame of the benchmark, or its numerical part without the specimen:
 ///
 ///     M x'' + C x' + K x = -M_full 1 a_g - [f, 0, 0]'
 ///
@@ -29,7 +29,7 @@ class Frame {
   [[nodiscard]] Floors acceleration(std::span<const double, 2 * kFloors> state, double ground_m_per_s2,
                                     double specimen_force_n) const noexcept;
 
-  /// One sample period on, with the motion interpolated at the stages and the force held.
+  /// Advances by one sample period, with the ground motion interpolated at the stages and the force held.
   void step(State& state, const GroundMotion& motion, double time_s, double specimen_force_n) const noexcept;
 
  private:

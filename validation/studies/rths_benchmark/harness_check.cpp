@@ -13,7 +13,7 @@
 namespace hybridtest::rths {
 namespace {
 
-/// From an implementation of the benchmark that shares no code with this one.
+/// Values from an implementation of the benchmark that shares no code with this one.
 constexpr std::array<PublishedRow, HarnessCheck::kRows> kPublished{{
     {1, 0, {{4.64, 10.15, 10.75, 35.95, 17.57, 32.23, 32.35, 14.81, 14.75}}},
     {1, 1, {{4.64, 9.94, 10.33, 25.93, 16.17, 23.09, 23.16, 13.95, 13.88}}},
@@ -63,7 +63,7 @@ HarnessCheck check_harness(const BenchmarkInputs& inputs, unsigned threads) {
     for (std::size_t j = 1; j <= Criteria::kCount; ++j) {
       const double published = kPublished[row].criteria.j(j);
       const double deviation = std::abs(check.found[row].j(j) / published - 1.0);
-      // What is not a number deviates without bound.
+      // NaN counts as an infinite deviation.
       check.largest_deviation_share =
           std::isfinite(deviation) ? std::max(check.largest_deviation_share, deviation) : HUGE_VAL;
     }
@@ -88,13 +88,12 @@ std::string to_markdown(const HarnessCheck& check) {
     add("here", check.found[row]);
   }
   text += fmt::format(
-      "\nLargest deviation of any value: {:.2f} % (at most {:.0f} %). Without compensation {} of {} runs diverge into "
-      "the "
-      "force limit.\n{}\n",
+      "\nLargest deviation of any value: {:.2f} % (at most {:.0f} %). Without compensation {} of {} runs "
+      "diverge to the force limit.\n{}\n",
       100.0 * check.largest_deviation_share, 100.0 * HarnessCheck::kToleranceShare, check.uncompensated_diverged,
       check.uncompensated_runs,
       check.is_confirmed() ? "The harness is confirmed."
-                           : "The harness is NOT confirmed: no study can be built on it.");
+                           : "The harness is NOT confirmed: results of a study would not be valid.");
   return text;
 }
 

@@ -18,8 +18,8 @@ struct PublishedRow {
 
 [[nodiscard]] std::span<const PublishedRow> published_rows();
 
-/// Whether this harness is the benchmark: the released controller has to give the published values, and
-/// the plant without compensation has to run into its force limit under every motion and in every case.
+/// Checks that this harness reproduces the benchmark: the released controller must give the published values,
+/// and the plant without compensation must reach its force limit under every motion and in every case.
 struct HarnessCheck {
   static constexpr double kToleranceShare = 0.03;
   static constexpr std::size_t kRows = 5;

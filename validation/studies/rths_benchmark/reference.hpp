@@ -8,14 +8,14 @@
 
 namespace hybridtest::rths {
 
-/// How the whole frame moves when nothing is tested: what a hybrid test ought to give.
+/// The motion of the whole computed frame: the exact result of a hybrid test.
 struct Reference {
   std::array<std::vector<double>, kFloors> displacement_m;  // by floor, each sample
   double peak_force_n = 0.0;                                // of the specimen, k x_1
   double noise_floor_percent = 0.0;                         // sensor noise over the deviation of x_1
 
   [[nodiscard]] std::size_t samples() const noexcept { return displacement_m[0].size(); }
-  /// The specimen's own force comes so near to the limit that reaching it tells nothing.
+  /// The force of the reference specimen is so near to the limit that reaching it does not mean a lost run.
   [[nodiscard]] bool is_near_force_limit() const noexcept { return peak_force_n >= kExcusedShare * kForceLimitN; }
 };
 

@@ -14,7 +14,7 @@
 namespace hybridtest::rths {
 namespace {
 
-/// Histories are shown of the most sensitive case under its strongest motion for it.
+/// Histories are shown for the most sensitive case, under its strongest motion.
 constexpr int kShownCase = 4;
 constexpr std::size_t kShownMotion = 0;
 constexpr double kShownSpanS = 6.0;
@@ -28,7 +28,7 @@ std::vector<double> in_millimetres(const std::vector<double>& metres, std::size_
 }
 
 std::string floor_figure(std::span<const CandidateMeans> means) {
-  plot::DotFigure figure{.title = "J2 of the measured displacement beside the least that sensor noise permits",
+  plot::DotFigure figure{.title = "J2 of the measured displacement, and its floor from sensor noise",
                          .axis = {.label = "mean over runs [%]", .is_logarithmic = true},
                          .marks = {"J2", "floor of J2"},
                          .rows = {}};
@@ -88,13 +88,13 @@ std::string history_figure(const BenchmarkInputs& inputs, const std::vector<Cand
   for (std::size_t i = begin; i < end; ++i) times_s.push_back(static_cast<double>(i) * kPeriodS);
 
   plot::Panel floor{"third floor", {.label = "time [s]"}, {.label = "displacement [mm]"}, {}};
-  plot::Panel error{"specimen against its target", {.label = "time [s]"}, {.label = "true error [mm]"}, {}};
+  plot::Panel error{"tracking error of the specimen", {.label = "time [s]"}, {.label = "true error [mm]"}, {}};
   floor.lines.push_back({"reference", times_s, in_millimetres(floor_3_m, begin, end), true});
   for (const Candidate& candidate : candidates) {
     if (std::ranges::find(kShown, candidate.name) == kShown.end()) continue;
     const TestHistory history = run_for_history(inputs, candidate, kShownCase, kShownMotion, 0, settings);
     floor.lines.push_back({candidate.name, times_s, in_millimetres(history.floor_3_m, begin, end)});
-    if (candidate.standing == Standing::yardstick) continue;  // so much larger that the others would be a line
+    if (candidate.standing == Standing::yardstick) continue;  // so large that the others would not be visible
     std::vector<double> error_m = history.true_m;
     for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= history.target_m[i];
     error.lines.push_back({candidate.name, times_s, in_millimetres(error_m, begin, end)});
@@ -129,9 +129,9 @@ std::string page_html(const BenchmarkInputs& inputs, const std::vector<Candidate
       {
           {"All compensators", "Lost runs are left out of the means.", error_figure(inputs, candidates, runs)},
           {"J2 and its floor",
-           "A compensator cannot bring J2 below what the displacement sensor's noise makes of it; where it lies lower, "
-           "the "
-           "structure moves more than it ought to.",
+           "Noise of the displacement sensor sets a floor for J2. Where J2 is below its floor, the structure moves "
+           "more "
+           "than the reference.",
            floor_figure(means_of(inputs, candidates, runs))},
           {"Distribution over the runs", "Every case, motion and plant.", distribution_figure(candidates, runs)},
           {"Histories",

@@ -8,7 +8,7 @@
 
 namespace hybridtest::rths {
 
-/// `plots.html`: one page that opens without a network. Runs some of the candidates again for their histories.
+/// `plots.html`: one page that needs no network. Runs some of the candidates again for their histories.
 [[nodiscard]] std::string page_html(const BenchmarkInputs& inputs, const std::vector<Candidate>& candidates,
                                     std::span<const StudyRun> runs, const StudySettings& settings);
 

@@ -25,23 +25,23 @@ struct StudyRun {
   TestResult result;
   bool is_excused = false;  // the reference itself comes near the force limit
 
-  /// Over the force limit where the structure does not take it there, or out of control anywhere.
+  /// Over the force limit although the reference structure is below it, or diverged.
   [[nodiscard]] bool is_lost() const noexcept {
     return !result.is_complete || (result.reaches_force_limit() && !is_excused);
   }
 };
 
 /// Every candidate over four cases, three motions, the nominal and the perturbed plants, with sensor noise.
-/// A run's plant and noise depend on the seed and on case, motion and plant alone: every candidate meets
-/// the same ones, whichever others run and on however many threads.
+/// Plant and noise of a run depend only on the seed, case, motion and plant. Every candidate has the same
+/// ones, with any other candidates and any number of threads.
 /// @return by candidate, case, motion, plant.
 [[nodiscard]] std::vector<StudyRun> run_study(const BenchmarkInputs& inputs, const std::vector<Candidate>& candidates,
                                               const StudySettings& settings, StudyProgress& progress);
 
-/// Runs that run_study() makes of so many candidates.
+/// The number of runs of run_study() for this number of candidates.
 [[nodiscard]] std::size_t study_size(std::size_t candidates, const StudySettings& settings);
 
-/// One run of a candidate again, with its signals.
+/// Repeats one run of a candidate and returns its signals.
 [[nodiscard]] TestHistory run_for_history(const BenchmarkInputs& inputs, const Candidate& candidate, int case_number,
                                           std::size_t motion, int plant, const StudySettings& settings);
 

@@ -15,7 +15,7 @@ std::string run_columns(const std::vector<Candidate>& candidates, const StudyRun
                      plant_name(run.plant));
 }
 
-/// `nan` whatever its sign.
+/// `nan` for either sign.
 std::string number(double value, int digits) {
   return std::isnan(value) ? "nan" : fmt::format("{:.{}f}", value, digits);
 }
@@ -36,7 +36,7 @@ std::string_view standing_name(Standing standing) {
 std::string targets_table(std::span<const CandidateMeans> means) {
   const std::vector<Target> targets = judge_ours(means);
   if (targets.empty()) return fmt::format("`{}` was not among the compensators of this study.\n", kOurs);
-  std::string text = "| target | asked | found | |\n| --- | --- | --- | --- |\n";
+  std::string text = "| target | limit | found | |\n| --- | --- | --- | --- |\n";
   for (const Target& target : targets) {
     text += fmt::format("| {} | {} | {} | {} |\n", target.what, target.limit, target.found,
                         target.is_met ? "met" : "**MISSED**");
