@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
 AdaptiveInverse::AdaptiveInverse(const Parameters& parameters, double control_period_s)
-    : parameters_{parameters}, control_period_s_{checked_control_period(control_period_s)} {
-  checked_parameter("delay_s", parameters.delay_s, {0.0, 1.0}, "velocity is not constant for longer");
-  checked_parameter("proportional_gain_per_m2", parameters.proportional_gain_per_m2, {0.0, 1e12},
-                    "a negative gain makes the delay run away");
-  checked_parameter("integral_gain_per_m2_s", parameters.integral_gain_per_m2_s, {0.0, 1e12},
-                    "a negative gain makes the delay run away");
-  checked_parameter("delay_correction_s_max", parameters.delay_correction_s_max, {0.0, 1.0},
-                    "velocity is not constant for longer");
-}
+    : parameters_{checked(parameters)}, control_period_s_{checked_control_period(control_period_s)} {}
 
 double AdaptiveInverse::command(const CompensatorInput& input) noexcept {
   if (has_target_) observe(targets_m_[0], input.measured_displacement_m);

@@ -2,6 +2,7 @@
 
 #include "compensation/compensator.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -24,13 +25,25 @@ namespace hybridtest {
 class AdaptiveInverse final : public Compensator {
  public:
   struct Parameters {
-    double delay_s = 0.020;                 // [s] at first; 0 to 1
-    double proportional_gain_per_m2 = 1e6;  // [1/m2] kp; 0 to 1e12
-    double integral_gain_per_m2_s = 1e5;    // [1/(m2 s)] ki; 0 to 1e12
-    double delay_correction_s_max = 0.010;  // [s] |d_alpha| T at most; 0 to 1
+    double delay_s = 0.020;
+    double proportional_gain_per_m2 = 1e6;
+    double integral_gain_per_m2_s = 1e5;
+    double delay_correction_s_max = 0.010;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr Range kGain{.low = 0.0, .high = 1e12};
+      constexpr const char* kSpan = "velocity is not constant for longer";
+      constexpr const char* kSign = "a negative gain makes the delay run away";
+      archive.required("delay_s", delay_s, {kZeroToOne, "at first", kSpan});
+      archive.optional("proportional_gain_per_m2", proportional_gain_per_m2,
+                       {kGain, "kp, on the tracking indicator; suits motions of some millimetres", kSign});
+      archive.optional("integral_gain_per_m2_s", integral_gain_per_m2_s, {kGain, "ki, on its integral", kSign});
+      archive.optional("delay_correction_s_max", delay_correction_s_max,
+                       {kZeroToOne, "by which the delay moves from the first one", kSpan});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   AdaptiveInverse(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

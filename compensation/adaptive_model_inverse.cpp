@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "compensation/discrete_regulator.hpp"
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
@@ -15,39 +15,26 @@ namespace {
 enum : Eigen::Index { kStiffness = TransferSystemModel::kStates, kBeta2, kA3, kBeta1, kDisturbance };
 using Model = TransferSystemModel;
 
-void check_deviation(const char* name, double deviation, double bound, double nominal) {
-  checked_parameter(name, deviation, {0.0, std::nextafter(nominal / bound, 0.0)},
-                    "parameter_bound deviations below its nominal value the parameter must still be positive");
+void expect_positive_within_bound(const char* name, double deviation, double bound, double nominal) {
+  expect_in_range(name, deviation, {.low = 0.0, .high = std::nextafter(nominal / bound, 0.0)},
+                  "parameter_bound deviations below its nominal value the parameter must still be positive");
 }
 
 const AdaptiveModelInverse::Parameters& checked_all(const AdaptiveModelInverse::Parameters& parameters,
                                                     double control_period_s) {
-  checked(parameters.model);
+  const double bound = checked(parameters).parameter_bound;
   checked_control_period(control_period_s);
-  checked_parameter("advance_s", parameters.advance_s, {0.0, 5.0 * control_period_s},
-                    "the target is a polynomial of order 4 for no longer");
-  checked_parameter("parameter_bound", parameters.parameter_bound, {0.0, 100.0, false},
-                    "it is a multiple of the prior deviation");
-  const double bound = parameters.parameter_bound;
-  check_deviation("stiffness_deviation_n_per_m", parameters.stiffness_deviation_n_per_m, bound,
-                  parameters.model.stiffness_n_per_m);
-  check_deviation("beta2_deviation_per_s2", parameters.beta2_deviation_per_s2, bound, parameters.model.beta2_per_s2);
-  check_deviation("beta1_deviation_per_s", parameters.beta1_deviation_per_s, bound, parameters.model.beta1_per_s);
-  checked_parameter("a3_deviation_per_s", parameters.a3_deviation_per_s, {0.0, 1e6}, "a deviation is not negative");
-  checked_parameter("parameter_memory_s", parameters.parameter_memory_s, {0.1, 1e6},
-                    "it holds some cycles of the structure");
-  constexpr const char* kNoise = "every sensor has noise, and the estimator divides by it";
-  checked_parameter("displacement_noise_m", parameters.displacement_noise_m, {0.0, 1.0, false}, kNoise);
-  checked_parameter("force_noise_n", parameters.force_noise_n, {0.0, 1e9, false}, kNoise);
-  constexpr const char* kDeviation = "it is a standard deviation";
-  checked_parameter("command_noise_m", parameters.command_noise_m, {0.0, 1.0}, kDeviation);
-  checked_parameter("disturbance_walk_m", parameters.disturbance_walk_m, {0.0, 1.0}, kDeviation);
-  checked_parameter("regulator_weight", parameters.regulator_weight, {0.0, 1e9, false},
-                    "without a weight on the error nothing is regulated");
-  checked_parameter("jerk_filter_hz", parameters.jerk_filter_hz, {0.0, 0.1 / control_period_s, false},
-                    "the filter runs at the control rate");
-  checked_parameter("innovation_bound", parameters.innovation_bound, {1.0, 1e6},
-                    "below one deviation honest measurements would be cut");
+  expect_in_range("advance_s", parameters.advance_s, {.low = 0.0, .high = 5.0 * control_period_s},
+                  "the target is a polynomial of order 4 for no longer");
+  expect_positive_within_bound("stiffness_deviation_n_per_m", parameters.stiffness_deviation_n_per_m, bound,
+                               parameters.model.stiffness_n_per_m);
+  expect_positive_within_bound("beta2_deviation_per_s2", parameters.beta2_deviation_per_s2, bound,
+                               parameters.model.beta2_per_s2);
+  expect_positive_within_bound("beta1_deviation_per_s", parameters.beta1_deviation_per_s, bound,
+                               parameters.model.beta1_per_s);
+  expect_in_range("jerk_filter_hz", parameters.jerk_filter_hz,
+                  {.low = 0.0, .high = 0.1 / control_period_s, .low_open = true},
+                  "the filter runs at the control rate");
   return parameters;
 }
 

@@ -4,6 +4,7 @@
 
 #include "compensation/compensator.hpp"
 #include "compensation/transfer_system_model.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -52,26 +53,73 @@ class AdaptiveModelInverse final : public Compensator {
  public:
   struct Parameters {
     TransferSystemModel model;  // nominal
-    double advance_s = 0.0;     // [s] lead of the specimen over the target; 0 to 5 control periods
-    // Standard deviations of the parameters from nominal, 0 or more; those of k, beta1 and beta2 times
-    // parameter_bound below the nominal value.
-    double stiffness_deviation_n_per_m = 5e4;  // [N/m]
-    double beta2_deviation_per_s2 = 3.3e3;     // [1/s2]
-    double a3_deviation_per_s = 1.3;           // [1/s]
-    double beta1_deviation_per_s = 3.3;        // [1/s]
-    double parameter_memory_s = 20.0;          // [s] time constant of the return to nominal; 0.1 to 1e6
-    double displacement_noise_m = 1.6e-5;      // [m] standard deviation of the sensor; above 0, at most 1
-    double force_noise_n = 2.18;               // [N] likewise; above 0, at most 1e9
-    double command_noise_m = 1.2e-6;           // [m] of the command per sample (converter); 0 to 1
-    double disturbance_walk_m = 1e-6;          // [m per square root of s] of the input disturbance; 0 to 1
-    double regulator_weight = 10.0;            // [] displacement error against command; above 0, at most 1e9
-    double jerk_filter_hz = 60.0;              // [Hz] corner; above 0, at most a tenth of the control rate
-    double parameter_bound = 8.0;              // [] prior deviations that a parameter may be off; above 0, at most 100
-    double innovation_bound = 10.0;            // [] own deviations that an innovation counts for; 1 to 1e6
-    bool adapts = true;                        // off: the nominal parameters for good
+    double advance_s = 0.0;
+    // Standard deviations from nominal; those of k, beta1 and beta2 times parameter_bound below the nominal value.
+    double stiffness_deviation_n_per_m = 5e4;
+    double beta2_deviation_per_s2 = 3.3e3;
+    double a3_deviation_per_s = 1.3;
+    double beta1_deviation_per_s = 3.3;
+    double parameter_memory_s = 20.0;
+    double displacement_noise_m = 1.6e-5;
+    double force_noise_n = 2.18;
+    double command_noise_m = 1.2e-6;
+    double disturbance_walk_m = 1e-6;
+    double regulator_weight = 10.0;
+    double jerk_filter_hz = 60.0;
+    double parameter_bound = 8.0;
+    double innovation_bound = 10.0;
+    bool adapts = true;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr Range kSensor{.low = 0.0, .high = 1.0, .low_open = true};
+      constexpr Range kForceSensor{.low = 0.0, .high = 1e9, .low_open = true};
+      constexpr const char* kNoise = "every sensor has noise, and the estimator divides by it";
+      constexpr const char* kDeviation = "it is a standard deviation";
+      constexpr const char* kNotLess = "a deviation is not negative";
+      constexpr const char* kBounded = "at least 0, times `parameter_bound` below the nominal value";
+      archive.section("plant", model, "the nominal transfer system, below");
+      archive.optional(
+          "advance_s", advance_s,
+          {.range = kNotNegative, .what = "lead of the specimen over its target", .values = "0 to 5 control periods"});
+      archive.optional("stiffness_deviation_n_per_m", stiffness_deviation_n_per_m,
+                       {kNotNegative, "of `stiffness_n_per_m` from nominal, standard deviation", kNotLess, kBounded});
+      archive.optional("beta2_deviation_per_s2", beta2_deviation_per_s2,
+                       {kNotNegative, "likewise of `beta2_per_s2`", kNotLess, kBounded});
+      archive.optional("a3_deviation_per_s", a3_deviation_per_s,
+                       {{.low = 0.0, .high = 1e6}, "likewise of `a3_per_s`", kNotLess});
+      archive.optional("beta1_deviation_per_s", beta1_deviation_per_s,
+                       {kNotNegative, "likewise of `beta1_per_s`", kNotLess, kBounded});
+      archive.optional("parameter_memory_s", parameter_memory_s,
+                       {{.low = 0.1, .high = 1e6},
+                        "time constant of the return to nominal",
+                        "it holds some cycles of the structure"});
+      archive.optional("displacement_noise_m", displacement_noise_m,
+                       {kSensor, "of the sensor, standard deviation", kNoise});
+      archive.optional("force_noise_n", force_noise_n, {kForceSensor, "of the load cell, standard deviation", kNoise});
+      archive.optional("command_noise_m", command_noise_m,
+                       {kZeroToOne, "of the command, standard deviation per sample", kDeviation});
+      archive.optional("disturbance_walk_m", disturbance_walk_m,
+                       {kZeroToOne, "of the input disturbance, per square root of a second", kDeviation});
+      archive.optional("regulator_weight", regulator_weight,
+                       {kForceSensor, "of the displacement error against the command",
+                        "without a weight on the error nothing is regulated"});
+      archive.optional("jerk_filter_hz", jerk_filter_hz,
+                       {.range = kPositive,
+                        .what = "corner of the filter that gives jerk and snap",
+                        .values = "more than 0, at most a tenth of the control rate"});
+      archive.optional("parameter_bound", parameter_bound,
+                       {{.low = 0.0, .high = 100.0, .low_open = true},
+                        "deviations that a parameter may be off",
+                        "it is a multiple of the prior deviation"});
+      archive.optional("innovation_bound", innovation_bound,
+                       {{.low = 1.0, .high = 1e6},
+                        "own deviations that a measurement counts for",
+                        "below one deviation honest measurements would be cut"});
+      archive.optional("adapts", adapts, {.what = "`false`: the nominal parameters for good"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges and where no regulator exists.
+  /// @throws ConfigError for values outside their ranges and where no regulator exists.
   AdaptiveModelInverse(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

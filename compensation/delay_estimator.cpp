@@ -3,26 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
-const DelayLimits& checked(const DelayLimits& limits) {
-  constexpr const char* kMachine = "no transfer system of a hybrid test is later than a second";
-  checked_parameter("delay_s_min", limits.delay_s_min, {0.0, 1.0}, "nothing answers before it is told");
-  checked_parameter("delay_s_max", limits.delay_s_max, {limits.delay_s_min, 1.0, false}, kMachine);
-  checked_parameter("initial_delay_s", limits.initial_delay_s, {limits.delay_s_min, limits.delay_s_max},
-                    "the estimate starts inside its own bounds");
-  checked_parameter("rate_s_per_s_max", limits.rate_s_per_s_max, {0.0, 1000.0, false},
-                    "the estimate has to move, and without a limit it would jump");
+DelayLimits checked_bounds(const DelayLimits& limits) {
+  expect_in_range("delay_s_max", checked(limits).delay_s_max,
+                  {.low = limits.delay_s_min, .high = 1.0, .low_open = true}, "a range ends above its beginning");
+  expect_in_range("initial_delay_s", limits.initial_delay_s, {.low = limits.delay_s_min, .high = limits.delay_s_max},
+                  "the estimate starts inside its own bounds");
   return limits;
 }
 
 }  // namespace
 
 DelayEstimator::DelayEstimator(const DelayLimits& limits, double control_period_s)
-    : limits_{checked(limits)},
+    : limits_{checked_bounds(limits)},
       control_period_s_{checked_control_period(control_period_s)},
       believed_s_{limits.initial_delay_s},
       delay_s_{limits.initial_delay_s} {}

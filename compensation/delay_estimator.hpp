@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
+
 namespace hybridtest {
 
 /// One control sample, one degree of freedom. Both of the same instant.
@@ -8,12 +10,37 @@ struct DelaySample {
   double measured_displacement_m = 0.0;  // [m]
 };
 
+/// Rules that estimators share.
+inline constexpr ParameterRule kEstimatorMemory{
+    {.low = 0.01, .high = 100.0}, "of the window", "it holds a cycle of the structure or more"};
+inline constexpr ParameterRule kEstimatorMotion{{.low = 1e-9, .high = 1.0},
+                                                "root mean square of the motion below which nothing is learnt",
+                                                "a delay learnt from sensor noise is noise"};
+
 /// Bounds of an estimate, and how fast it may move.
 struct DelayLimits {
-  double initial_delay_s = 0.020;  // [s] of the transfer system, until measured; delay_s_min to delay_s_max
-  double delay_s_min = 0.0;        // [s] 0 to 1
-  double delay_s_max = 0.100;      // [s] more than delay_s_min, at most 1
-  double rate_s_per_s_max = 0.02;  // [s/s] above 0, at most 1000
+  double initial_delay_s = 0.020;
+  double delay_s_min = 0.0;
+  double delay_s_max = 0.100;
+  double rate_s_per_s_max = 0.02;
+
+  void serialize(ParameterArchive& archive) {
+    constexpr const char* kMachine = "no transfer system of a hybrid test is later than a second";
+    archive.required(
+        "initial_delay_s", initial_delay_s,
+        {kZeroToOne, "of the transfer system, until it is measured", kMachine, "`delay_s_min` to `delay_s_max`"});
+    archive.optional("delay_s_min", delay_s_min,
+                     {kZeroToOne, "bound of the estimate", "nothing answers before it is told"});
+    archive.optional("delay_s_max", delay_s_max,
+                     {{.low = 0.0, .high = 1.0, .low_open = true},
+                      "bound of the estimate",
+                      kMachine,
+                      "more than `delay_s_min`, at most 1"});
+    archive.optional("rate_s_per_s_max", rate_s_per_s_max,
+                     {{.low = 0.0, .high = 1000.0, .low_open = true},
+                      "change of the estimate",
+                      "the estimate has to move, and without a limit it would jump"});
+  }
 };
 
 /// Tells how late a transfer system is, from what it was told and what it did, sample by sample.

@@ -3,29 +3,12 @@
 #include <cmath>
 
 #include "compensation/discrete_regulator.hpp"
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
-namespace {
-
-const FeedforwardLqg::Parameters& checked_all(const FeedforwardLqg::Parameters& parameters) {
-  checked(parameters.model);
-  checked_parameter("regulator_weight", parameters.regulator_weight, {0.0, 1e9, false},
-                    "without a weight on the error nothing is regulated");
-  checked_parameter("input_noise_m", parameters.input_noise_m, {0.0, 1.0, false},
-                    "without noise of the input no measurement would be believed");
-  checked_parameter("displacement_noise_m", parameters.displacement_noise_m, {0.0, 1.0, false},
-                    "every sensor has noise, and the estimator divides by it");
-  checked_parameter("jerk_difference_s", parameters.jerk_difference_s, {0.0, 0.1, false},
-                    "the jerk of the structure changes within it");
-  return parameters;
-}
-
-}  // namespace
-
 FeedforwardLqg::FeedforwardLqg(const Parameters& parameters, double control_period_s)
     : has_feedback_{parameters.has_feedback},
-      inverse_{checked_all(parameters).model.inverse_coefficients()},
+      inverse_{checked(parameters).model.inverse_coefficients()},
       jerk_samples_{checked_periods("jerk_difference_s", parameters.jerk_difference_s,
                                     checked_control_period(control_period_s), 1, "it is a difference of samples")},
       jerk_difference_s_{static_cast<double>(jerk_samples_) * control_period_s},

@@ -7,6 +7,7 @@
 #include "compensation/compensator.hpp"
 #include "compensation/sample_history.hpp"
 #include "compensation/transfer_system_model.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -31,14 +32,35 @@ class FeedforwardLqg final : public Compensator {
  public:
   struct Parameters {
     TransferSystemModel model;
-    bool has_feedback = true;              // off: the feedforward alone
-    double regulator_weight = 30.0;        // [] above 0, at most 1e9
-    double input_noise_m = 2e-4;           // [m] standard deviation of w, per sample; above 0, at most 1
-    double displacement_noise_m = 1.6e-5;  // [m] standard deviation of v; above 0, at most 1
-    double jerk_difference_s = 0.004;      // [s] span of the difference for x'''; 1 period to 0.1
+    bool has_feedback = true;
+    double regulator_weight = 30.0;
+    double input_noise_m = 2e-4;           // standard deviation of w
+    double displacement_noise_m = 1.6e-5;  // standard deviation of v
+    double jerk_difference_s = 0.004;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr Range kNoise{.low = 0.0, .high = 1.0, .low_open = true};
+      archive.section("plant", model, "the transfer system, below");
+      archive.optional("has_feedback", has_feedback, {.what = "`false`: the feedforward alone"});
+      archive.optional("regulator_weight", regulator_weight,
+                       {{.low = 0.0, .high = 1e9, .low_open = true},
+                        "of the displacement error against the command",
+                        "without a weight on the error nothing is regulated"});
+      archive.optional("input_noise_m", input_noise_m,
+                       {kNoise, "of the plant's input, standard deviation per sample",
+                        "without noise of the input no measurement would be believed"});
+      archive.optional(
+          "displacement_noise_m", displacement_noise_m,
+          {kNoise, "of the sensor, standard deviation", "every sensor has noise, and the estimator divides by it"});
+      archive.optional("jerk_difference_s", jerk_difference_s,
+                       {{.low = 0.0, .high = 0.1, .low_open = true},
+                        "span of the difference that gives the jerk",
+                        "the jerk of the structure changes within it",
+                        "1 control period to 0.1"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges and where no regulator exists.
+  /// @throws ConfigError for values outside their ranges and where no regulator exists.
   FeedforwardLqg(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

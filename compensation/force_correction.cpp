@@ -3,29 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
-const ForceCorrection::Parameters& checked_all(const ForceCorrection::Parameters& parameters) {
-  constexpr const char* kSpan = "the motion is a quadratic for no longer";
-  checked_parameter("window_s", parameters.window_s, {0.0, 1.0, false}, kSpan);
-  checked_parameter("horizon_s", parameters.horizon_s, {0.0, 1.0}, kSpan);
-  checked_parameter("root_rate_s_per_s_max", parameters.root_rate_s_per_s_max, {0.0, 1000.0, false},
-                    "the root has to move, and without a limit it would jump");
-  checked_parameter("stiffness_n_per_m", parameters.stiffness_n_per_m, {0.0, 1e12},
-                    "a specimen at first resists its motion");
-  checked_parameter("stiffness_memory_s", parameters.stiffness_memory_s, {0.01, 1000.0},
-                    "it holds some cycles of the structure");
-  checked_parameter("prior_motion_m", parameters.prior_motion_m, {1e-9, 1.0},
-                    "stiffness learnt from sensor noise is noise");
-  return parameters;
-}
-
 QuadraticFit window_fit(const ForceCorrection::Parameters& parameters, double control_period_s) {
   const std::size_t points =
-      checked_periods("window_s", checked_all(parameters).window_s, checked_control_period(control_period_s), 3,
+      checked_periods("window_s", checked(parameters).window_s, checked_control_period(control_period_s), 3,
                       "a quadratic is fitted in it");
   return {points, 1, control_period_s};
 }

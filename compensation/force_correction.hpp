@@ -5,6 +5,7 @@
 #include "compensation/force_compensator.hpp"
 #include "compensation/quadratic_fit.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -34,15 +35,37 @@ namespace hybridtest {
 class ForceCorrection final : public ForceCompensator {
  public:
   struct Parameters {
-    double window_s = 0.030;             // [s] of the fits; 3 samples to 1
-    double horizon_s = 0.050;            // [s] furthest time ahead; 0 to 1
-    double root_rate_s_per_s_max = 1.0;  // [s/s] of t*; above 0, at most 1000
-    double stiffness_n_per_m = 1e6;      // [N/m] prior of k_s; 0 to 1e12
-    double stiffness_memory_s = 1.0;     // [s] of k_s; 0.01 to 1000
-    double prior_motion_m = 3e-4;        // [m] root mean square of a motion that weighs as the prior; 1e-9 to 1
+    double window_s = 0.030;
+    double horizon_s = 0.050;
+    double root_rate_s_per_s_max = 1.0;
+    double stiffness_n_per_m = 1e6;
+    double stiffness_memory_s = 1.0;
+    double prior_motion_m = 3e-4;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr const char* kSpan = "the motion is a quadratic for no longer";
+      archive.optional("window_s", window_s,
+                       {{.low = 0.0, .high = 1.0, .low_open = true}, "of the fits", kSpan, "3 control periods to 1"});
+      archive.optional("horizon_s", horizon_s, {kZeroToOne, "furthest that is looked ahead", kSpan});
+      archive.optional("root_rate_s_per_s_max", root_rate_s_per_s_max,
+                       {{.low = 0.0, .high = 1000.0, .low_open = true},
+                        "change of the instant that is looked for",
+                        "the root has to move, and without a limit it would jump"});
+      archive.optional("stiffness_n_per_m", stiffness_n_per_m,
+                       {{.low = 0.0, .high = 1e12},
+                        "of the specimen, before anything was measured",
+                        "a specimen at first resists its motion"});
+      archive.optional(
+          "stiffness_memory_s", stiffness_memory_s,
+          {{.low = 0.01, .high = 1000.0}, "of the stiffness that is learnt", "it holds some cycles of the structure"});
+      archive.optional("prior_motion_m", prior_motion_m,
+                       {{.low = 1e-9, .high = 1.0},
+                        "root mean square of a motion that weighs as much as the first stiffness",
+                        "stiffness learnt from sensor noise is noise"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   ForceCorrection(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double corrected_force(const ForceSample& sample) noexcept override;

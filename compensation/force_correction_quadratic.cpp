@@ -2,16 +2,13 @@
 
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 QuadraticFit checked_fit(const ForceCorrectionQuadratic::Parameters& parameters, double control_period_s) {
-  checked_parameter("points", parameters.points, {3.0, 100.0}, "a quadratic has three coefficients");
-  checked_parameter("point_spacing_s", parameters.point_spacing_s, {0.0, 1.0, false},
-                    "the motion is a quadratic for no longer");
-  const std::size_t spacing = checked_periods("point_spacing_s", parameters.point_spacing_s,
+  const std::size_t spacing = checked_periods("point_spacing_s", checked(parameters).point_spacing_s,
                                               checked_control_period(control_period_s), 1, "the points are samples");
   return {static_cast<std::size_t>(parameters.points), spacing, control_period_s};
 }

@@ -3,6 +3,7 @@
 #include "compensation/force_compensator.hpp"
 #include "compensation/quadratic_fit.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -22,11 +23,23 @@ namespace hybridtest {
 class ForceCorrectionQuadratic final : public ForceCompensator {
  public:
   struct Parameters {
-    int points = 3;                  // 3 to 100; more than 3: least squares
-    double point_spacing_s = 0.020;  // [s] rounded to whole samples; 1 period to 1
+    int points = 3;
+    double point_spacing_s = 0.020;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("points", points,
+                       {{.low = 3.0, .high = 100.0},
+                        "that the quadratic goes through; of more than 3 by least squares",
+                        "a quadratic has three coefficients"});
+      archive.optional("point_spacing_s", point_spacing_s,
+                       {{.low = 0.0, .high = 1.0, .low_open = true},
+                        "between them, rounded to control periods",
+                        "the motion is a quadratic for no longer",
+                        "1 control period to 1"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   ForceCorrectionQuadratic(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double corrected_force(const ForceSample& sample) noexcept override;

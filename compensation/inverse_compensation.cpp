@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
 InverseCompensation::InverseCompensation(const Parameters& parameters, double control_period_s)
-    : initial_delay_s_{parameters.delay_s}, control_period_s_{checked_control_period(control_period_s)}, targets_m_{2} {
-  checked_parameter("delay_s", parameters.delay_s, {0.0, kDelaySMax}, "velocity is not constant for longer");
+    : initial_delay_s_{checked(parameters).delay_s},
+      control_period_s_{checked_control_period(control_period_s)},
+      targets_m_{2} {
   set_delay(initial_delay_s_);
 }
 

@@ -3,6 +3,7 @@
 #include "compensation/compensator.hpp"
 #include "compensation/delay_adaptive.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -20,12 +21,17 @@ namespace hybridtest {
 /// 2 alpha - 1 at half the control rate, so that it is for smooth targets.
 class InverseCompensation final : public Compensator, public DelayAdaptive {
  public:
-  struct Parameters {
-    double delay_s = 0.020;  // [s] to make up for; 0 to 1
-  };
   static constexpr double kDelaySMax = 1.0;
+  struct Parameters {
+    double delay_s = 0.020;
 
-  /// @throws ConfigError for values outside these ranges.
+    void serialize(ParameterArchive& archive) {
+      archive.required("delay_s", delay_s,
+                       {{.low = 0.0, .high = kDelaySMax}, "to make up for", "velocity is not constant for longer"});
+    }
+  };
+
+  /// @throws ConfigError for values outside their ranges.
   InverseCompensation(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

@@ -3,29 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 std::size_t checked_spacing(const LinearAcceleration::Parameters& parameters, double control_period_s) {
   checked_control_period(control_period_s);
-  checked_parameter("delay_s", parameters.delay_s, {0.0, 1.0}, "acceleration is not linear in time for longer");
-  checked_parameter("point_spacing_s", parameters.point_spacing_s, {0.0, 1.0},
-                    "acceleration is not linear in time for longer");
   const double wanted_s = parameters.point_spacing_s > 0.0 ? parameters.point_spacing_s : parameters.delay_s;
   const std::size_t spacing = checked_periods("point_spacing_s", std::max(wanted_s, control_period_s), control_period_s,
                                               1, "the accelerations of one point spacing are kept");
   const double delay_s_max = LinearAcceleration::kSpacingsAheadMax * static_cast<double>(spacing) * control_period_s;
-  checked_parameter("delay_s", parameters.delay_s, {0.0, delay_s_max * (1.0 + 1e-9)},
-                    "an acceleration cannot be extrapolated further than 8 point spacings");
+  expect_in_range("delay_s", parameters.delay_s, {.low = 0.0, .high = delay_s_max * (1.0 + 1e-9)},
+                  "an acceleration cannot be extrapolated further than 8 point spacings");
   return spacing;
 }
 
 }  // namespace
 
 LinearAcceleration::LinearAcceleration(const Parameters& parameters, double control_period_s)
-    : initial_delay_s_{parameters.delay_s},
+    : initial_delay_s_{checked(parameters).delay_s},
       spacing_{checked_spacing(parameters, control_period_s)},
       point_spacing_s_{static_cast<double>(spacing_) * control_period_s},
       accelerations_m_per_s2_{spacing_ + 1} {

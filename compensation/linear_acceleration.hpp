@@ -5,6 +5,7 @@
 #include "compensation/compensator.hpp"
 #include "compensation/delay_adaptive.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -23,12 +24,19 @@ namespace hybridtest {
 class LinearAcceleration final : public Compensator, public DelayAdaptive {
  public:
   struct Parameters {
-    double delay_s = 0.020;        // [s] to make up for; 0 to 8 point spacings
-    double point_spacing_s = 0.0;  // [s] 0 to 1, rounded to control periods, at least one; 0: the delay
+    double delay_s = 0.020;
+    double point_spacing_s = 0.0;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr const char* kSpan = "acceleration is not linear in time for longer";
+      archive.required("delay_s", delay_s, {kZeroToOne, "to make up for", kSpan, "0 to 1, at most 8 point spacings"});
+      archive.optional("point_spacing_s", point_spacing_s,
+                       {kZeroToOne, "between the two accelerations; 0: the delay itself", kSpan});
+    }
   };
   static constexpr double kSpacingsAheadMax = 8.0;
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   LinearAcceleration(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

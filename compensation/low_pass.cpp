@@ -3,14 +3,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
 LowPass::LowPass(double corner_hz, double sample_period_s) {
   checked_control_period(sample_period_s);
-  checked_parameter("filter_hz", corner_hz, {0.001 / sample_period_s, 0.45 / sample_period_s},
-                    "the filter runs at the control rate");
+  expect_in_range("filter_hz", corner_hz, {.low = 0.001 / sample_period_s, .high = 0.45 / sample_period_s},
+                  "the filter runs at the control rate");
   const double w = std::tan(std::numbers::pi * corner_hz * sample_period_s);
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const double damping = 2.0 * std::sin(std::numbers::pi * (2.0 * static_cast<double>(i) + 1.0) / 8.0);

@@ -2,7 +2,14 @@
 
 #include <array>
 
+#include "core/parameters/parameter_archive.hpp"
+
 namespace hybridtest {
+
+/// Of a compensator's low-pass.
+inline constexpr ParameterRule kFilterHz{.range = kPositive,
+                                         .what = "corner of the low-pass on both signals",
+                                         .values = "0.001 to 0.45 of the control rate"};
 
 /// Butterworth low-pass of fourth order, two second-order sections by the bilinear transform with
 /// its frequency axis corrected at the corner:

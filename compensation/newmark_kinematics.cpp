@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
-NewmarkKinematics::NewmarkKinematics(const Parameters& parameters, double control_period_s) : parameters_{parameters} {
+NewmarkKinematics::NewmarkKinematics(const Parameters& parameters, double control_period_s)
+    : parameters_{checked(parameters)} {
   checked_control_period(control_period_s);
-  checked_parameter("delay_s", parameters.delay_s, {0.0, kDelaySMax}, "acceleration is not constant for longer");
-  checked_parameter("step_s", parameters.step_s, {0.0, 1.0}, "it is the integration step or zero");
   set_delay(parameters.delay_s);
 }
 

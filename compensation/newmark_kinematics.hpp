@@ -2,6 +2,7 @@
 
 #include "compensation/compensator.hpp"
 #include "compensation/delay_adaptive.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -18,13 +19,21 @@ namespace hybridtest {
 /// Exact for constant acceleration; the identity at zero delay and zero step. No history.
 class NewmarkKinematics final : public Compensator, public DelayAdaptive {
  public:
-  struct Parameters {
-    double delay_s = 0.020;  // [s] to make up for; 0 to 1
-    double step_s = 0.0;     // [s] dt; 0 to 1
-  };
   static constexpr double kDelaySMax = 1.0;
+  struct Parameters {
+    double delay_s = 0.020;
+    double step_s = 0.0;  // dt
 
-  /// @throws ConfigError for values outside these ranges.
+    void serialize(ParameterArchive& archive) {
+      archive.required("delay_s", delay_s,
+                       {{.low = 0.0, .high = kDelaySMax}, "to make up for", "acceleration is not constant for longer"});
+      archive.optional("step_s", step_s,
+                       {kZeroToOne, "0 where velocity and acceleration are those of the target, as in a scenario",
+                        "it is the integration step or zero"});
+    }
+  };
+
+  /// @throws ConfigError for values outside their ranges.
   NewmarkKinematics(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

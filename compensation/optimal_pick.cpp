@@ -3,14 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 std::size_t checked_window(const OptimalPick::Parameters& parameters, double control_period_s) {
-  checked_parameter("window_s", parameters.window_s, {0.0, 1.0, false}, "the specimen has been everywhere in longer");
-  return checked_periods("window_s", parameters.window_s, checked_control_period(control_period_s), 1,
+  return checked_periods("window_s", checked(parameters).window_s, checked_control_period(control_period_s), 1,
                          "the pick is among samples");
 }
 

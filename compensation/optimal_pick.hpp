@@ -2,6 +2,7 @@
 
 #include "compensation/force_compensator.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -20,10 +21,18 @@ namespace hybridtest {
 class OptimalPick final : public ForceCompensator {
  public:
   struct Parameters {
-    double window_s = 0.010;  // [s] to look back over, at least upper bound less smallest delay; 1 period to 1
+    double window_s = 0.010;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("window_s", window_s,
+                       {{.low = 0.0, .high = 1.0, .low_open = true},
+                        "that is looked back over, at least the upper bound less the smallest delay",
+                        "a longer window holds every displacement of the specimen",
+                        "1 control period to 1"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   OptimalPick(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double corrected_force(const ForceSample& sample) noexcept override;

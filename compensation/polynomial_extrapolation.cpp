@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "compensation/parameter_check.hpp"
 #include "core/config_error.hpp"
+#include "core/parameters/parameter_checker.hpp"
 #include "core/text/scalar.hpp"
 
 namespace hybridtest {
@@ -17,7 +17,7 @@ constexpr double kRounding = 1e-9;  // of a duration, through its conversions
 std::string written(double duration_s) { return written_number(duration_s) + " s"; }
 
 int checked_order(int order) {
-  if (order >= 1 && order <= kMaxPolynomialOrder) return order;
+  if (contains(kPolynomialOrders, order)) return order;
   throw ConfigError{"order is " + std::to_string(order) + "; expected an integer from 1 to " +
                     std::to_string(kMaxPolynomialOrder)};
 }

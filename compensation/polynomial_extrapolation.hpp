@@ -5,14 +5,23 @@
 #include <vector>
 
 #include "compensation/polynomial_weights.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
 /// What polynomial_displacement and polynomial_force are told.
 struct PolynomialParameters {
-  int order = 3;                 // 1 to 4
-  double delay_s = 0.020;        // [s] to make up for; 0 to 8 point spacings
-  double point_spacing_s = 0.0;  // [s] rounded to control periods, 1 to 10 000 of them; 0: the delay
+  int order = 3;
+  double delay_s = 0.020;
+  double point_spacing_s = 0.0;
+
+  void serialize(ParameterArchive& archive) {
+    archive.optional("order", order, {kPolynomialOrders, "of the polynomial"});
+    archive.required("delay_s", delay_s, {kZeroToOne, "to make up for", "", "0 to 1, at most 8 point spacings"});
+    archive.optional("point_spacing_s", point_spacing_s,
+                     {kNotNegative, "between the points the polynomial goes through; 0: the delay itself", "",
+                      "0, or 1 to 10 000 control periods"});
+  }
 };
 
 /// Evaluates the polynomial through the newest sample of a signal and those 1, 2, …, `order` point

@@ -3,9 +3,12 @@
 #include <array>
 #include <cstddef>
 
+#include "core/parameters/range.hpp"
+
 namespace hybridtest {
 
 inline constexpr int kMaxPolynomialOrder = 4;
+inline constexpr Range kPolynomialOrders{.low = 1.0, .high = kMaxPolynomialOrder};
 
 using PolynomialWeights = std::array<double, kMaxPolynomialOrder + 1>;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
@@ -14,32 +14,24 @@ namespace {
 // Makes x, x' and x'' of like size at about 5 Hz, for the sake of the least squares.
 const Eigen::Vector3d kScale{1.0, 1.0 / 30.0, 1.0 / 900.0};
 
-void check_coefficient(const std::string& name, double value, double low, double high, double range_max) {
-  const std::string kReason = "no transfer system of a hybrid test is so far from its command";
-  checked_parameter(name + "_min", low, {0.0, range_max}, kReason);
-  checked_parameter(name + "_max", high, {low, range_max}, "a range ends above its beginning");
-  checked_parameter(name, value, {low, high}, "the coefficient starts inside its own range");
+void expect_inside(const std::string& name, double value, double low, double high, double high_max) {
+  expect_in_range(name + "_max", high, {.low = low, .high = high_max}, "a range ends above its beginning");
+  expect_in_range(name, value, {.low = low, .high = high}, "the coefficient starts inside its own range");
 }
 
-const TimeSeriesParameters& checked(const TimeSeriesParameters& parameters) {
-  check_coefficient("a0", parameters.a0, parameters.a0_min, parameters.a0_max, 10.0);
-  check_coefficient("a1_s", parameters.a1_s, parameters.a1_s_min, parameters.a1_s_max, 1.0);
-  check_coefficient("a2_s2", parameters.a2_s2, parameters.a2_s2_min, parameters.a2_s2_max, 1.0);
-  const std::string kRate = "a faster change would follow noise";
-  checked_parameter("a0_rate_max", parameters.a0_rate_max, {0.0, 1000.0}, kRate);
-  checked_parameter("a1_rate_s_max", parameters.a1_rate_s_max, {0.0, 100.0}, kRate);
-  checked_parameter("a2_rate_s2_max", parameters.a2_rate_s2_max, {0.0, 100.0}, kRate);
-  checked_parameter("window_s", parameters.window_s, {0.1, 10.0}, "it holds some cycles of the structure");
-  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0},
-                    "coefficients learnt from sensor noise are noise");
-  return parameters;
+TimeSeriesParameters checked_ranges(const TimeSeriesParameters& parameters) {
+  const TimeSeriesParameters p = checked(parameters);
+  expect_inside("a0", p.a0, p.a0_min, p.a0_max, 10.0);
+  expect_inside("a1_s", p.a1_s, p.a1_s_min, p.a1_s_max, 1.0);
+  expect_inside("a2_s2", p.a2_s2, p.a2_s2_min, p.a2_s2_max, 1.0);
+  return p;
 }
 
 }  // namespace
 
 TimeSeriesModel::TimeSeriesModel(const TimeSeriesParameters& parameters, double control_period_s)
     : control_period_s_{checked_control_period(control_period_s)},
-      window_{checked_periods("window_s", checked(parameters).window_s, control_period_s, 10,
+      window_{checked_periods("window_s", checked_ranges(parameters).window_s, control_period_s, 10,
                               "three coefficients are fitted in it")},
       least_square_sum_m2_{parameters.motion_m_min * parameters.motion_m_min * static_cast<double>(window_)},
       initial_{parameters.a0, parameters.a1_s, parameters.a2_s2},

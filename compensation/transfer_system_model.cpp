@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
@@ -43,21 +43,11 @@ std::array<double, 6> TransferSystemModel::inverse_coefficients() const noexcept
           w3 * scale};
 }
 
-const TransferSystemModel& checked(const TransferSystemModel& model) {
-  constexpr ParameterRange kPositive{0.0, 1e30, false};
-  constexpr ParameterRange kNotNegative{0.0, 1e30};
-  constexpr const char* kInverse = "the model is inverted";
-  constexpr const char* kDissipation = "a transfer system does not feed energy in";
-  checked_parameter("gain", model.gain, kPositive, kInverse);
-  checked_parameter("a1beta0_n_per_m_s3", model.a1beta0_n_per_m_s3, kPositive, kInverse);
-  checked_parameter("a2_n_per_m", model.a2_n_per_m, kNotNegative, kDissipation);
-  checked_parameter("a3_per_s", model.a3_per_s, kNotNegative, kDissipation);
-  checked_parameter("beta1_per_s", model.beta1_per_s, kPositive, kInverse);
-  checked_parameter("beta2_per_s2", model.beta2_per_s2, kPositive, kInverse);
-  checked_parameter("mass_kg", model.mass_kg, kPositive, kInverse);
-  checked_parameter("damping_n_s_per_m", model.damping_n_s_per_m, kNotNegative, kDissipation);
-  checked_parameter("stiffness_n_per_m", model.stiffness_n_per_m, kPositive, kInverse);
-  return model;
+double TransferSystemModel::low_frequency_delay_s() const noexcept {
+  const double open = beta2_per_s2 * a3_per_s * stiffness_n_per_m;
+  const double slope = beta1_per_s * a3_per_s * stiffness_n_per_m +
+                       beta2_per_s2 * (stiffness_n_per_m + a2_n_per_m + a3_per_s * damping_n_s_per_m);
+  return slope / (a1beta0_n_per_m_s3 + open);
 }
 
 DiscreteTransferSystem discretised(const TransferSystemModel& model, double period_s) noexcept {

@@ -3,31 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
-namespace {
-
-constexpr const char* kSpan = "the motion is a polynomial for no longer";
-
-const TwoStageAdaptive::Parameters& checked_all(const TwoStageAdaptive::Parameters& parameters) {
-  checked_parameter("coarse_delay_s", parameters.coarse_delay_s, {0.0, 1.0}, kSpan);
-  checked_parameter("term_spacing_s", parameters.term_spacing_s, {0.0, 1.0, false}, kSpan);
-  checked_parameter("memory_s", parameters.memory_s, {0.1, 1000.0}, "it holds some cycles of the structure");
-  checked_parameter("equation_error_m", parameters.equation_error_m, {1e-12, 1.0},
-                    "the least squares divide by its square");
-  checked_parameter("theta_deviation", parameters.theta_deviation, {0.0, 10.0, false},
-                    "without doubt of the first coefficients nothing is learnt");
-  checked_parameter("theta_max", parameters.theta_max, {1.0, 100.0}, "the first coefficient starts at 1");
-  return parameters;
-}
-
-}  // namespace
-
 TwoStageAdaptive::TwoStageAdaptive(const Parameters& parameters, double control_period_s)
-    : parameters_{checked_all(parameters)},
+    : parameters_{checked(parameters)},
       delay_{checked_periods("coarse_delay_s", parameters.coarse_delay_s, checked_control_period(control_period_s), 0,
-                             kSpan)},
+                             "the delay is whole control periods")},
       spacing_{checked_periods("term_spacing_s", parameters.term_spacing_s, control_period_s, 1,
                                "the terms of the model are samples")},
       keep_{1.0 - control_period_s / parameters.memory_s},

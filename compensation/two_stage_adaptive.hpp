@@ -7,6 +7,7 @@
 #include "compensation/low_pass.hpp"
 #include "compensation/polynomial_extrapolation.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -28,16 +29,40 @@ namespace hybridtest {
 class TwoStageAdaptive final : public Compensator {
  public:
   struct Parameters {
-    double coarse_delay_s = 0.020;   // [s] d, rounded to control periods, at least one; 0 to 1, 0: no first stage
-    double term_spacing_s = 0.010;   // [s] m, rounded to control periods; 1 period to 1
-    double memory_s = 5.0;           // [s] of the least squares; 0.1 to 1000
-    double filter_hz = 20.0;         // [Hz] 0.001 to 0.45 of the control rate
-    double equation_error_m = 3e-6;  // [m] standard deviation, of the filtered signals; 1e-12 to 1
-    double theta_deviation = 0.3;    // [] of each coefficient at first, from (1, 0, 0); above 0, at most 10
-    double theta_max = 3.0;          // [] bound of |coefficient|; 1 to 100
+    double coarse_delay_s = 0.020;  // d
+    double term_spacing_s = 0.010;  // m
+    double memory_s = 5.0;
+    double filter_hz = 20.0;
+    double equation_error_m = 3e-6;
+    double theta_deviation = 0.3;
+    double theta_max = 3.0;
+
+    void serialize(ParameterArchive& archive) {
+      constexpr const char* kSpan = "the motion is a polynomial for no longer";
+      archive.required("coarse_delay_s", coarse_delay_s,
+                       {kZeroToOne, "of the polynomial of the first stage; 0: no first stage", kSpan});
+      archive.optional("term_spacing_s", term_spacing_s,
+                       {{.low = 0.0, .high = 1.0, .low_open = true},
+                        "of the three terms of the discrete model",
+                        kSpan,
+                        "1 control period to 1"});
+      archive.optional("memory_s", memory_s,
+                       {{.low = 0.1, .high = 1000.0}, "of the least squares", "it holds some cycles of the structure"});
+      archive.optional("filter_hz", filter_hz, kFilterHz);
+      archive.optional("equation_error_m", equation_error_m,
+                       {{.low = 1e-12, .high = 1.0},
+                        "of the filtered signals, standard deviation",
+                        "the least squares divide by its square"});
+      archive.optional("theta_deviation", theta_deviation,
+                       {{.low = 0.0, .high = 10.0, .low_open = true},
+                        "of each coefficient at first, from (1, 0, 0)",
+                        "without doubt of the first coefficients nothing is learnt"});
+      archive.optional("theta_max", theta_max,
+                       {{.low = 1.0, .high = 100.0}, "bound of each coefficient", "the first coefficient starts at 1"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   TwoStageAdaptive(const Parameters& parameters, double control_period_s);
 
   [[nodiscard]] double command(const CompensatorInput& input) noexcept override;

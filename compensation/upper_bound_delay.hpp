@@ -2,6 +2,7 @@
 
 #include "compensation/compensator.hpp"
 #include "compensation/polynomial_extrapolation.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -20,12 +21,22 @@ namespace hybridtest {
 class UpperBoundDelay final : public Compensator {
  public:
   struct Parameters {
-    double delay_upper_bound_s = 0.024;  // [s] 0 to 8 point spacings
-    int order = 3;                       // 1 to 4
-    double point_spacing_s = 0.0;        // [s] as PolynomialParameters; 0: the bound
+    double delay_upper_bound_s = 0.024;
+    int order = 3;
+    double point_spacing_s = 0.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("delay_upper_bound_s", delay_upper_bound_s,
+                       {kZeroToOne, "that the delay never passes; goes with `optimal_pick` on the forces", "",
+                        "0 to 1, at most 8 point spacings"});
+      archive.optional("order", order, {kPolynomialOrders, "of the polynomial"});
+      archive.optional("point_spacing_s", point_spacing_s,
+                       {kNotNegative, "between the points the polynomial goes through; 0: the bound", "",
+                        "0, or 1 to 10 000 control periods"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   UpperBoundDelay(const Parameters& parameters, double control_period_s)
       : extrapolation_{{parameters.order, parameters.delay_upper_bound_s, parameters.point_spacing_s},
                        control_period_s} {}

@@ -5,8 +5,8 @@
 
 #include "core/config/section.hpp"
 #include "core/text/scalar.hpp"
-#include "scenario/catalogue/compose.hpp"
-#include "scenario/catalogue/compose_simulated_rig.hpp"
+#include "scenario/catalogue/compensators.hpp"
+#include "scenario/catalogue/simulated_rig.hpp"
 
 namespace hybridtest {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plant/site_model.hpp"
-#include "scenario/catalogue/compose_effects.hpp"
+#include "scenario/catalogue/effects.hpp"
 
 namespace hybridtest {
 

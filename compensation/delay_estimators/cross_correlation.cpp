@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
@@ -11,24 +11,14 @@ namespace {
 // A window without any motion would fade into denormal numbers, which are slow.
 constexpr double kNothing = 1e-60;
 
-std::size_t checked_half(const CrossCorrelation::Parameters& parameters, double control_period_s) {
-  checked_parameter("memory_s", parameters.memory_s, {0.01, 100.0}, "it holds a cycle of the structure or more");
-  checked_parameter("parabola_half_s", parameters.parabola_half_s, {0.0, 0.1, false},
-                    "the correlation is a parabola no further from its peak");
-  checked_parameter("comparison_period_s", parameters.comparison_period_s, {0.0, 1.0, false},
-                    "the delay changes within it");
-  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0}, "a delay learnt from sensor noise is noise");
-  return checked_periods("parabola_half_s", parameters.parabola_half_s, control_period_s, 1,
-                         "the parabola goes through three samples");
-}
-
 }  // namespace
 
 CrossCorrelation::CrossCorrelation(const Parameters& parameters, double control_period_s)
     : DelayEstimator{parameters.limits, control_period_s},
-      parameters_{parameters},
+      parameters_{checked(parameters)},
       keep_{std::exp(-control_period_s / parameters.memory_s)},
-      half_{checked_half(parameters, control_period_s)},
+      half_{checked_periods("parabola_half_s", parameters.parabola_half_s, control_period_s, 1,
+                            "the parabola goes through three samples")},
       comparison_{checked_periods("comparison_period_s", parameters.comparison_period_s, control_period_s, 1,
                                   "lags are compared at samples")},
       lags_{2 * half_ + 1 +

@@ -5,6 +5,7 @@
 
 #include "compensation/delay_estimator.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -25,13 +26,29 @@ class CrossCorrelation final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double memory_s = 1.0;               // [s] of the window; 0.01 to 100
-    double parabola_half_s = 0.004;      // [s] from its middle to its ends, rounded to samples; 1 sample to 0.1
-    double comparison_period_s = 0.005;  // [s] rounded to samples; 1 sample to 1
-    double motion_m_min = 1e-4;          // [m] root mean square; 1e-9 to 1
+    double memory_s = 1.0;
+    double parabola_half_s = 0.004;
+    double comparison_period_s = 0.005;
+    double motion_m_min = 1e-4;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("memory_s", memory_s, kEstimatorMemory);
+      archive.optional("parabola_half_s", parabola_half_s,
+                       {{.low = 0.0, .high = 0.1, .low_open = true},
+                        "from the middle of the parabola to its ends, rounded to control periods",
+                        "the correlation is a parabola no further from its peak",
+                        "1 control period to 0.1"});
+      archive.optional("comparison_period_s", comparison_period_s,
+                       {{.low = 0.0, .high = 1.0, .low_open = true},
+                        "from one comparison of the lags to the next, rounded to control periods",
+                        "the delay changes within it",
+                        "1 control period to 1"});
+      archive.optional("motion_m_min", motion_m_min, kEstimatorMotion);
+      limits.serialize(archive);
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   CrossCorrelation(const Parameters& parameters, double control_period_s);
 
  private:

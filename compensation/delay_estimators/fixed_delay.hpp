@@ -1,6 +1,7 @@
 #pragma once
 
 #include "compensation/delay_estimator.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -10,6 +11,8 @@ class FixedDelay final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;  // initial_delay_s is the delay
+
+    void serialize(ParameterArchive& archive) { limits.serialize(archive); }
   };
 
   /// @throws ConfigError for values outside their ranges.

@@ -4,20 +4,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 std::size_t checked_samples(const FrequencyEvaluationIndex::Parameters& parameters, double control_period_s) {
-  checked_parameter("window_s", parameters.window_s, {0.1, 100.0}, "it holds some cycles of the structure");
-  checked_parameter("frequency_hz_max", parameters.frequency_hz_max, {0.0, 0.45 / control_period_s, false},
-                    "faster motion is not seen at the control rate");
-  checked_parameter("frequency_hz_max", parameters.frequency_hz_max, {0.0, 256.0 / parameters.window_s, false},
-                    "every multiple of 1/window_s costs time at each sample");
-  checked_parameter("frequency_hz_min", parameters.frequency_hz_min, {0.0, parameters.frequency_hz_max},
-                    "a band ends above its beginning");
-  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0}, "a delay learnt from sensor noise is noise");
+  expect_in_range("frequency_hz_max", parameters.frequency_hz_max,
+                  {.low = 0.0, .high = 0.45 / control_period_s, .low_open = true},
+                  "faster motion is not seen at the control rate");
+  expect_in_range("frequency_hz_max", parameters.frequency_hz_max,
+                  {.low = 0.0, .high = 256.0 / parameters.window_s, .low_open = true},
+                  "every multiple of 1/window_s costs time at each sample");
+  expect_in_range("frequency_hz_min", parameters.frequency_hz_min, {.low = 0.0, .high = parameters.frequency_hz_max},
+                  "a band ends above its beginning");
   return 2 * checked_periods("window_s", 0.5 * parameters.window_s, control_period_s, 4,
                              "a window has a beginning, a middle and an end");
 }
@@ -34,16 +34,16 @@ std::size_t last_multiple(double frequency_hz, double window_s) {
 
 FrequencyEvaluationIndex::FrequencyEvaluationIndex(const Parameters& parameters, double control_period_s)
     : DelayEstimator{parameters.limits, control_period_s},
-      parameters_{parameters},
+      parameters_{checked(parameters)},
       samples_{checked_samples(parameters, control_period_s)},
       first_{first_multiple(parameters.frequency_hz_min, parameters.window_s)},
       count_{last_multiple(parameters.frequency_hz_max, parameters.window_s) + 1 - first_},
       turns_(samples_),
       taper_(samples_),
       windows_{Window{count_}, Window{count_}} {
-  checked_parameter("frequency_hz_max", parameters.frequency_hz_max,
-                    {static_cast<double>(first_) / parameters.window_s, 0.45 / control_period_s},
-                    "the band holds a multiple of 1/window_s");
+  expect_in_range("frequency_hz_max", parameters.frequency_hz_max,
+                  {.low = static_cast<double>(first_) / parameters.window_s, .high = 0.45 / control_period_s},
+                  "the band holds a multiple of 1/window_s");
   for (std::size_t n = 0; n < samples_; ++n) {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(samples_);
     turns_[n] = std::polar(1.0, -angle);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compensation/delay_estimator.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -28,13 +29,28 @@ class FrequencyEvaluationIndex final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double window_s = 1.0;           // [s] rounded to an even number of samples; 0.1 to 100
-    double frequency_hz_min = 0.5;   // [Hz] slower motion is drift; 0 to frequency_hz_max
-    double frequency_hz_max = 25.0;  // [Hz] above 0, at most 0.45 of the control rate; at most 256 / window_s
-    double motion_m_min = 1e-4;      // [m] root mean square; 1e-9 to 1
+    double window_s = 1.0;
+    double frequency_hz_min = 0.5;
+    double frequency_hz_max = 25.0;
+    double motion_m_min = 1e-4;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("window_s", window_s,
+                       {{.low = 0.1, .high = 100.0},
+                        "rounded to an even number of control periods",
+                        "it holds some cycles of the structure"});
+      archive.optional("frequency_hz_min", frequency_hz_min,
+                       {.range = kNotNegative, .what = "slower motion is drift", .values = "0 to `frequency_hz_max`"});
+      archive.optional("frequency_hz_max", frequency_hz_max,
+                       {.range = kPositive,
+                        .what = "end of the band",
+                        .values = "more than 0, at most 0.45 of the control rate and 256/`window_s`"});
+      archive.optional("motion_m_min", motion_m_min, kEstimatorMotion);
+      limits.serialize(archive);
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   FrequencyEvaluationIndex(const Parameters& parameters, double control_period_s);
 
   /// |FEI| of the last window that told something; 1 before. Below 1 where the measurement is smaller.

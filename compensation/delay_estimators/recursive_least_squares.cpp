@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
@@ -13,17 +13,11 @@ constexpr double kGainMin = 0.2;
 // and gain cannot be told apart.
 constexpr double kIndependenceMin = 1e-3;
 
-const RecursiveLeastSquares::Parameters& checked_all(const RecursiveLeastSquares::Parameters& parameters) {
-  checked_parameter("memory_s", parameters.memory_s, {0.01, 100.0}, "it holds a cycle of the structure or more");
-  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0}, "a delay learnt from sensor noise is noise");
-  return parameters;
-}
-
 }  // namespace
 
 RecursiveLeastSquares::RecursiveLeastSquares(const Parameters& parameters, double control_period_s)
     : DelayEstimator{parameters.limits, control_period_s},
-      parameters_{checked_all(parameters)},
+      parameters_{checked(parameters)},
       keep_{std::exp(-control_period_s / parameters.memory_s)},
       references_m_{checked_periods("delay_s_max", parameters.limits.delay_s_max, control_period_s, 1,
                                     "the references of the longest delay are kept") +

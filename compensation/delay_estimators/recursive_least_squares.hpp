@@ -4,6 +4,7 @@
 
 #include "compensation/delay_estimator.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -24,11 +25,17 @@ class RecursiveLeastSquares final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double memory_s = 1.0;       // [s] of the least squares; 0.01 to 100
-    double motion_m_min = 1e-4;  // [m] root mean square; 1e-9 to 1
+    double memory_s = 1.0;
+    double motion_m_min = 1e-4;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("memory_s", memory_s, kEstimatorMemory);
+      archive.optional("motion_m_min", motion_m_min, kEstimatorMotion);
+      limits.serialize(archive);
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   RecursiveLeastSquares(const Parameters& parameters, double control_period_s);
 
   /// g of the last sample that told something; 1 before.

@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compensation/parameter_check.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 std::size_t checked_window(const ZeroCrossingSlope::Parameters& parameters, double control_period_s) {
-  checked_parameter("average_s", parameters.average_s, {0.0, 1.0}, "a longer average has no fast motion left");
-  checked_parameter("slope_m_per_s_min", parameters.slope_m_per_s_min, {0.0, 100.0, false},
-                    "a crossing without slope tells no time");
-  checked_parameter("motion_m_min", parameters.motion_m_min, {1e-9, 1.0}, "a delay learnt from sensor noise is noise");
-  checked_parameter("crossing_weight", parameters.crossing_weight, {0.0, 1.0, false},
-                    "a crossing counts for something and for no more than itself");
   return std::max<std::size_t>(
-      checked_periods("average_s", parameters.average_s, control_period_s, 0, "it is an average of samples"), 1);
+      checked_periods("average_s", checked(parameters).average_s, control_period_s, 0, "it is an average of samples"),
+      1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "compensation/delay_estimator.hpp"
 #include "compensation/sample_history.hpp"
+#include "core/parameters/parameter_archive.hpp"
 
 namespace hybridtest {
 
@@ -32,13 +33,31 @@ class ZeroCrossingSlope final : public DelayEstimator {
  public:
   struct Parameters {
     DelayLimits limits;
-    double average_s = 0.004;          // [s] window of the averages, rounded to samples; 0 to 1
-    double slope_m_per_s_min = 0.005;  // [m/s] slower crossings tell nothing; above 0, at most 100
-    double motion_m_min = 1e-4;        // [m] smaller swings between crossings tell nothing; 1e-9 to 1
-    double crossing_weight = 0.3;      // [] of a new crossing; above 0, at most 1
+    double average_s = 0.004;
+    double slope_m_per_s_min = 0.005;
+    double motion_m_min = 1e-4;
+    double crossing_weight = 0.3;
+
+    void serialize(ParameterArchive& archive) {
+      archive.optional("average_s", average_s,
+                       {kZeroToOne, "window of the averages, rounded to control periods",
+                        "a longer average has no fast motion left"});
+      archive.optional("slope_m_per_s_min", slope_m_per_s_min,
+                       {{.low = 0.0, .high = 100.0, .low_open = true},
+                        "slower crossings do not count",
+                        "a crossing without slope tells no time"});
+      archive.optional(
+          "motion_m_min", motion_m_min,
+          {kEstimatorMotion.range, "smaller swings between crossings do not count", kEstimatorMotion.reason});
+      archive.optional("crossing_weight", crossing_weight,
+                       {{.low = 0.0, .high = 1.0, .low_open = true},
+                        "of a new crossing",
+                        "a crossing counts for something and for no more than itself"});
+      limits.serialize(archive);
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   ZeroCrossingSlope(const Parameters& parameters, double control_period_s);
 
  private:

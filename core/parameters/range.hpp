@@ -16,8 +16,11 @@ inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{.low = 0.0, .low_open = true};
 inline constexpr Range kNotNegative{.low = 0.0};
 inline constexpr Range kZeroToOne{.low = 0.0, .high = 1.0};
+inline constexpr Range kZeroToBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
 
 [[nodiscard]] bool contains(const Range& range, double value) noexcept;
+/// `0 to 10`, `more than 0, at most 2`, `0 to below 1`, `any`: for tables and for messages with a reason.
+[[nodiscard]] std::string values_in(const Range& range);
 /// `a number greater than 0`, for messages.
 [[nodiscard]] std::string expected_number(const Range& range);
 

@@ -12,7 +12,7 @@
 #include "recording/run_file_reader.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/run_directory.hpp"
-#include "scenario/catalogue/compose.hpp"
+#include "scenario/catalogue/integrators.hpp"
 
 namespace hybridtest {
 namespace {

@@ -36,7 +36,7 @@ class Rig {
   virtual ~Rig() = default;
 
   /// Before connect(): where to append, at every exchange(), what it knows besides its feedback. The
-  /// layouts of such tables are read with the scenario (scenario/catalogue/compose.hpp); most rigs have none.
+  /// layouts of such tables are read with the scenario (scenario/catalogue/rigs.hpp); most rigs have none.
   /// @param tables   the sinks outlive the rig.
   virtual void record_to(const RigTables& /*tables*/) {}
   /// May throw; nothing moves.

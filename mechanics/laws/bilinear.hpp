@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -17,9 +18,16 @@ namespace hybridtest {
 class Bilinear final : public Law {
  public:
   struct Parameters {
-    double stiffness_n_per_m = 0.0;  // [N/m] positive
-    double yield_force_n = 0.0;      // [N] positive
-    double hardening_ratio = 0.0;    // [-] stiffness after yielding over stiffness, 0 to less than 1
+    double stiffness_n_per_m = 0.0;
+    double yield_force_n = 0.0;
+    double hardening_ratio = 0.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "before yielding"});
+      archive.required("yield_force_n", yield_force_n, {kPositive});
+      archive.required("hardening_ratio", hardening_ratio,
+                       {kZeroToBelowOne, "stiffness after yielding over stiffness before"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
-
-constexpr Range kExponent{.low = 1.0, .high = 100.0};
 
 /// Substeps per length over which the slope changes: classical Runge-Kutta is then exact to
 /// about (1/64)^4 / 120 = 5e-10.
@@ -17,18 +15,12 @@ constexpr double kSubstepsPerLength = 64.0;
 constexpr double kFirstSubstep = 0x1p-20;
 constexpr double kSubstepGrowth = 0.25;
 /// Enough for z to reach its limit to rounding (exp(-37)) from any state.
-constexpr int kMaxSubsteps = 4096;
+constexpr int kSubstepsMax = 4096;
 
 }  // namespace
 
-BoucWen::BoucWen(const Parameters& parameters) : parameters_{parameters} {
-  static_cast<void>(checked("stiffness_n_per_m", parameters.stiffness_n_per_m, kPositive));
-  static_cast<void>(checked("alpha", parameters.alpha, kZeroToOne));
-  static_cast<void>(checked("n", parameters.n, kExponent));
-  static_cast<void>(checked("ao", parameters.ao, kPositive));
-  static_cast<void>(checked("beta_per_m", parameters.beta_per_m, kNotNegative));
-  const Range above_minus_beta{.low = -parameters.beta_per_m, .low_open = true};
-  static_cast<void>(checked("gamma_per_m", parameters.gamma_per_m, above_minus_beta));
+BoucWen::BoucWen(const Parameters& parameters) : parameters_{checked(parameters)} {
+  expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
   const double sum = parameters.gamma_per_m + parameters.beta_per_m;
   ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
@@ -59,7 +51,7 @@ double BoucWen::slope(double w) const noexcept {
 
 double BoucWen::carried_along(double w, double path) const noexcept {
   double left = path;
-  for (int i = 0; i < kMaxSubsteps && left > 0.0; ++i) {
+  for (int i = 0; i < kSubstepsMax && left > 0.0; ++i) {
     double step = std::min(left, substep(w));
     double next = runge_kutta_step(w, step);
     if (w < 0.0 && next > 0.0) {  // the slope has a kink at zero: stop there

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -16,12 +17,22 @@ namespace hybridtest {
 class BoucWen final : public Law {
  public:
   struct Parameters {
-    double stiffness_n_per_m = 0.0;  // [N/m] k, positive
-    double alpha = 0.0;              // [-] share of the elastic spring, 0 to 1
-    double n = 1.0;                  // [-] 1 to 100; the larger, the sharper the yielding
-    double gamma_per_m = 0.0;        // [1/m^n] above -beta
-    double beta_per_m = 0.0;         // [1/m^n] not negative
-    double ao = 1.0;                 // [-] positive
+    double stiffness_n_per_m = 0.0;  // k
+    double alpha = 0.0;
+    double n = 1.0;
+    double gamma_per_m = 0.0;
+    double beta_per_m = 0.0;
+    double ao = 1.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "k"});
+      archive.required("alpha", alpha, {kZeroToOne, "share of the elastic spring"});
+      archive.optional("n", n, {{.low = 1.0, .high = 100.0}, "the larger, the sharper the yielding"});
+      archive.required("gamma_per_m", gamma_per_m,
+                       {.what = "gamma", .values = "more than −`beta_per_m`", .unit = "1/mⁿ"});
+      archive.required("beta_per_m", beta_per_m, {.range = kNotNegative, .what = "beta", .unit = "1/mⁿ"});
+      archive.optional("ao", ao, {kPositive, "Ao, initial slope of z"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -3,34 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
-constexpr Range kShareBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
 constexpr double kSubstepsPerPinchLength = 64.0;
 /// A step that crosses the whole loop 60 times; beyond, z has long reached its limit.
-constexpr int kMaxPinchSubsteps = 8192;
+constexpr int kPinchSubstepsMax = 8192;
 
 }  // namespace
 
-BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters) : parameters_{parameters} {
-  const Parameters& p = parameters;
-  static_cast<void>(checked("stiffness_n_per_m", p.stiffness_n_per_m, kPositive));
-  static_cast<void>(checked("alpha", p.alpha, kZeroToOne));
-  static_cast<void>(checked("n", p.n, {.low = 1.0, .high = 100.0}));
-  static_cast<void>(checked("ao", p.ao, kPositive));
-  static_cast<void>(checked("beta_per_m", p.beta_per_m, kNotNegative));
-  static_cast<void>(checked("gamma_per_m", p.gamma_per_m, {.low = -p.beta_per_m, .low_open = true}));
-  static_cast<void>(checked("strength_degradation_per_j", p.strength_degradation_per_j, kNotNegative));
-  static_cast<void>(checked("stiffness_degradation_per_j", p.stiffness_degradation_per_j, kNotNegative));
-  static_cast<void>(checked("pinching", p.pinching, kShareBelowOne));
-  static_cast<void>(checked("pinching_rate_per_j", p.pinching_rate_per_j, kNotNegative));
-  static_cast<void>(checked("pinching_level", p.pinching_level, kZeroToOne));
-  static_cast<void>(checked("pinching_width_m", p.pinching_width_m, kPositive));
-  static_cast<void>(checked("width_rate_m_per_j", p.width_rate_m_per_j, kNotNegative));
-  static_cast<void>(checked("width_share", p.width_share, kPositive));
+BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters) : parameters_{checked(parameters)} {
+  expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
 }
 
 double BoucWenBaberNoori::initial_stiffness_n_per_m() const noexcept {
@@ -48,10 +33,10 @@ double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s
   double length_m = ultimate_m(committed_.energy_j) / parameters_.ao;
   if (parameters_.pinching > 0.0) length_m = std::min(length_m, pinching_width_m(committed_.energy_j, pinching));
   const double substeps = std::ceil(std::abs(increment_m) / length_m * kSubstepsPerPinchLength);
-  const int count = static_cast<int>(std::clamp(substeps, 1.0, static_cast<double>(kMaxPinchSubsteps)));
+  const int count = static_cast<int>(std::clamp(substeps, 1.0, static_cast<double>(kPinchSubstepsMax)));
   // Of a longer way only the end matters.
-  const double way_m = substeps > kMaxPinchSubsteps
-                           ? std::copysign(length_m / kSubstepsPerPinchLength * kMaxPinchSubsteps, increment_m)
+  const double way_m = substeps > kPinchSubstepsMax
+                           ? std::copysign(length_m / kSubstepsPerPinchLength * kPinchSubstepsMax, increment_m)
                            : increment_m;
   for (int i = 0; i < count && way_m != 0.0; ++i) advance(trial_, way_m / count);
   trial_.displacement_m = displacement_m;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -20,20 +21,38 @@ namespace hybridtest {
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {
-    double stiffness_n_per_m = 0.0;            // [N/m] k, positive
-    double alpha = 0.0;                        // [-] share of the elastic spring, 0 to 1
-    double n = 1.0;                            // [-] 1 to 100
-    double gamma_per_m = 0.0;                  // [1/m^n] above -beta
-    double beta_per_m = 0.0;                   // [1/m^n] not negative
-    double ao = 1.0;                           // [-] positive
-    double strength_degradation_per_j = 0.0;   // [1/J] d_nu, not negative
-    double stiffness_degradation_per_j = 0.0;  // [1/J] d_eta, not negative
-    double pinching = 0.0;                     // [-] zeta_s, 0 to less than 1
-    double pinching_rate_per_j = 0.0;          // [1/J] p, not negative
-    double pinching_level = 0.0;               // [-] q, 0 to 1
-    double pinching_width_m = 1.0;             // [m] psi, positive
-    double width_rate_m_per_j = 0.0;           // [m/J] d_psi, not negative
-    double width_share = 1.0;                  // [-] lambda, positive
+    double stiffness_n_per_m = 0.0;  // k
+    double alpha = 0.0;
+    double n = 1.0;
+    double gamma_per_m = 0.0;
+    double beta_per_m = 0.0;
+    double ao = 1.0;
+    double strength_degradation_per_j = 0.0;   // d_nu
+    double stiffness_degradation_per_j = 0.0;  // d_eta
+    double pinching = 0.0;                     // zeta_s
+    double pinching_rate_per_j = 0.0;          // p
+    double pinching_level = 0.0;               // q
+    double pinching_width_m = 1.0;             // psi
+    double width_rate_m_per_j = 0.0;           // d_psi
+    double width_share = 1.0;                  // lambda
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "k"});
+      archive.required("alpha", alpha, {kZeroToOne, "share of the elastic spring"});
+      archive.optional("n", n, {{.low = 1.0, .high = 100.0}, "the larger, the sharper the yielding"});
+      archive.required("gamma_per_m", gamma_per_m,
+                       {.what = "gamma", .values = "more than −`beta_per_m`", .unit = "1/mⁿ"});
+      archive.required("beta_per_m", beta_per_m, {.range = kNotNegative, .what = "beta", .unit = "1/mⁿ"});
+      archive.optional("ao", ao, {kPositive, "Ao, initial slope of z"});
+      archive.optional("strength_degradation_per_j", strength_degradation_per_j, {kNotNegative, "d_nu"});
+      archive.optional("stiffness_degradation_per_j", stiffness_degradation_per_j, {kNotNegative, "d_eta"});
+      archive.optional("pinching", pinching, {kZeroToBelowOne, "zeta_s, share of the slope that is lost in the end"});
+      archive.optional("pinching_rate_per_j", pinching_rate_per_j, {kNotNegative, "p, growth of the pinching"});
+      archive.optional("pinching_level", pinching_level, {kZeroToOne, "q, z of the strongest pinching over its limit"});
+      archive.optional("pinching_width_m", pinching_width_m, {kPositive, "psi, width of the pinched range of z"});
+      archive.optional("width_rate_m_per_j", width_rate_m_per_j, {kNotNegative, "d_psi, growth of the width"});
+      archive.optional("width_share", width_share, {kPositive, "lambda, width before any pinching over psi"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

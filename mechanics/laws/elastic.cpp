@@ -1,11 +1,10 @@
 #include "mechanics/laws/elastic.hpp"
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
-Elastic::Elastic(double stiffness_n_per_m)
-    : stiffness_n_per_m_{checked("stiffness_n_per_m", stiffness_n_per_m, kPositive)} {}
+Elastic::Elastic(const Parameters& parameters) : stiffness_n_per_m_{checked(parameters).stiffness_n_per_m} {}
 
 double Elastic::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
   return stiffness_n_per_m_ * displacement_m;

@@ -1,15 +1,11 @@
 #include "mechanics/laws/friction.hpp"
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
 Friction::Friction(const Parameters& parameters)
-    : parameters_{parameters},
-      committed_{checked("presliding_displacement_m", parameters.presliding_displacement_m, kPositive)},
-      trial_{committed_} {
-  static_cast<void>(checked("friction_force_n", parameters.friction_force_n, kNotNegative));
-}
+    : parameters_{checked(parameters)}, committed_{parameters.presliding_displacement_m}, trial_{committed_} {}
 
 double Friction::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
   trial_ = committed_;

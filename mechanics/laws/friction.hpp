@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 #include "mechanics/laws/presliding_element.hpp"
 
@@ -9,8 +10,14 @@ namespace hybridtest {
 class Friction final : public Law {
  public:
   struct Parameters {
-    double friction_force_n = 0.0;            // [N] while sliding, not negative
-    double presliding_displacement_m = 1e-5;  // [m] from rest until it slides, positive
+    double friction_force_n = 0.0;
+    double presliding_displacement_m = 1e-5;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("friction_force_n", friction_force_n, {kNotNegative, "while sliding"});
+      archive.optional("presliding_displacement_m", presliding_displacement_m,
+                       {kPositive, "from rest until it slides"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

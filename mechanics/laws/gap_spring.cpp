@@ -1,12 +1,9 @@
 #include "mechanics/laws/gap_spring.hpp"
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
-GapSpring::GapSpring(const Parameters& parameters) : parameters_{parameters} {
-  static_cast<void>(checked("stiffness_n_per_m", parameters.stiffness_n_per_m, kPositive));
-  static_cast<void>(checked("gap_m", parameters.gap_m, kNotNegative));
-}
+GapSpring::GapSpring(const Parameters& parameters) : parameters_{checked(parameters)} {}
 
 }  // namespace hybridtest

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -16,8 +17,13 @@ namespace hybridtest {
 class GapSpring final : public Law {
  public:
   struct Parameters {
-    double stiffness_n_per_m = 0.0;  // [N/m] beyond the gap, positive
-    double gap_m = 0.0;              // [m] on either side, not negative
+    double stiffness_n_per_m = 0.0;
+    double gap_m = 0.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "beyond the gap"});
+      archive.required("gap_m", gap_m, {kNotNegative, "on either side"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -3,23 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
-namespace {
 
-constexpr Range kFromZeroToBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
-constexpr Range kCurvature{.low = 0.0, .high = 100.0, .low_open = true};
-
-}  // namespace
-
-GiuffreMenegottoPinto::GiuffreMenegottoPinto(const Parameters& parameters) : parameters_{parameters} {
-  static_cast<void>(checked("stiffness_n_per_m", parameters.stiffness_n_per_m, kPositive));
-  static_cast<void>(checked("yield_force_n", parameters.yield_force_n, kPositive));
-  static_cast<void>(checked("hardening_ratio", parameters.hardening_ratio, kFromZeroToBelowOne));
-  static_cast<void>(checked("r0", parameters.r0, kCurvature));
-  static_cast<void>(checked("cr1", parameters.cr1, kFromZeroToBelowOne));
-  static_cast<void>(checked("cr2", parameters.cr2, kPositive));
+GiuffreMenegottoPinto::GiuffreMenegottoPinto(const Parameters& parameters) : parameters_{checked(parameters)} {
   yield_displacement_m_ = parameters.yield_force_n / parameters.stiffness_n_per_m;
   reset();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -21,12 +22,22 @@ namespace hybridtest {
 class GiuffreMenegottoPinto final : public Law {
  public:
   struct Parameters {
-    double stiffness_n_per_m = 0.0;  // [N/m] positive
-    double yield_force_n = 0.0;      // [N] positive
-    double hardening_ratio = 0.0;    // [-] b, 0 to less than 1
-    double r0 = 20.0;                // [-] R0 of the first branch, positive, at most 100
-    double cr1 = 0.925;              // [-] 0 to less than 1
-    double cr2 = 0.15;               // [-] positive
+    double stiffness_n_per_m = 0.0;
+    double yield_force_n = 0.0;
+    double hardening_ratio = 0.0;  // b
+    double r0 = 20.0;
+    double cr1 = 0.925;
+    double cr2 = 0.15;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "before yielding"});
+      archive.required("yield_force_n", yield_force_n, {kPositive});
+      archive.required("hardening_ratio", hardening_ratio,
+                       {kZeroToBelowOne, "stiffness after yielding over stiffness before"});
+      archive.optional("r0", r0, {{.low = 0.0, .high = 100.0, .low_open = true}, "R0, curvature of the first branch"});
+      archive.optional("cr1", cr1, {kZeroToBelowOne, "cR1, loss of curvature"});
+      archive.optional("cr2", cr2, {kPositive, "cR2, displacement of half that loss"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -8,8 +9,14 @@ namespace hybridtest {
 class Viscous final : public Law {
  public:
   struct Parameters {
-    double damping_n_s_per_m = 0.0;  // [N (s/m)^n] not negative
-    double exponent = 1.0;           // [-] n, 0.1 to 3
+    double damping_n_s_per_m = 0.0;
+    double exponent = 1.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("damping_n_s_per_m", damping_n_s_per_m,
+                       {.range = kNotNegative, .what = "c", .unit = "N (s/m)ⁿ"});
+      archive.optional("exponent", exponent, {{.low = 0.1, .high = 3.0}, "n"});
+    }
   };
 
   /// @throws ConfigError for values outside these ranges.

@@ -5,6 +5,7 @@
 #include "core/text/scalar.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/parameter_limits.hpp"
+#include "scenario/catalogue/parameter_table.hpp"
 
 namespace hybridtest {
 namespace {
@@ -23,16 +24,6 @@ std::string values_of(const EffectParameter& parameter) {
 
 std::string default_of(const EffectParameter& parameter) {
   return std::isnan(parameter.fallback) ? "—" : written_number(parameter.fallback);
-}
-
-/// A bar would end the cell of a table.
-std::string cell(std::string_view words) {
-  std::string escaped;
-  for (const char letter : words) {
-    if (letter == '|') escaped += '\\';
-    escaped += letter;
-  }
-  return escaped;
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "scenario/catalogue/compose_effects.hpp"
+#include "scenario/catalogue/effects.hpp"
 
 namespace hybridtest {
 

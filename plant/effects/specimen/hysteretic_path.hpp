@@ -13,9 +13,9 @@ namespace hybridtest {
 /// @param substep   the longest; the error over a unit of way is about its fourth power / 100.
 template <class Slope>
 [[nodiscard]] double carried_along(double z, double way, double substep, Slope&& slope) noexcept {
-  constexpr double kMostSubsteps = 160.0;  // of a longer way only the end matters
+  constexpr double kSubstepsMax = 160.0;  // of a longer way only the end matters
   const double direction = way < 0.0 ? -1.0 : 1.0;
-  const double substeps = std::clamp(std::ceil(std::abs(way) / substep), 1.0, kMostSubsteps);
+  const double substeps = std::clamp(std::ceil(std::abs(way) / substep), 1.0, kSubstepsMax);
   const double step = direction * std::min(std::abs(way) / substeps, substep);
   for (double i = 0.0; i < substeps; ++i) {
     const double k1 = slope(z, direction);

@@ -8,7 +8,7 @@
 #include "core/config/section.hpp"
 #include "plant/site_model.hpp"
 #include "plant/specimens/specimen.hpp"
-#include "scenario/catalogue/compose.hpp"
+#include "scenario/catalogue/rigs.hpp"
 
 namespace hybridtest {
 

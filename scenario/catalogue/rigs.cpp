@@ -1,3 +1,5 @@
+#include "scenario/catalogue/rigs.hpp"
+
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -12,8 +14,8 @@
 #include "experimental_site/rigs/replay_rig.hpp"
 #include "experimental_site/rigs/udp_port.hpp"
 #include "experimental_site/rigs/udp_rig.hpp"
-#include "scenario/catalogue/compose.hpp"
-#include "scenario/catalogue/compose_simulated_rig.hpp"
+#include "scenario/catalogue/part.hpp"
+#include "scenario/catalogue/simulated_rig.hpp"
 #include "scenario/measurement_file.hpp"
 
 namespace hybridtest {

@@ -1,6 +1,6 @@
 // Simulated rigs: the transfer systems, specimens and sensors that a scenario or a site file can name.
 
-#include "scenario/catalogue/compose_simulated_rig.hpp"
+#include "scenario/catalogue/simulated_rig.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -15,8 +15,9 @@
 #include "plant/transfer_systems/ideal.hpp"
 #include "plant/transfer_systems/second_order.hpp"
 #include "plant/transfer_systems/servo_hydraulic.hpp"
-#include "scenario/catalogue/compose_effects.hpp"
-#include "scenario/catalogue/named_type.hpp"
+#include "scenario/catalogue/effects.hpp"
+#include "scenario/catalogue/laws.hpp"
+#include "scenario/catalogue/part.hpp"
 
 namespace hybridtest {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenario/catalogue/compose_effects.hpp"
+#include "scenario/catalogue/effects.hpp"
 
 #include <cmath>
 

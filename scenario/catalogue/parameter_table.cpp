@@ -1,0 +1,102 @@
+#include "scenario/catalogue/parameter_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ranges>
+#include <span>
+#include <utility>
+
+#include "core/text/scalar.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr const char* kRequired = "—";
+
+/// The words of a key that stand for a unit.
+const std::map<std::string_view, std::string_view>& unit_words() {
+  static const std::map<std::string_view, std::string_view> words{
+      {"n", "N"},   {"m", "m"},   {"s", "s"},   {"kg", "kg"}, {"hz", "Hz"}, {"pa", "Pa"}, {"j", "J"},
+      {"m2", "m²"}, {"m3", "m³"}, {"s2", "s²"}, {"s3", "s³"}, {"per", "/"}, {"min", ""},  {"max", ""}};
+  return words;
+}
+
+std::string joined(std::span<const std::string> words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+}  // namespace
+
+std::string unit_of(std::string_view key) {
+  std::vector<std::string_view> words;
+  for (const auto part : std::views::split(key, '_')) words.emplace_back(part.begin(), part.end());
+  // The name of the quantity is at least one word, so that the key `n` has no unit.
+  auto first = words.end();
+  while (first != words.begin() + 1 && unit_words().contains(*(first - 1))) --first;
+  std::vector<std::string> above, below;
+  bool is_below = false;
+  for (; first != words.end(); ++first) {
+    const std::string unit{unit_words().at(*first)};
+    if (unit == "/") is_below = true;
+    if (unit != "/" && !unit.empty()) (is_below ? below : above).push_back(unit);
+  }
+  if (below.empty()) return joined(above);
+  const std::string divisor = below.size() == 1 ? below.front() : "(" + joined(below) + ")";
+  return (above.empty() ? "1" : joined(above)) + "/" + divisor;
+}
+
+std::string cell(std::string_view words) {
+  std::string escaped;
+  for (const char letter : words) {
+    if (letter == '|') escaped += '\\';
+    escaped += letter;
+  }
+  return escaped;
+}
+
+std::string ParameterTable::lines(std::string first) const {
+  if (rows_.empty()) return "| " + first + " | | | | | |\n";
+  std::string text;
+  for (const Row& row : rows_) {
+    text += "| " + first + " | `" + row.key + "` | " + row.unit + " | " + cell(row.what) + " | " + cell(row.values) +
+            " | " + row.fallback + " |\n";
+    first.clear();
+  }
+  return text;
+}
+
+void ParameterTable::add(std::string_view key, const ParameterRule& rule, std::string fallback) {
+  rows_.push_back({.key = std::string{key},
+                   .unit = rule.unit.empty() ? unit_of(key) : std::string{rule.unit},
+                   .what = std::string{rule.what},
+                   .values = rule.values.empty() ? values_in(rule.range) : std::string{rule.values},
+                   .fallback = std::move(fallback)});
+}
+
+void ParameterTable::number(std::string_view key, double& value, const ParameterRule& rule, bool is_required) {
+  add(key, rule, is_required ? kRequired : written_number(value));
+}
+
+void ParameterTable::integer(std::string_view key, int& value, const ParameterRule& rule) {
+  add(key, rule, written_integer(value));
+}
+
+void ParameterTable::boolean(std::string_view key, bool& value, const ParameterRule& rule) {
+  ParameterRule of_two = rule;
+  if (rule.values.empty()) of_two.values = "true, false";
+  add(key, of_two, written_boolean(value));
+}
+
+void ParameterTable::nested(std::string_view key, std::string_view what, const Visit& /*visit*/) {
+  rows_.push_back({.key = std::string{key}, .what = std::string{what}, .values = "section", .fallback = kRequired});
+}
+
+void ParameterTable::either(const Alternative& first, const Alternative& second) {
+  add(first.key, first.rule, "or `" + std::string{second.key} + "`");
+  add(second.key, second.rule, "or `" + std::string{first.key} + "`");
+}
+
+}  // namespace hybridtest
