@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
                  1.0e-4 /* measured 0.84e-4 */}),
     [](const auto& instance) { return instance.param.reference; });
 
-// Control: the comparison sees a wrong structure.
-TEST(ReferenceComparison, SeesStiffnessErrorOfOneThousandth) {
+// Control: the comparison detects a wrong structure.
+TEST(ReferenceComparison, DetectsStiffnessErrorOfOneThousandth) {
   const ReferenceHistory reference = read_reference(committed_reference("two_storey_bilinear"));
   const Building building{
       "", "two_storey_one_site", {"storey_1"}, {"substructures[storey_2].model.stiffness_n_per_m=3.003e6"}, 0.0};
