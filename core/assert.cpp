@@ -19,7 +19,7 @@ void set_assert_action(AssertAction action, void* context) noexcept {
 
 void assertion_failed(const char* condition, const char* file, int line) noexcept {
   if (const AssertAction action = assert_action.exchange(nullptr)) action(assert_context.load());
-  std::fprintf(stderr, "%s:%d: internal error, please report: %s does not hold\n", file, line, condition);
+  std::fprintf(stderr, "%s:%d: internal error, please report it: %s is false\n", file, line, condition);
   std::abort();
 }
 

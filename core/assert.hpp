@@ -11,6 +11,6 @@ void set_assert_action(AssertAction action, void* context) noexcept;
 
 }  // namespace hybridtest
 
-/// For our own mistakes; always on. Never for input or for what happens in operation.
+/// For programming errors; always on. Never for input or for faults in operation.
 #define HYBRIDTEST_ASSERT(condition) \
   ((condition) ? static_cast<void>(0) : ::hybridtest::assertion_failed(#condition, __FILE__, __LINE__))

@@ -7,21 +7,21 @@
 
 namespace hybridtest {
 
-/// Counts durations in bins that are wider the longer they are: 16 to each doubling, so that a
-/// bin is at most a sixteenth of what it holds wide. From 1 ns to 18 minutes; what is longer
-/// counts as that. Made once, then neither allocates nor computes in floating point: real-time safe.
+/// Counts durations in logarithmic bins: 16 per doubling, so the width of a bin is at most a
+/// sixteenth of its durations. From 1 ns to 18 minutes; longer durations count as 18 minutes.
+/// After construction it neither allocates nor computes in floating point: real-time safe.
 class DurationHistogram {
  public:
   static constexpr int kBinsPerDoubling = 16;
   static constexpr int kBins = (40 - 4 + 1) * kBinsPerDoubling;
 
-  /// Negative durations count as none.
+  /// Negative durations count as 0.
   void record(Duration duration) noexcept;
 
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }
   /// Exactly; zero when nothing was recorded.
   [[nodiscard]] Duration max() const noexcept { return max_; }
-  /// The end of the bin which that share of all does not exceed, or max() where that is less.
+  /// The upper end of the bin below which this share of all durations lies, or max() if that is less.
   /// @param share   0 to 1.
   [[nodiscard]] Duration quantile(double share) const noexcept;
 

@@ -25,7 +25,7 @@ std::string_view unit_of(std::string_view fault) {
 
 std::string interlock_text(const Event& event) {
   const auto subject = event.subject.text();
-  // There is nothing to measure about these.
+  // These have no observed value and no limit.
   if (subject == "not_finite" || subject == "rig_fault" || subject == "emergency_stop") return "interlock: " + subject;
   const std::string unit{unit_of(subject)};
   return "interlock: " + subject + " (observed " + number(event.values[0]) + unit + ", limit " +
@@ -35,7 +35,7 @@ std::string interlock_text(const Event& event) {
 std::string granted_text(const Event& event) {
   const auto subject = event.subject.text();
   if (subject == "scheduling") return "SCHED_FIFO at priority " + number(event.values[0]);
-  if (subject == "affinity") return "the control loop stays on cpu " + number(event.values[0]);
+  if (subject == "affinity") return "the control loop stays on processor " + number(event.values[0]);
   return "memory is locked";
 }
 
@@ -47,10 +47,10 @@ std::string refused_text(const Event& event) {
            "; give the user an rtprio limit of at least that in /etc/security/limits.conf, or the program CAP_SYS_NICE";
   }
   if (subject == "affinity") {
-    return "cpu " + number(event.values[1]) + " was refused" + why + "; choose one that this process may run on";
+    return "processor " + number(event.values[1]) + " was refused" + why + "; choose one that this process may use";
   }
   return "locking memory was refused" + why +
-         "; give the user memlock unlimited in /etc/security/limits.conf, or the program CAP_IPC_LOCK";
+         "; give the user memlock unlimited in /etc/security/limits.conf, or give the program CAP_IPC_LOCK";
 }
 
 }  // namespace
@@ -61,12 +61,17 @@ std::string describe(const Event& event) {
     case EventCode::none: return "nothing";
     case EventCode::participant_joined: return subject + " joined";
     case EventCode::participant_ready: return "ready";
-    case EventCode::participant_lost: return subject + " is lost: nothing heard within the liveliness lease";
+    case EventCode::participant_lost:
+      return subject + " is lost: no message within the liveliness lease (timeouts.liveliness_lease_s)";
     case EventCode::participant_missing: return subject + " did not appear or did not get ready in time";
     case EventCode::digest_mismatch:
-      return "the scenario differs from that of " + subject + "; start every participant with the same file";
-    case EventCode::duplicate_id: return "another participant with the id " + subject + " is in this test";
-    case EventCode::second_coordinator: return "another coordinator is running this test";
+      return "the scenario differs from that of " + subject +
+             "; start every participant with the same file and the same --set";
+    case EventCode::duplicate_id:
+      return "another participant with the id " + subject +
+             " is already in this test; give each participant its own id and start each only once";
+    case EventCode::second_coordinator:
+      return "another coordinator is already running this test; stop it, or use another test name";
     case EventCode::test_armed: return "armed";
     case EventCode::test_started: return "test started";
     case EventCode::test_completed: return "test completed";
@@ -77,14 +82,15 @@ std::string describe(const Event& event) {
       return "no command for " + number(event.values[0]) + " s (limit " + number(event.values[1]) +
              " s): holding the last position";
     case EventCode::coordinator_lost: return "the coordinator is lost: bringing the rig to rest";
-    case EventCode::command_repeated: return "repeated the command to " + subject + ", which has not answered";
-    case EventCode::measurement_not_finite: return "a force that is not a finite number came from " + subject;
-    case EventCode::recording_failed: return "recording failed: data are missing from here on";
-    case EventCode::records_dropped: return number(event.values[0]) + " records could not be kept";
+    case EventCode::command_repeated: return "resent the command to " + subject + ", which has not answered";
+    case EventCode::measurement_not_finite: return "received a force that is not a finite number from " + subject;
+    case EventCode::recording_failed:
+      return "recording failed: data are missing from here on; check the free space of the disk";
+    case EventCode::records_dropped: return number(event.values[0]) + " rows of the recording were dropped";
     case EventCode::test_paused: return "test paused";
     case EventCode::test_resumed: return "test resumed";
     case EventCode::emergency_stop: return "emergency stop";
-    case EventCode::interlock_warned: return "not ending the test, " + interlock_text(event);
+    case EventCode::interlock_warned: return "warning only, " + interlock_text(event);
     case EventCode::interlock_cleared: return "the interlocks that can clear have cleared";
     case EventCode::zero_offset:
       return "zero offset of " + event.subject.text() + ": " + number(event.values[0]) + " m, " +

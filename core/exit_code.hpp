@@ -11,7 +11,7 @@ inline constexpr int kExitEndedEarly = 3;     // interlock, participant lost, st
 inline constexpr int kExitDataInvalid = 4;
 inline constexpr int kExitInternal = 70;
 
-/// Of a process whose part in the test ended for this reason.
+/// The exit code of a participant that ended for this reason.
 [[nodiscard]] constexpr int exit_code_for(StopReason reason) noexcept {
   switch (reason) {
     case StopReason::completed: return kExitCompleted;

@@ -16,7 +16,7 @@ namespace hybridtest {
   constexpr Flags& operator|=(Flags& a, Flags b) noexcept { return a = a | b; }               \
   [[nodiscard]] constexpr bool any(Flags flags) noexcept { return static_cast<std::uint32_t>(flags) != 0; }
 
-/// What is wrong with a participant, latched until it leaves.
+/// The faults of a participant, latched until it leaves.
 enum class FaultFlags : std::uint32_t {
   none = 0,
   displacement_limit = 1U << 0U,
@@ -32,21 +32,21 @@ enum class FaultFlags : std::uint32_t {
   coordinator_lost = 1U << 10U,
   emergency_stop = 1U << 11U,
   participant_lost = 1U << 12U,
-  displacement_step = 1U << 13U,   // from one sample to the next: a broken sensor
+  displacement_step = 1U << 13U,   // change between two samples: a broken sensor
   force_step = 1U << 14U,          // likewise
   stuck_sensor = 1U << 15U,        // reads the same while the command moves
   tracking_indicator = 1U << 16U,  // the specimen lags or leads too far
 };
 HYBRIDTEST_FLAG_OPERATORS(FaultFlags)
 
-/// How a measurement came about.
+/// Properties of a measurement.
 enum class MeasurementFlags : std::uint32_t {
   none = 0,
-  extrapolated = 1U << 0U,  // the target was not known when motion towards it began
+  extrapolated = 1U << 0U,  // the target was not yet known when the motion started
   held = 1U << 1U,          // the actuator waited at the last target
   saturated = 1U << 2U,     // a limit clipped the command
   late = 1U << 3U,          // the target came after its own time
-  repeated = 1U << 4U,      // answered from the cache to a repeated command
+  repeated = 1U << 4U,      // stored answer to a repeated command
 };
 HYBRIDTEST_FLAG_OPERATORS(MeasurementFlags)
 
@@ -58,7 +58,7 @@ enum class StopReason : std::uint8_t {
   interlock,    // a site's limit or fault
   participant_lost,
   coordinator_lost,
-  not_finite,     // the integrator met NaN or infinity
+  not_finite,     // NaN or infinity in the integrator
   not_assembled,  // a participant did not appear or did not arm
   refused,        // scenario digest or identity
   recording_failed,
@@ -88,10 +88,10 @@ enum class EventCode : std::uint16_t {
   test_resumed,
   emergency_stop,
   interlock_warned,   // subject and values as interlock_tripped; the test goes on
-  interlock_cleared,  // those that could have let go
+  interlock_cleared,  // all that can clear have cleared
   zero_offset,        // subject: interface degree of freedom; values: displacement [m], force [N]
-  real_time_granted,  // subject: what of it; values[0]: priority or cpu
-  real_time_refused,  // subject: what of it; values: errno, what was asked for
+  real_time_granted,  // subject: which request; values[0]: priority or cpu
+  real_time_refused,  // subject: which request; values: errno, requested value
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

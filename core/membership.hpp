@@ -7,14 +7,14 @@
 
 namespace hybridtest {
 
-/// The ports by which a substructure takes part in a test, and its patience.
+/// The ports of a substructure that takes part in a test, and its timeout.
 struct MembershipPorts {
   Inbox<TestAnnouncement>& announcements;
   Inbox<TestControl>& control;
-  Duration discovery_timeout;  // without a coordinator for so long the participant leaves
+  Duration discovery_timeout;  // without a coordinator for this time the participant leaves
 };
 
-/// What the coordinator, or the loss of it, asks of a substructure.
+/// A request to a substructure from the coordinator, or from its loss.
 enum class Request : std::uint8_t { none, arm, start, pause, resume, stop, emergency_stop };
 
 /// A substructure's side of joining, arming, starting and leaving a test: agrees on the
@@ -29,7 +29,7 @@ class Membership {
 
   /// The coordinator whose commands are obeyed; 0 before one is found.
   [[nodiscard]] Incarnation coordinator() const noexcept { return coordinator_; }
-  /// Why the last stop was asked for.
+  /// The reason of the last stop request.
   [[nodiscard]] StopReason stop_reason() const noexcept { return stop_reason_; }
 
  private:

@@ -9,8 +9,8 @@
 #include "core/interface_vector.hpp"
 #include "core/time.hpp"
 
-/// The vocabulary of a hybrid test, independent of how it travels. `idl/hybridtest.idl` states
-/// the same on the wire; `transport/fast_dds/wire_mapping.hpp` maps the two onto each other.
+/// The messages of a hybrid test, independent of the transport. `idl/hybridtest.idl` defines
+/// their form on the network; `transport/fast_dds/wire_mapping.hpp` converts between the two.
 ///
 /// Displacement, force and their derivatives are in the substructure's interface coordinates:
 /// displacement positive along the structure's degree of freedom (against `relative_to`), the
@@ -18,7 +18,7 @@
 namespace hybridtest {
 
 inline constexpr int kMaxSubstructures = 32;
-/// Newest point and the ones before it that travel with each command.
+/// Number of points in each command: the newest one and those before it.
 inline constexpr int kCommandPoints = 4;
 inline constexpr int kMaxSignalSamples = 32;
 
@@ -27,7 +27,7 @@ using ParticipantId = FixedText<48>;
 inline constexpr std::string_view kCoordinatorId = "coordinator";
 using ScenarioDigest = std::array<std::uint8_t, 32>;  // SHA-256 of the effective scenario
 
-/// Drawn anew by each process at start; tells two processes with one id apart.
+/// Random number of each process, drawn at its start; distinguishes two processes with one id.
 using Incarnation = std::uint64_t;
 
 /// Position of a substructure in the scenario's list; the key of commands and measurements.
@@ -50,7 +50,7 @@ enum class LifecycleState : std::uint8_t {
   running,
   stopping,  // bringing the rig to rest
   finished,  // at rest, records closed, about to leave
-  refused,   // will not take part: see the event
+  refused,   // does not take part; the event gives the reason
   lost,
 };
 
@@ -139,7 +139,7 @@ struct ForceMeasurement {
   Incarnation sender = 0;
   Step step = kNoStep;
   double model_time_s = 0.0;                // [s] of the step answered
-  InterfaceVector imposed_displacement_m;   // [m] what was asked of the actuators or the model
+  InterfaceVector imposed_displacement_m;   // [m] commanded to the actuators or the model
   InterfaceVector measured_displacement_m;  // [m]
   InterfaceVector force_n;                  // [N] restoring force
   MeasurementFlags flags = MeasurementFlags::none;
@@ -168,7 +168,7 @@ struct TestControl {
 
 enum class Severity : std::uint8_t { information, warning, fault };
 
-/// What happened, for people and for the record. The text is made from the code by
+/// An event, for users and for the recording. The text is made from the code by
 /// describe(), so that a control loop can raise events without formatting.
 struct Event {
   ParticipantId source;

@@ -4,7 +4,7 @@
 
 namespace hybridtest {
 
-/// A state machine that is handed the time: a coordinator, a substructure, a control loop.
+/// A state machine that receives the time: a coordinator, a substructure, a control loop.
 ///
 /// A Node takes its messages from Inboxes and sends through Outboxes; it never reads a clock,
 /// opens a socket, sleeps, logs or throws. So the same object runs on threads over DDS, in one

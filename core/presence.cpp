@@ -9,9 +9,9 @@ namespace {
   return state == LifecycleState::finished || state == LifecycleState::refused || state == LifecycleState::lost;
 }
 
-/// Clocks that differ by less are those of participants that started together.
+/// Participants whose clocks differ by less count as started together.
 constexpr Duration kStartedTogether = std::chrono::milliseconds{200};
-/// More than a status takes there and back.
+/// Longer than the round trip of a status.
 constexpr Duration kOnItsWay = std::chrono::milliseconds{50};
 
 [[nodiscard]] bool may_still_leave(LifecycleState state) noexcept {
@@ -108,15 +108,15 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
   }
   const bool is_other_process = place->status.incarnation != status.incarnation;
   if (is_other_process) {
-    // The one known stays until it has left: a younger one with its id must not take its place,
-    // and the report that a stranger was lost says nothing of it.
+    // The known participant stays until it has left: a younger one with the same id must not replace
+    // it, and the loss of another incarnation says nothing about it.
     if (!has_left(place->status.state) || has_left(status.state)) return;
   } else if (has_left(place->status.state) && place->status.state != LifecycleState::lost) {
-    return;  // a late or repeated status of one that has said goodbye
+    return;  // a late or repeated status of a participant that has left
   } else if (status.clock < place->status.clock && status.state != LifecycleState::lost) {
-    return;  // overtaken on its way: newer states and faults stay
+    return;  // an older status that arrived late: keep the newer state and faults
   }
-  // A transport reports a loss with what it remembers; a step once answered stays answered.
+  // A transport reports a loss with the last status it knows; an answered step stays answered.
   const Step last_step = is_other_process ? status.last_step : std::max(place->status.last_step, status.last_step);
   *place = Peer{status, now};
   place->status.last_step = last_step;
@@ -124,14 +124,14 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
 
 void Presence::judge_duplicate(const ParticipantStatus& other, Instant now) noexcept {
   if (has_left(other.state)) return;
-  // The status was on its way for a while and makes its sender look younger. Two that started
-  // together would each take the other for the younger and both stay; between them the
-  // incarnation decides. The margin makes both see the tie when one does.
+  // The travel time of a status makes its sender look younger. Two participants that started together
+  // would each take the other for the younger one and both stay; then the incarnation decides. The
+  // margin makes sure that both see the tie when one does.
   const Duration older_by = other.clock - now.time_since_epoch();
   const bool started_together = older_by >= -(kStartedTogether + kOnItsWay) && older_by <= kStartedTogether;
   const bool other_is_older =
       started_together ? other.incarnation < identity_.incarnation : older_by > Duration::zero();
-  // Once armed nobody leaves for a newcomer's sake; only the newcomer can still go.
+  // An armed participant does not leave for a newcomer; only the newcomer can leave.
   if (may_still_leave(own_.state) && (other_is_older || !may_still_leave(other.state))) is_duplicate_ = true;
   if (!duplicate_reported_) {
     duplicate_reported_ = true;

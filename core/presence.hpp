@@ -17,7 +17,7 @@ struct Identity {
   ScenarioDigest scenario_digest{};
 };
 
-/// What a participant knows of another one.
+/// What a participant knows about another one.
 struct Peer {
   ParticipantStatus status;
   Instant last_seen{};
@@ -30,7 +30,7 @@ struct Peer {
 /// The clock of a participant starts at its start, so that the `clock` in a status tells its age.
 class Presence {
  public:
-  /// @param lease   a peer not heard of for so long is lost; heartbeats go out four times as often.
+  /// @param lease   a peer that sends nothing for this time is lost; heartbeats are sent four times per lease.
   Presence(const Identity& identity, Duration lease, Inbox<ParticipantStatus>& inbox, Outbox<ParticipantStatus>& outbox,
            Outbox<Event>& events) noexcept;
 

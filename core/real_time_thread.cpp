@@ -21,8 +21,8 @@ constexpr std::size_t kPage = 4096;
   for (std::size_t i = 0; i < stack.size(); i += kPage) static_cast<volatile std::byte&>(stack[i]) = std::byte{1};
 }
 
-/// Pages in use stay, those used later stay from then on. All of it at once would also fetch the
-/// stacks of threads that have nothing to do with the control path.
+/// Locks pages that are in use, and later pages when they are first used. Locking everything at once
+/// would also load the stacks of threads outside the control path.
 int lock_memory() noexcept { return mlockall(MCL_CURRENT | MCL_ONFAULT) == 0 ? 0 : errno; }
 
 int stay_on(int cpu) noexcept {
@@ -42,7 +42,7 @@ RealTimeGrant enter_real_time(const RealTimeRequest& request) noexcept {
   if (request.cpu) grant.affinity_error = stay_on(*request.cpu);
   const sched_param parameters{.sched_priority = request.priority};
   grant.scheduling_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-  // Ordinary threads' timers are rounded to 50 us; this one's are not, should it have stayed one.
+  // The timers of ordinary threads are rounded to 50 us; this switches the rounding off if SCHED_FIFO was refused.
   static_cast<void>(prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL));
   return grant;
 }

@@ -31,7 +31,7 @@ class RowSink {
   virtual void append(std::span<const double> row) noexcept = 0;
 };
 
-/// For nodes that nobody records.
+/// For nodes without a recorder.
 class NoRecord final : public RowSink {
  public:
   void append(std::span<const double>) noexcept override {}

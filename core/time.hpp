@@ -9,7 +9,7 @@ namespace hybridtest {
 /// Spans of time, whole nanoseconds.
 using Duration = std::chrono::duration<std::int64_t, std::nano>;
 
-/// The clock of everything that is handed the time. It cannot be read: a Node that called
+/// The clock of all nodes. It cannot be read: a Node that called
 /// `now()` would behave differently under simulated time, so the call does not compile.
 struct HandedClock {
   using duration = Duration;

@@ -36,16 +36,17 @@ void append_quoted(std::string& text, std::string_view value) {
   text += '"';
 }
 
-/// A file that is complained about if it does not reach the disk.
+/// A file that throws an error when it cannot be written completely.
 class CsvFile {
  public:
   explicit CsvFile(std::filesystem::path path) : path_{std::move(path)}, stream_{path_, std::ios::binary} {
-    if (!stream_) throw RecordingError{path_.string() + ": cannot be created"};
+    if (!stream_) throw RecordingError{path_.string() + ": cannot be created; check that the directory is writable"};
   }
   void write(const std::string& text) { stream_ << text; }
   void close() {
     stream_.close();
-    if (!stream_) throw RecordingError{path_.string() + ": could not be written completely"};
+    if (!stream_)
+      throw RecordingError{path_.string() + ": could not be written completely; check the free space of the disk"};
   }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 

@@ -4,8 +4,8 @@
 
 namespace hybridtest {
 
-/// A run file could not be created, written, read or repaired. The text names the file, what was
-/// being done and the reason the system gave.
+/// A run file could not be created, written, read or repaired. The text gives the file, the
+/// operation and the reason of the system.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -10,8 +10,8 @@
 
 namespace hybridtest {
 
-/// Bounded queue of events from one producing thread to the recorder; full means counted and
-/// dropped. Lock-free, no allocation after construction.
+/// Bounded queue of events from one producing thread to the recorder. A full queue drops and
+/// counts the event. Lock-free, no allocation after construction.
 class EventRing final : public Outbox<Event> {
  public:
   explicit EventRing(std::size_t capacity) : ring_{capacity} {}

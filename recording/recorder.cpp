@@ -73,7 +73,7 @@ void Recorder::attempt(Work&& work) noexcept {
 void Recorder::drain_table(std::size_t table) {
   RowRing& ring = *rings_[table];
   const std::size_t block = rows_.size() / ring.row_width() * ring.row_width();
-  // No more than was there at the start, so that a fast producer cannot keep us here.
+  // Only rows that were waiting at the start, so that a fast producer cannot prolong the loop.
   for (std::size_t waiting = ring.size(); waiting > 0;) {
     const std::size_t room = std::min(block, waiting * ring.row_width());
     const std::size_t taken = ring.take(std::span{rows_}.first(room));
@@ -105,7 +105,7 @@ void Recorder::count_losses() {
     } else {
       for (const auto& ring : event_rings_) lost += ring->dropped();
     }
-    // What was handed to a file that failed since its last flush cannot be relied upon.
+    // Rows passed to a failed file since its last flush may be missing.
     if (failed()) lost += taken_[table] - writer_->rows_flushed(table);
     writer_->set_dropped(table, lost);
     sum += lost;

@@ -16,7 +16,7 @@
 
 namespace hybridtest {
 
-/// A table and how many rows may wait for the disk.
+/// A table and the number of rows that may wait for the disk.
 struct RecordedTable {
   TableLayout layout;
   std::size_t ring_rows = 8192;
@@ -45,11 +45,11 @@ class Recorder {
   /// @param source   below `event_sources`.
   [[nodiscard]] Outbox<Event>& events(std::size_t source = 0);
 
-  /// Whether a ring is at least half full: time to drain() for those who do so themselves.
+  /// Whether a ring is at least half full, so that a caller without RecorderThread should drain().
   [[nodiscard]] bool should_drain() const noexcept;
-  /// Writes what waits in the rings and flushes the file.
+  /// Writes all rows that wait in the rings and flushes the file.
   void drain() noexcept;
-  /// Drains what is left and closes the file cleanly. Producers must have stopped; drain() does
+  /// Drains the rings and closes the file cleanly. Producers must have stopped; drain() does
   /// nothing afterwards.
   void close() noexcept;
 

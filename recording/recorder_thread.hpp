@@ -15,10 +15,10 @@ namespace hybridtest {
 /// appended. Nothing thrown leaves the thread; see Recorder::failed().
 class RecorderThread {
  public:
-  /// Half of what the file may lag behind, so that writing has the other half.
+  /// Half of the allowed delay of the file; writing may take the other half.
   static constexpr Duration kDefaultPeriod{50'000'000};
 
-  /// @param recorder   must outlive the thread; nobody else may drain it meanwhile.
+  /// @param recorder   must outlive the thread; nothing else may drain it in the meantime.
   explicit RecorderThread(Recorder& recorder, Duration period = kDefaultPeriod);
   /// Stops.
   ~RecorderThread();

@@ -17,8 +17,8 @@ using hdf5::check;
 using hdf5::checked;
 using hdf5::Handle;
 
-/// The two properties by which HDF5's own tool h5clear gets into a file whose writer died. They
-/// are set by name through the public H5Pset(), but their names are the library's own affair.
+/// The two properties with which h5clear, a tool of HDF5, opens the file of a killed writer. They are
+/// set by name through the public H5Pset(), but HDF5 does not document the names.
 constexpr const char* kClearStatusFlags = "clear_status_flags";
 constexpr const char* kSkipEndCheck = "skip_eof_check";
 
@@ -26,8 +26,8 @@ bool opens_normally(const std::filesystem::path& path) {
   return Handle{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose}.valid();
 }
 
-/// Fills the file up to the size that is noted in it, as HDF5 does when it closes it. HDF5 does not survive that
-/// there is no room for it: it gives up the process at its end.
+/// Extends the file to the size that is noted in it, as HDF5 does when it closes it. Without space on the disk
+/// HDF5 would abort the process at its end.
 void fill_up(const std::filesystem::path& path) {
   hsize_t noted = 0;
   {
@@ -36,13 +36,14 @@ void fill_up(const std::filesystem::path& path) {
   }
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return;
-  // Only under a lock: a file that somebody writes must not be cut short by a look that was too early.
+  // Only under a lock: a file that another process is writing must not be changed.
   const bool is_ours = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   const off_t size = ::lseek(descriptor, 0, SEEK_END);
   const bool is_short = is_ours && size >= 0 && static_cast<hsize_t>(size) < noted;
   const int error = is_short && ::ftruncate(descriptor, static_cast<off_t>(noted)) != 0 ? errno : 0;
   ::close(descriptor);
-  if (error != 0) throw RecordingError{std::string{"no room to make it whole: "} + std::strerror(error)};
+  if (error != 0)
+    throw RecordingError{std::string{"not enough space on the disk to repair it: "} + std::strerror(error)};
 }
 
 Handle open_for_repair(const std::filesystem::path& path) {
@@ -67,7 +68,7 @@ void cut_to(hid_t file, const TableCounter& counter) {
 
 void repair_open(const std::filesystem::path& path) {
   Handle file = open_for_repair(path);
-  // The size noted in the file may be older or newer than what the dead process wrote.
+  // The size noted in the file may be older or newer than the data of the killed process.
   check(H5Fincrement_filesize(file.id(), 0), "setting the file's size");
   (void)hdf5::read_header(file.id());
   for (const TableCounter& counter : hdf5::read_counters(file.id()).tables) cut_to(file.id(), counter);

@@ -17,7 +17,7 @@ namespace hybridtest {
 class RowRing final : public RowSink {
  public:
   /// @param row_width   values per row, at least 1.
-  /// @param capacity    rows held at most, at least 1; what comes in while the disk stalls must
+  /// @param capacity    largest number of rows, at least 1; the rows of a pause of the disk must
   ///                    fit (at 4 kHz, two seconds are 8000 rows).
   RowRing(std::size_t row_width, std::size_t capacity);
 

@@ -7,7 +7,7 @@
 
 #include "core/messages.hpp"
 
-/// What a run file holds besides its tables; shared by the writer and the reader.
+/// The content of a run file besides its tables; shared by the writer and the reader.
 namespace hybridtest {
 
 /// The attribute `schema` of every run file.
@@ -21,7 +21,7 @@ struct RunFileHeader {
   std::string test_name;
   ScenarioDigest scenario_digest{};
   Incarnation incarnation = 0;
-  std::string start_time_utc;  // ISO 8601, handed in: nothing here reads a clock
+  std::string start_time_utc;  // ISO 8601, given by the caller: nothing here reads a clock
   std::string software_version;
   std::vector<std::string> substructure_ids;  // in the scenario's order: index of `exchanges.substructure`
   std::vector<std::string> structure_dofs;    // of the whole structure
@@ -33,7 +33,7 @@ struct RunFileHeader {
 struct TableCounter {
   std::string table;
   std::uint64_t rows = 0;          // safely in the file at the last flush
-  std::uint64_t dropped_rows = 0;  // could not be kept; anything but 0 makes the data invalid
+  std::uint64_t dropped_rows = 0;  // dropped; anything but 0 makes the data invalid
   bool operator==(const TableCounter&) const = default;
 };
 
@@ -41,7 +41,7 @@ struct TableCounter {
 struct RunFileCounters {
   std::vector<TableCounter> tables;  // one per table, then `events`
   std::uint64_t flushes = 0;
-  bool closed_cleanly = false;  // false while being written and for ever after a kill
+  bool closed_cleanly = false;  // false while being written, and always after a kill
   bool write_failed = false;    // disk full or file error
 
   [[nodiscard]] std::uint64_t dropped_rows() const noexcept {

@@ -13,7 +13,7 @@
 namespace hybridtest {
 
 /// Reads one participant's run file: finished, being written, left by a killed process, or
-/// repaired. Shows what was safely in the file when it was opened or last refreshed.
+/// repaired. Shows the rows that were complete in the file when it was opened or last refreshed.
 class RunFileReader {
  public:
   /// @throws RecordingError when it is not there or not a run file of a known schema.
@@ -39,7 +39,7 @@ class RunFileReader {
   [[nodiscard]] std::vector<double> rows(std::string_view table, std::size_t first, std::size_t count) const;
   [[nodiscard]] std::vector<RecordedEvent> events() const;
 
-  /// Takes in what a writer has flushed meanwhile. @throws RecordingError as the constructor.
+  /// Reads what a writer has flushed in the meantime. @throws RecordingError as the constructor.
   void refresh();
 
  private:

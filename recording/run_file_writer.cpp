@@ -127,11 +127,11 @@ off_t place_of(const FixedDataset& dataset) {
   return static_cast<off_t>(address);
 }
 
-/// HDF5 would cut a file short before it notices that somebody else is writing it.
+/// HDF5 would truncate a file before it notices that another process is writing it.
 void require_unused(const std::filesystem::path& path) {
   const Descriptor existing{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
   if (existing.get() >= 0 && ::flock(existing.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    throw RecordingError{"another process is writing this file"};
+    throw RecordingError{"another process is writing this file; write into another run directory"};
   }
 }
 
@@ -211,12 +211,12 @@ void RunFileWriter::Impl::create(const RunFileHeader& header) {
   own = Descriptor{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
   if (own.get() < 0) throw RecordingError{std::string{"opening the file again: "} + std::strerror(errno)};
   if (::flock(own.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    throw RecordingError{"another process holds the file"};
+    throw RecordingError{"another process uses this file; write into another run directory"};
   }
 }
 
 void RunFileWriter::Impl::require_open() const {
-  if (failed) throw RecordingError{path.string() + ": writing failed before"};
+  if (failed) throw RecordingError{path.string() + ": an earlier write failed"};
   HYBRIDTEST_ASSERT(!closed);
 }
 
@@ -233,9 +233,8 @@ void RunFileWriter::Impl::flush() {
   write_counters();
 }
 
-/// Leaves the file as it is now. Whatever HDF5 still holds refers to bytes that could not be
-/// written, so its descriptor is pointed at nothing before the handles are closed; closing would
-/// otherwise write some of it and fail on the rest.
+/// Leaves the file as it is now. HDF5 still holds bytes that could not be written. Closing its handles would
+/// write some of them and fail on the rest, so its descriptor is first redirected to /dev/null.
 void RunFileWriter::Impl::fail() noexcept {
   failed = true;
   void* hdf5_descriptor = nullptr;
@@ -249,8 +248,8 @@ void RunFileWriter::Impl::fail() noexcept {
   release();
 }
 
-/// Overwrites bytes that the file already has, which works on a full disk too. There is nobody
-/// to tell if it does not.
+/// Overwrites existing bytes of the file, which also works on a full disk. An error cannot be
+/// reported and is ignored.
 void RunFileWriter::Impl::patch_counters() noexcept {
   if (own.get() < 0 || counters_offset == 0 || state_offset == 0) return;
   const auto size = counter_rows.size() * sizeof(hdf5::CounterRow);
@@ -283,7 +282,7 @@ RunFileWriter::~RunFileWriter() {
   try {
     if (!impl_->failed && !impl_->closed) close();
   } catch (const RecordingError&) {
-    // Noted in the file; a destructor has nobody to tell.
+    // The error is noted in the file; a destructor cannot report it.
   }
   const auto lock = hdf5::lock_library();
   impl_.reset();

@@ -11,7 +11,7 @@ namespace hybridtest {
 
 /// Queue with a limit between any number of threads; no allocation after construction.
 ///
-/// What waits stays: a value that does not fit is turned away and counted (but see
+/// Queued values stay: a new value that does not fit is dropped and counted (but see
 /// push_displacing()).
 template <class Value>
 class BoundedQueue {
@@ -19,7 +19,7 @@ class BoundedQueue {
   /// @param capacity   at least 1.
   explicit BoundedQueue(std::size_t capacity) : slots_(capacity) { HYBRIDTEST_ASSERT(capacity >= 1); }
 
-  /// @return false when full; the value is counted as turned away.
+  /// @return false when full; the value is dropped and counted.
   [[nodiscard]] bool push(const Value& value) noexcept {
     const std::lock_guard lock{mutex_};
     if (size_ == slots_.size()) {
@@ -31,7 +31,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// For what must not be turned away: when full, the oldest value makes room and is counted.
+  /// For values that must not be dropped: when full, the oldest value is dropped and counted.
   void push_displacing(const Value& value) noexcept {
     const std::lock_guard lock{mutex_};
     if (size_ == slots_.size()) {

@@ -10,7 +10,7 @@
 
 namespace hybridtest {
 
-/// Messages that wait in one inbox at most; a message beyond that is dropped and counted.
+/// Largest number of messages that wait in one inbox; further messages are dropped and counted.
 /// Sized so that a thread which is late by a whole second of a fast test still loses nothing
 /// that the protocol does not repeat.
 template <class Message>
@@ -30,12 +30,12 @@ struct TransportCounters {
   std::uint64_t deadlines_missed = 0;  // heartbeats of participants that came late
 };
 
-/// One participant's door to the test: makes the ports of its Node.
+/// The connection of one participant to the test: makes the ports of its Node.
 ///
 /// - Messages travel inside one test (partition) and never back to the participant that sent them.
 /// - The order of one sender's messages is kept. send() never blocks.
-/// - Announcement and statuses are kept for those who join later: the newest per sender.
-/// - When a participant goes without having said `finished` or `refused`, every status inbox of
+/// - The newest announcement and status of each sender are kept for participants that join later.
+/// - When a participant leaves without the status `finished` or `refused`, every status inbox of
 ///   the others yields its last status once more with state `lost`: when it leaves, or when its
 ///   liveliness lease runs out. In a full inbox a loss displaces the oldest status.
 /// - Anything that arrives signals waker().
@@ -46,7 +46,7 @@ class Transport {
  public:
   virtual ~Transport() = default;
 
-  /// What the participant's thread waits on.
+  /// The waker that the thread of the participant waits on.
   [[nodiscard]] virtual Waker& waker() noexcept = 0;
 
   [[nodiscard]] virtual std::unique_ptr<Outbox<TestAnnouncement>> announcement_outbox() = 0;
@@ -58,7 +58,7 @@ class Transport {
   /// To substructures 0 .. count - 1; a command for another is not accepted.
   [[nodiscard]] virtual std::unique_ptr<Outbox<DisplacementCommand>> command_outbox(
       std::uint16_t substructure_count) = 0;
-  /// Commands for this substructure alone.
+  /// Only commands for this substructure.
   [[nodiscard]] virtual std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) = 0;
 
   [[nodiscard]] virtual std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() = 0;

@@ -28,8 +28,8 @@ timespec to_timespec(std::chrono::steady_clock::time_point deadline) noexcept {
   return result;
 }
 
-// False only when the deadline passed; everything else (woken, state changed, interrupted) is
-// for the caller to look at again.
+// False only when the deadline passed. In all other cases (woken, state changed, interrupted) the
+// caller checks the state again.
 bool sleep_while(std::atomic<std::uint32_t>& state, std::uint32_t value, const timespec* deadline) noexcept {
   const long result = ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state), FUTEX_WAIT_BITSET_PRIVATE, value,
                                 deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
@@ -52,8 +52,8 @@ bool Waker::wait_until(std::chrono::steady_clock::time_point deadline) noexcept 
   while (true) {
     std::uint32_t expected = kIdle;
     if (!state_.compare_exchange_strong(expected, kWaiting, std::memory_order_acq_rel)) {
-      // Signalled before. Read and written in one operation, so that what a signal arriving just
-      // now announces is seen by the caller.
+      // Signalled before. Read and written in one operation, so that the caller sees the data of a
+      // signal that arrives at this moment.
       state_.exchange(kIdle, std::memory_order_acq_rel);
       return true;
     }

@@ -6,10 +6,10 @@
 
 namespace hybridtest {
 
-/// What the thread of one participant sleeps on between two runs of its Node.
+/// The thread of a participant waits on it between two runs of its Node.
 ///
 /// Every inbox of the participant signals it when something arrives; so may any other thread
-/// (Ctrl-C, a control loop with a fault). A signal that comes while nobody waits is remembered;
+/// (Ctrl-C, a control loop with a fault). A signal without a waiting thread is remembered;
 /// several are remembered as one. signal() without a waiting thread and a wait with a signal
 /// pending make no system call.
 class Waker {

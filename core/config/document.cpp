@@ -12,7 +12,7 @@
 namespace hybridtest::config {
 namespace {
 
-/// One byte more than is allowed is enough to refuse the rest.
+/// One byte more than the limit is read, to detect a file that is too large.
 std::string read_file(const std::filesystem::path& file) {
   const auto fail = [&file](const std::string& why) {
     throw ConfigError{{ConfigIssue{.file = file.string(), .line = 0, .column = 0, .what = "cannot be read: " + why}}};

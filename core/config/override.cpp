@@ -56,13 +56,13 @@ std::optional<std::vector<Step>> split_path(std::string_view path) {
   return steps;
 }
 
-/// Walks the tree along a path; what stops it is kept as an error.
+/// Follows a path through the tree; keeps the error that stops it.
 class Walk {
  public:
   explicit Walk(Node& root) : node_{&root} {}
 
   /// @param may_create   a missing key is added, empty.
-  /// @return false when the step leads nowhere.
+  /// @return false when the path cannot be followed further.
   bool take(const Step& step, bool may_create) {
     return step.is_element ? take_element(step.name) : take_key(step.name, may_create);
   }

@@ -145,7 +145,7 @@ double Section::number(std::string_view key, Range range, std::optional<double> 
   } else if (!fallback) {
     state_->report_missing(key, expected_number(range));
   } else if (std::isfinite(value) && !contains(range, value)) {
-    // A default may follow from other values, so this too is for the user to mend.
+    // A default may depend on other values, so the user must correct this too.
     state_->report_missing(key, expected_number(range) + ", the default is " + written_number(value));
   }
   if (std::isfinite(value)) state_->record(key, written_number(value));
@@ -370,7 +370,7 @@ std::vector<Section> Section::sections_or_empty(std::string_view key) {
 void Section::error(std::string_view key, std::string what) {
   const Node* const node = key.empty() ? nullptr : state_->find(key);
   const std::string path = key.empty() ? state_->path() : state_->path_of(key);
-  // A key that an override gave a value to still stands in the file; its value does not.
+  // A key that an override replaced is still in the file; its old value is not used.
   const bool at_key = node != nullptr && !node->place.source->is_override;
   state_->report(at_key ? node->key_place : node != nullptr ? node->place : state_->place(), path, what);
 }

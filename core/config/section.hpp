@@ -33,9 +33,9 @@ struct DocumentState;
 class Section {
  public:
   [[nodiscard]] bool has(std::string_view key) const;
-  /// The same of an optional key, which from then on is one that the advice on unknown keys names.
+  /// The same for an optional key; messages about unknown keys then list it as known.
   [[nodiscard]] bool has_optional(std::string_view key);
-  /// Whether the key has a mapping, where a text or a number would do as well.
+  /// Whether the value of the key is a mapping, where a text or a number is allowed too.
   [[nodiscard]] bool has_mapping(std::string_view key) const;
   /// `substructures[0].rig`, for messages.
   [[nodiscard]] std::string path() const;
@@ -78,7 +78,7 @@ class Section {
   /// fallbacks go into effective() as a list of one.
   [[nodiscard]] std::vector<Section> sections_or_empty(std::string_view key);
 
-  /// What was read of this section, or of that key of it, as a document of its own; see
+  /// The effective values of this section, or of one of its keys, as a separate document; see
   /// Document::effective().
   [[nodiscard]] std::string effective(std::string_view key = {}) const;
 

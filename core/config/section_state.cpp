@@ -11,7 +11,7 @@
 namespace hybridtest::config {
 namespace {
 
-/// Nobody reads more; bounds the work on hostile input.
+/// Limit of the number of reports; limits the work on hostile input.
 constexpr std::size_t kMaxIssues = 1000;
 
 auto order_of(const Place& place) { return std::tuple{place.source->order, place.line, place.column}; }

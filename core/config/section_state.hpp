@@ -18,8 +18,8 @@ namespace hybridtest::config {
 
 struct DocumentState;
 
-/// What is shared by all handles on one section: its node, what was read from it, and what
-/// that came to.
+/// Shared by all handles on one section: its node, the values read from it, and their
+/// effective form.
 class SectionState {
  public:
   /// @param node   a mapping, or null for a section that is not there.
@@ -45,7 +45,7 @@ class SectionState {
   /// part of that report.
   void report_missing(std::string_view key, std::string_view expected, Shared missing_section = {});
   void report_unknown_keys();
-  /// @return true when further reports would be dropped; advice on names need not be sought then.
+  /// @return true when further reports would be dropped; then no name advice is needed.
   [[nodiscard]] bool is_full() const noexcept;
 
   /// Keeps the effective value, as YAML on one line. The first of a key stands.
@@ -56,7 +56,7 @@ class SectionState {
   void record_section(std::string_view key, std::shared_ptr<SectionState> section);
   void record_sections(std::string_view key, Children sections);
 
-  /// Keys that were asked for though the section is missing.
+  /// Keys that were read although the section is missing.
   [[nodiscard]] const std::vector<std::string>& needed() const noexcept { return needed_; }
   /// Appends the effective configuration; nothing when it is empty.
   /// @param only   that key of it; all when empty.
@@ -87,7 +87,7 @@ class SectionState {
 
 /// The tree, the errors and the root of one Document.
 struct DocumentState {
-  /// An error; of a missing section with what was asked of it later on.
+  /// An error; for a missing section with the keys that were required later.
   struct Issue {
     Finding finding;
     std::shared_ptr<const SectionState> missing_section;

@@ -15,12 +15,12 @@ namespace hybridtest::config {
 /// `an integer from 1 to 4`.
 [[nodiscard]] std::string expected_integer(std::int64_t low, std::int64_t high);
 
-/// Some small value inside the range, to go on with after an error.
+/// A small value inside the range, used to continue after an error.
 [[nodiscard]] double usable(const Range& range) noexcept;
 [[nodiscard]] std::int64_t usable(std::int64_t low, std::int64_t high) noexcept;
 
-/// Reads single values of one section's tree and reports what does not fit. Refused nodes read
-/// as nothing without a further report.
+/// Reads single values of the tree of a section and reports errors. A refused node reads as
+/// absent, without a further report.
 class ValueReader {
  public:
   explicit ValueReader(SectionState& section) : section_{section} {}

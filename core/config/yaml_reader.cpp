@@ -22,7 +22,7 @@ Place place_of(const Source& source, const YAML::Mark& mark) {
   return {&source, mark.line + 1, mark.column + 1};
 }
 
-/// What is missing at the end is missing behind the last character that is there.
+/// An error at the end of the text is reported after its last character.
 Place place_of_error(const Source& source, const YAML::Mark& mark, std::string_view text) {
   const std::size_t end = text.find_last_not_of(" \t\r\n") + 1;
   if (source.is_override || mark.is_null() || static_cast<std::size_t>(mark.pos) <= end) return place_of(source, mark);
@@ -59,7 +59,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     Node node = begin(Node::Kind::null, mark, "?", anchor);
-    // The mark of a value that is not there is that of whatever follows.
+    // The parser gives an absent value the position of the next token.
     if (!stack_.empty() && stack_.back().has_key) node.place = stack_.back().key_place;
     add(std::move(node));
   }
@@ -196,7 +196,7 @@ class TreeBuilder final : public YAML::EventHandler {
   Node root_;
 };
 
-/// Refuses what the parser would take for the end of the input, or pass on unseen.
+/// Rejects characters that the parser would take for the end of the input, or would ignore.
 bool is_plain_text(std::string_view text, const Source& source, std::vector<Finding>& findings) {
   Place place{&source, 1, 1};
   const auto refuse = [&](std::string what) {
@@ -231,8 +231,8 @@ std::optional<Node> read_yaml(std::string_view text, const Source& source, std::
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (!is_plain_text(text, source, findings)) return std::nullopt;
 
-  // A quote that nothing closes would pass unseen and swallow the rest, if the text ended in a new
-  // line; in a comment it does not.
+  // The parser does not report an unclosed quote if the text ends with a new line. The added comment
+  // makes it report one.
   std::istringstream stream{std::string{text} + "\n#"};
   TreeBuilder builder{source, path, max_depth, findings};
   try {
@@ -240,7 +240,7 @@ std::optional<Node> read_yaml(std::string_view text, const Source& source, std::
     Node root;
     root.place = {&source, source.is_override ? 0 : 1, source.is_override ? 0 : 1};
     if (parser.HandleNextDocument(builder)) root = builder.take_root();
-    // Asked once only: on some stray tokens the parser finds empty documents without end.
+    // Called once only: after some stray tokens the parser finds empty documents forever.
     std::vector<Finding> unused;
     TreeBuilder second{source, path, max_depth, unused};
     if (parser.HandleNextDocument(second)) {

@@ -8,7 +8,7 @@
 
 namespace hybridtest::config {
 
-/// Largest configuration that is read; a bound on memory and time, not on taste.
+/// Largest configuration that is read; limits memory and time.
 inline constexpr std::size_t kMaxBytes = std::size_t{4} << 20U;
 
 /// Reads one YAML document into a tree that keeps places, quoting and key order.

@@ -10,7 +10,7 @@ namespace hybridtest {
 
 /// A column of a quantity that occurs once per degree of freedom.
 struct DofColumn {
-  std::string dof;     // its name; `dof_1` … where the file does not tell
+  std::string dof;     // its name; `dof_1` … if the file has no name
   std::string suffix;  // as it stands in the column's name: "", "_2", "_floor_1"
   std::string name;    // the column's name
 };

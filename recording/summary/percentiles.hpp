@@ -13,7 +13,7 @@ struct Percentiles {
   double max = 0.0;
 };
 
-/// Values that are not finite are left out. @return nothing when none is left.
+/// Non-finite values are ignored. @return nothing when no value remains.
 [[nodiscard]] std::optional<Percentiles> percentiles(std::vector<double> values);
 
 }  // namespace hybridtest

@@ -28,8 +28,8 @@ struct ExchangeSummary {
   std::optional<Percentiles> turnaround_us;  // the substructure's own share
   std::uint64_t answered = 0;
   std::uint64_t resent = 0;   // commands sent again
-  std::uint64_t bridged = 0;  // steps that went on without an answer
-  std::uint64_t lost = 0;     // the last command, when it never was answered
+  std::uint64_t bridged = 0;  // steps completed without an answer
+  std::uint64_t lost = 0;     // the last command, if it was never answered
   // Answers with the measurement flag of that name.
   std::uint64_t extrapolated = 0;
   std::uint64_t held = 0;
@@ -43,7 +43,7 @@ struct EnergyError {
   double final_j = 0.0;
 };
 
-/// How well a site's control loop kept its time, where it had a thread of its own.
+/// Timing of the control loop of a site that had its own thread.
 struct LoopTimingSummary {
   std::int64_t starts = 0;        // control periods that began by the clock
   Percentiles start_lateness_us;  // from a control period's time to its start
@@ -64,7 +64,7 @@ struct SubstructureSummary {
 };
 
 struct InterlockSummary {
-  std::string participant;  // whose limit
+  std::string participant;  // the site of the limit
   std::string limit_name;   // a FaultFlags name
   double observed = 0.0;    // SI
   double limit = 0.0;       // SI
@@ -83,7 +83,7 @@ struct ParticipantFileSummary {
   std::uint64_t missing_steps = 0;  // gaps in the column `step` of its table `steps`
 };
 
-/// What a test came to. SI throughout.
+/// The results of a test. All values in SI.
 struct RunSummary {
   std::string test_name;
   std::string scenario_digest;
@@ -91,10 +91,10 @@ struct RunSummary {
   std::string software_version;
 
   int exit_code = kExitInternal;
-  StopReason stop_reason = StopReason::none;  // none when the coordinator left no word
+  StopReason stop_reason = StopReason::none;  // none when the coordinator's file has no reason
   bool data_valid = false;
-  std::vector<std::string> data_faults;  // why not, one sentence each
-  std::vector<std::string> remarks;      // what is worth knowing and no fault
+  std::vector<std::string> data_faults;  // why the data are invalid, one sentence each
+  std::vector<std::string> remarks;      // notes that are not faults
 
   std::optional<std::int64_t> planned_steps;
   std::int64_t completed_steps = 0;
@@ -112,8 +112,8 @@ struct RunSummary {
 /// The test's end in a few words, such as "ended by an interlock; data invalid".
 [[nodiscard]] std::string verdict(const RunSummary& summary);
 
-/// Reads every run file of a run directory. Columns are found by name; tables, columns and files
-/// that are unknown or absent are passed over, what follows from them is left out.
+/// Reads every run file of a run directory. Columns are found by name. Unknown tables, columns and
+/// files are ignored; results of absent ones are left out.
 ///
 /// The data are invalid when rows were dropped, steps are missing, a file could not be written to
 /// its end or was left by a killed process, files belong to different tests, or the coordinator's
@@ -122,12 +122,12 @@ struct RunSummary {
 /// @throws RecordingError when the directory has no readable run file.
 [[nodiscard]] RunSummary summarise(const std::filesystem::path& run_directory);
 
-/// For programs: complete, SI; what is not known is null.
+/// For programs: complete, SI; unknown values are null.
 void write_summary_json(const RunSummary& summary, std::ostream& stream);
 /// @throws RecordingError when the file cannot be written.
 void write_summary_json(const RunSummary& summary, const std::filesystem::path& path);
 
-/// For people: verdict first, millimetres, kilonewtons, milliseconds.
+/// For users: verdict first, in millimetres, kilonewtons and milliseconds.
 void print_summary(const RunSummary& summary, std::ostream& stream);
 
 }  // namespace hybridtest

@@ -52,7 +52,7 @@ std::vector<Peak> peaks_of(const RunFileReader& file, std::string_view table, st
   return peaks;
 }
 
-/// Steps that ought to stand between two consecutive rows and do not.
+/// Steps that are missing between consecutive rows.
 std::uint64_t missing_steps(const RunFileReader& file) {
   const std::vector<double> steps = column_if_any(file, kSteps, "step");
   double missing = 0.0;
@@ -256,10 +256,11 @@ void Summariser::summarise_files() {
       add_data_fault(header.participant + ": " + count_of(state.dropped_rows, "record") + " dropped");
     }
     if (!state.closed_cleanly && !state.write_failed) {
-      add_data_fault(header.participant + ": killed while recording; the file ends at its last flush");
+      add_data_fault(header.participant + ": killed while recording; its file ends at the last flush");
     }
     if (state.missing_steps > 0) {
-      add_data_fault(header.participant + ": " + count_of(state.missing_steps, "step") + " missing between others");
+      add_data_fault(header.participant + ": " + count_of(state.missing_steps, "step") +
+                     " missing between recorded steps");
     }
     summary_.participants.push_back(state);
   }
@@ -291,7 +292,7 @@ void Summariser::summarise_test() {
 }
 
 void Summariser::summarise_substructures() {
-  // The scenario's order where the coordinator tells it, then whoever else left a file.
+  // The order of the scenario if the coordinator's file is there, then all other files.
   std::vector<std::string> ids;
   if (coordinator_ != nullptr) ids = coordinator_->header().substructure_ids;
   for (const RunFileReader& file : files_) {
@@ -319,7 +320,7 @@ void Summariser::summarise_substructures() {
 }
 
 void Summariser::summarise_events() {
-  // The same event stands in the file of its source and of whoever received it.
+  // The same event is in the file of its source and in the files of its receivers.
   std::set<std::string> seen;
   std::set<std::string> told;
   for (const RunFileReader& file : files_) {
@@ -339,25 +340,25 @@ void Summariser::summarise_events() {
                    [](const auto& a, const auto& b) { return a.step < b.step; });
 }
 
-/// Whether every file reaches as far as the test did.
+/// Checks that every file reaches the end of the test.
 void Summariser::check_ends() {
   if (coordinator_ == nullptr) return;
   for (const RunFileReader& file : files_) {
     const auto last = last_of(column_if_any(file, kSteps, "step"));
     if (!last) continue;
     const auto missing = summary_.completed_steps - static_cast<std::int64_t>(*last);
-    // The last answer may still have been on its way to the file's owner when the test ended.
+    // The last message may not have arrived when the test ended.
     const std::int64_t allowed = &file == coordinator_ ? 0 : 1;
     if (missing > allowed) {
       add_data_fault(file.header().participant + ": the record ends " +
-                     count_of(static_cast<std::uint64_t>(missing), "step") + " before the test");
+                     count_of(static_cast<std::uint64_t>(missing), "step") + " before the end of the test");
     }
   }
 }
 
 void Summariser::conclude() {
   summary_.data_valid = summary_.data_faults.empty();
-  // Without the coordinator's last word nobody knows what the data are worth.
+  // Without the end of the coordinator's file, the validity of the data is unknown.
   summary_.exit_code = recorded_exit_code_.value_or(kExitDataInvalid);
   if (!summary_.data_valid && summary_.exit_code == kExitCompleted) summary_.exit_code = kExitDataInvalid;
 }

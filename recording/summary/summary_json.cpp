@@ -137,7 +137,7 @@ Json json(const RunSummary& summary) {
 }  // namespace
 
 void write_summary_json(const RunSummary& summary, std::ostream& stream) {
-  // Text that is no UTF-8 (a foreign file's) must not cost the summary.
+  // Text in a foreign file may not be UTF-8; the summary is written nevertheless.
   stream << json(summary).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
@@ -145,7 +145,7 @@ void write_summary_json(const RunSummary& summary, const std::filesystem::path& 
   std::ofstream stream{path};
   write_summary_json(summary, stream);
   stream.close();
-  if (!stream) throw RecordingError{path.string() + ": could not be written"};
+  if (!stream) throw RecordingError{path.string() + ": could not be written; check the free space of the disk"};
 }
 
 }  // namespace hybridtest

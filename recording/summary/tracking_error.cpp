@@ -10,7 +10,7 @@
 namespace hybridtest {
 namespace {
 
-/// Deviation of one sample interval from the usual one that still counts as even.
+/// Largest deviation of a sample interval from the usual one that still counts as even spacing.
 constexpr double kEvenSpacing = 0.01;
 
 struct Stretch {

@@ -7,7 +7,7 @@
 
 namespace hybridtest {
 
-/// How far an actuator was from where it should have been, over a whole test.
+/// The tracking error of an actuator over a whole test.
 struct TrackingError {
   std::string dof;
   double rms_m = 0.0;                        // of measured − target

@@ -28,7 +28,7 @@ TEST_F(Refusal, DuplicatesExitAndTestContinues) {
   EXPECT_THAT(site.wait(), Optional(kExitConfiguration));
   EXPECT_THAT(numerical.wait(), Optional(kExitConfiguration));
   EXPECT_TRUE(run.is_running()) << "the test was over before the intruders were";
-  EXPECT_THAT(coordinator.standard_error(), HasSubstr("another coordinator is running this test"));
+  EXPECT_THAT(coordinator.standard_error(), HasSubstr("another coordinator is already running this test"));
   EXPECT_THAT(site.standard_error(), HasSubstr("another participant with the id 'storey_1'"));
   EXPECT_THAT(numerical.standard_error(), HasSubstr("another participant with the id 'storey_2'"));
 

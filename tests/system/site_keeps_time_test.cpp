@@ -67,7 +67,7 @@ TEST_F(SiteKeepsTime, RealTimeRefusalStopsStartWhereRequired) {
   arguments.insert(arguments.end(), {"--set", "substructures[storey_1].real_time={cpu: 1023, allow_degraded: false}"});
   StartedProgram site = start_participant("experimental_site", "storey_1", scenario_, "run", arguments);
   ASSERT_THAT(site.wait(), Optional(kExitConfiguration));
-  EXPECT_THAT(site.standard_error(), ::testing::HasSubstr("cpu 1023 was refused: Invalid argument"));
+  EXPECT_THAT(site.standard_error(), ::testing::HasSubstr("processor 1023 was refused: Invalid argument"));
   EXPECT_THAT(site.standard_error(), ::testing::HasSubstr("allow_degraded"));
 }
 

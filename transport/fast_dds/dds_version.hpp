@@ -1,12 +1,12 @@
 #pragma once
 
-// Everything that Fast DDS names or spells differently from one major version to the next, so
-// that a port to another version starts and ends here.
+// All names of Fast DDS that differ between its major versions, so that only this file changes
+// for another version.
 
 #include <fastrtps/config.h>
 
 #if FASTRTPS_VERSION_MAJOR != 2
-#error "written for Fast DDS 2.x; give the names below their meaning in this version"
+#error "this file is written for Fast DDS 2.x; define the names below for this version"
 #endif
 
 #include <fastdds/rtps/common/Locator.h>
@@ -56,8 +56,8 @@ inline constexpr auto kPreallocated = eprosima::fastrtps::rtps::PREALLOCATED_MEM
   return eprosima::fastrtps::rtps::iHandle2GUID(endpoint).guidPrefix;
 }
 
-/// Participants of one process talk over the network as those of several do, so that nothing
-/// depends on who shares a process with whom. Before the first participant.
+/// Participants in one process communicate over the network like those in several processes, so
+/// results do not depend on shared processes. Call before the first participant.
 inline void turn_off_intraprocess_delivery() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;

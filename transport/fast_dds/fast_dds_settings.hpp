@@ -10,7 +10,7 @@
 
 namespace hybridtest::fast_dds {
 
-/// Where and how a participant meets the others: deployment, no protocol meaning.
+/// How a participant finds and reaches the others: deployment, without protocol meaning.
 struct FastDdsSettings {
   /// DDS domain, 0 to 232; it chooses the UDP ports.
   std::uint32_t domain = 0;
@@ -19,15 +19,15 @@ struct FastDdsSettings {
   /// network and without multicast.
   bool loopback_only = false;
   /// Participants on this host that can find each other with loopback_only, 1 to 200, counting
-  /// all that one process made since its start. Each announcement is sent to so many ports.
+  /// all that one process made since its start. Each announcement is sent to this number of ports.
   std::uint32_t loopback_participants = 40;
 
   /// Shared memory between processes of one host besides UDP, where /dev/shm has room. Off by
   /// default: a round trip gets shorter by a tenth or two, but a killed process leaves segments
-  /// behind that can keep later ones from talking, and losing a process must harm no other.
+  /// behind that can block the communication of later ones; a killed process must harm no other.
   bool shared_memory = false;
 
-  /// `host` or `host:port` of participants to ask, where multicast does not reach.
+  /// `host` or `host:port` of other participants, where multicast does not reach.
   std::vector<std::string> initial_peers;
   /// `host:port` of a `fastdds discovery` server with id 0, in place of multicast and peers.
   std::optional<std::string> discovery_server;
@@ -35,9 +35,9 @@ struct FastDdsSettings {
   /// everything above but the domain (interfaces, TCP, security).
   std::optional<std::filesystem::path> profile_file;
 
-  /// A participant that was not heard for so long is lost; at least 0.1 s.
+  /// A participant that sends nothing for this time is lost; at least 0.1 s.
   Duration lease = std::chrono::seconds{2};
-  /// A participant whose rig can move and whose statuses pause for so long is lost as well: its
+  /// A participant whose rig can move and that sends no status for this time is lost as well: its
   /// process lives, its node does not. Every node repeats its status at least twice as often.
   Duration heartbeat_deadline = std::chrono::seconds{2};
 };

@@ -52,7 +52,7 @@ class FastDdsTransport final : public Transport {
   }
   [[nodiscard]] std::unique_ptr<Inbox<ParticipantStatus>> status_inbox() override { return inbox<ParticipantStatus>(); }
   [[nodiscard]] std::unique_ptr<Outbox<DisplacementCommand>> command_outbox(std::uint16_t substructure_count) override {
-    if (substructure_count > kMaxSubstructures) throw std::invalid_argument{"more substructures than 32"};
+    if (substructure_count > kMaxSubstructures) throw std::invalid_argument{"a test has at most 32 substructures"};
     return std::make_unique<CommandOutbox>(participant_, substructure_count, command_matches_);
   }
   [[nodiscard]] std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) override {

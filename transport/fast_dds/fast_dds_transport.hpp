@@ -13,7 +13,7 @@ namespace hybridtest::fast_dds {
 /// Threads of Fast DDS fill the inboxes; the ports may be used from any one thread each. All
 /// ports must be gone before the transport.
 ///
-/// @param test_name   1 to 64 characters without `*?[]/`, which partitions give a meaning.
+/// @param test_name   1 to 64 characters without `*?[]/`, which have a meaning in partitions.
 /// @throws std::invalid_argument for settings or names out of range.
 /// @throws std::runtime_error when Fast DDS refuses: profile file not readable, no free port.
 [[nodiscard]] std::unique_ptr<Transport> make_fast_dds_transport(const FastDdsSettings& settings,

@@ -31,7 +31,7 @@ Participant::Participant(const FastDdsSettings& settings, std::string_view test_
   const dds::DomainParticipantQos qos = participant_qos(settings_);
   participant_ = created(dds::DomainParticipantFactory::get_instance()->create_participant(settings_.domain, qos, this,
                                                                                            dds::StatusMask::none()),
-                         "participant; is every UDP port of the domain taken?");
+                         "participant; all UDP ports of the domain may be in use: choose another --domain");
 }
 
 Participant::~Participant() {

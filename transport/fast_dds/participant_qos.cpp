@@ -17,12 +17,12 @@ namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kProfileName = "hybridtest";
-// What a discovery server started as `fastdds discovery -i 0` calls itself.
+// GUID prefix of a discovery server started with `fastdds discovery -i 0`.
 constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
 constexpr std::uint16_t kServerPort = 11811;
 
 void check(const FastDdsSettings& settings) {
-  if (settings.domain > 232) throw std::invalid_argument{"DDS domain must be 0 to 232"};
+  if (settings.domain > 232) throw std::invalid_argument{"the DDS domain must be 0 to 232"};
   if (settings.loopback_participants < 1 || settings.loopback_participants > 200) {
     throw std::invalid_argument{"loopback_participants must be 1 to 200"};
   }
@@ -57,7 +57,7 @@ Locator to_locator(std::string_view address, std::uint16_t default_port) {
   return locator;
 }
 
-// Fast DDS maps its segments whole and dies of SIGBUS where the file system turns out smaller.
+// Fast DDS maps its segments completely, and SIGBUS kills the process if the file system is smaller.
 bool has_room_for_shared_memory() {
   constexpr std::uintmax_t kRoom = 8U << 20U;
   std::error_code error;
@@ -67,7 +67,7 @@ bool has_room_for_shared_memory() {
 
 void add_transports(const FastDdsSettings& settings, dds::DomainParticipantQos& qos) {
   const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-  // A full socket buffer is a lost packet, which the protocol makes up for; a blocked step is not.
+  // A full socket buffer loses a packet, and the protocol sends it again. A blocked step cannot be repaired.
   udp->non_blocking_send = true;
   udp->maxInitialPeersRange = settings.loopback_participants;
   if (settings.loopback_only) udp->interfaceWhiteList.emplace_back(kLoopback);
@@ -89,7 +89,7 @@ void add_discovery(const FastDdsSettings& settings, dds::DomainParticipantQos& q
     return;
   }
   if (settings.loopback_only) {
-    // Own metatraffic locators keep Fast DDS from adding its multicast ones.
+    // With explicit metatraffic locators Fast DDS does not add its multicast locators.
     builtin.metatrafficUnicastLocatorList.push_back(to_locator(kLoopback, 0));
     builtin.initialPeersList.push_back(to_locator(kLoopback, 0));
   }
@@ -127,8 +127,8 @@ dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration = to_dds(settings.lease);
   discovery.leaseDuration_announcementperiod = to_dds(settings.lease / 4);
-  // Whoever is there answers the first announcement that reaches him at once; the repeats are
-  // for those who open their socket a little later.
+  // Existing participants answer the first announcement at once. The repeats are for participants
+  // that open their socket a little later.
   discovery.initial_announcements.count = 10;
   discovery.initial_announcements.period = to_dds(std::chrono::milliseconds{50});
   qos.name("hybridtest");

@@ -6,7 +6,7 @@
 
 namespace hybridtest::fast_dds {
 
-/// How the settings look to Fast DDS: transports, discovery, leases.
+/// Translates the settings for Fast DDS: transports, discovery, leases.
 /// @throws std::invalid_argument, std::runtime_error as make_fast_dds_transport().
 [[nodiscard]] eprosima::fastdds::dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings);
 

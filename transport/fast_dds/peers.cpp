@@ -35,7 +35,7 @@ std::optional<ParticipantStatus> Peers::gone(const GuidPrefix& prefix) {
       std::find_if(peers_.begin(), peers_.end(), [&](const Peer& peer) { return peer.prefix == prefix; });
   if (known == peers_.end()) return std::nullopt;
   const std::optional<ParticipantStatus> loss = report(*known);
-  peers_.erase(known);  // heard() takes it in again, should it come back
+  peers_.erase(known);  // heard() adds it again if it returns
   return loss;
 }
 

@@ -11,7 +11,7 @@
 
 namespace hybridtest::fast_dds {
 
-/// Who was heard on participant_status and must be reported when gone. Thread-safe.
+/// The participants whose status was received; each must be reported when it is lost. Thread-safe.
 class Peers {
  public:
   Peers();
@@ -20,11 +20,11 @@ class Peers {
   void heard(const GuidPrefix& prefix, const InstanceHandle& instance, const ParticipantStatus& status);
 
   /// The participant left or its lease ran out.
-  /// @return its last status with state `lost`, the first time and unless it took its leave.
+  /// @return its last status with state `lost`, once, and only if it had not left properly.
   [[nodiscard]] std::optional<ParticipantStatus> gone(const GuidPrefix& prefix);
 
-  /// No status came in the instance within the deadline. Statuses may rightly pause while
-  /// nothing can move (a rig that takes its time to connect): then it is no loss.
+  /// No status arrived in the instance within the deadline. While nothing can move (a rig that takes
+  /// long to connect), statuses may pause; then it is not a loss.
   [[nodiscard]] std::optional<ParticipantStatus> silent(const InstanceHandle& instance);
 
  private:

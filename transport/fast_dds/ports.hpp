@@ -20,7 +20,7 @@ namespace hybridtest::fast_dds {
 template <class Message>
 class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener {
  public:
-  /// @param matches   told who listens; may be null.
+  /// @param matches   receives the listening participants; may be null.
   DdsOutbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
       : participant_{participant}, matches_{std::move(matches)} {
     writer_ = participant_.create_writer<Message>(partition, this);
@@ -36,7 +36,7 @@ class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener 
     try {
       encode(message, sample_);
       if (writer_->write(&sample_, dds::HANDLE_NIL) == kReturnOk) return true;
-    } catch (...) {  // out of memory inside Fast DDS: as good as a full queue
+    } catch (...) {  // out of memory inside Fast DDS: treated as a full queue
     }
     participant_.unsent.fetch_add(1, std::memory_order_relaxed);
     return false;
@@ -60,11 +60,11 @@ class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener 
 /// it, puts it in the queue and wakes the participant's thread; so take() never waits for a lock
 /// that is held while the network is served.
 ///
-/// The inbox of statuses adds a status `lost` for everyone who is.
+/// The inbox of statuses adds a status `lost` for every lost participant.
 template <class Message>
 class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
  public:
-  /// @param matches   told who sends; may be null.
+  /// @param matches   receives the sending participants; may be null.
   DdsInbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
       : participant_{participant}, own_prefix_{participant.prefix()}, matches_{std::move(matches)} {
     if constexpr (kWatchesPeers) departures_ = participant_.on_departure([this](const auto& who) { lose(who); });

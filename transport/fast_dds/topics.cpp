@@ -7,7 +7,7 @@ namespace {
 
 constexpr Duration kRepairPeriod = std::chrono::milliseconds{20};
 
-// What writers and readers state alike.
+// Settings common to writers and readers.
 template <class Qos>
 void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSettings& settings, Qos& qos) {
   qos.reliability().kind = delivery.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
@@ -20,7 +20,7 @@ void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSet
   qos.resource_limits().max_samples = depth * delivery.instances;
   qos.resource_limits().allocated_samples = std::min(qos.resource_limits().max_samples, 64);
   qos.endpoint().history_memory_policy = kPreallocated;
-  // Delivery through files shared by processes: what a killed process leaves behind blocks others.
+  // Data sharing uses files shared by processes; files of a killed process block the others.
   qos.data_sharing().off();
   if (delivery.heartbeat) {
     qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
@@ -40,7 +40,7 @@ dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& s
   dds::DataWriterQos qos;
   set_delivery(delivery, delivery.depth, settings, qos);
   if (delivery.heartbeat) qos.liveliness().announcement_period = to_dds(settings.lease / 4);
-  // The caller's thread sends: no queue and no thread switch on the way of a command.
+  // The calling thread sends: no queue and no thread switch delays a command.
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = to_dds(std::chrono::milliseconds{10});
   qos.reliable_writer_qos().times.heartbeatPeriod = to_dds(kRepairPeriod);

@@ -12,14 +12,14 @@ namespace hybridtest::fast_dds {
 
 [[nodiscard]] DdsDuration to_dds(Duration duration);
 
-/// What a topic's quality of service means to the protocol.
+/// The quality of service of a topic, as the protocol needs it.
 struct Delivery {
   bool reliable = true;
   bool for_late_joiners = false;  // transient local
-  bool heartbeat = false;         // liveliness and deadline tell who is lost
+  bool heartbeat = false;         // liveliness and deadline detect lost participants
   std::int32_t depth = 16;        // newest samples kept per instance, by each end
-  std::int32_t reader_depth = 0;  // by the reader, where it differs
-  std::int32_t instances = 1;     // keys that one endpoint meets at most
+  std::int32_t reader_depth = 0;  // kept by the reader, if different
+  std::int32_t instances = 1;     // largest number of keys at one endpoint
 };
 
 /// Topic, wire type and delivery of each message.

@@ -3,13 +3,13 @@
 #include "core/messages.hpp"
 #include "hybridtest.h"
 
-/// Between the messages of core/ and their form on the wire; the only place that knows both.
+/// Converts between the messages of core/ and their form on the network; the only place that knows both.
 ///
-/// encode() takes any message that core/ can hold. decode() trusts nothing: it returns false,
+/// encode() accepts any message that core/ can hold. decode() checks everything: it returns false,
 /// leaving `message` in an unspecified but valid state, when a count exceeds its array, a
 /// number is no enumerator or holds unknown flags, or a step, time or substructure is out of
-/// the range that the IDL states. Displacements and forces may be NaN or infinite; what that
-/// means is for the nodes to decide. No call touches the heap for the hot messages.
+/// the range that the IDL states. Displacements and forces may be NaN or infinite; the nodes
+/// handle these. No call allocates for the messages of each step.
 namespace hybridtest::fast_dds {
 
 void encode(const TestAnnouncement& message, wire::TestAnnouncement& sample);

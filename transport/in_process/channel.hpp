@@ -14,7 +14,7 @@
 
 namespace hybridtest::in_process {
 
-/// What a participant's ports share.
+/// The state that the ports of a participant share.
 struct ParticipantState {
   std::string test_name;
   Waker waker;
@@ -23,7 +23,7 @@ struct ParticipantState {
   std::atomic<std::uint64_t> unsent{0};
 };
 
-/// One inbox as its channel sees it.
+/// One inbox of a channel.
 template <class Message>
 struct Subscription {
   std::shared_ptr<ParticipantState> participant;
@@ -43,7 +43,7 @@ struct Subscription {
   }
 };
 
-/// Everything of one message type that travels on the hub.
+/// All traffic of one message type on the hub.
 template <class Message>
 class Channel {
  public:
@@ -59,7 +59,7 @@ class Channel {
     }
     subscriptions_.push_back(subscription);
     for (const auto& sender : senders_) {
-      if (reaches(*sender, *subscription)) sender->waker.signal();  // somebody listens now
+      if (reaches(*sender, *subscription)) sender->waker.signal();  // a receiver exists now
     }
   }
 
@@ -97,7 +97,7 @@ class Channel {
   /// @return false when the inbox of any receiver was full.
   bool send(const std::shared_ptr<ParticipantState>& sender, const Message& message) noexcept {
     const std::lock_guard lock{mutex_};
-    if (!sender->alive) return false;  // looked at under the lock: nothing is sent once leave() is through
+    if (!sender->alive) return false;  // checked under the lock: nothing is sent after leave()
     if (keep_newest_) keep(sender, message);
     bool accepted = true;
     for (const SubscriptionPtr& subscription : subscriptions_) {

@@ -10,7 +10,7 @@ namespace hybridtest::in_process {
 struct HubState;
 struct ParticipantState;
 
-/// One participant of a Hub. Ports keep working (and say false) after it is gone.
+/// One participant of a Hub. Its ports stay usable after it has left; they return false.
 class InProcessTransport final : public Transport {
  public:
   InProcessTransport(std::shared_ptr<HubState> hub, std::string_view test_name);
@@ -20,7 +20,7 @@ class InProcessTransport final : public Transport {
   InProcessTransport& operator=(const InProcessTransport&) = delete;
 
   /// Takes the participant off the hub at once, from any thread: nothing is sent or received
-  /// any more, and the others hear that it is lost unless it had said `finished` or `refused`.
+  /// any more, and the others receive `lost`, unless its last status was `finished` or `refused`.
   void kill() noexcept;
 
   [[nodiscard]] Waker& waker() noexcept override;
@@ -46,7 +46,7 @@ class InProcessTransport final : public Transport {
   std::shared_ptr<ParticipantState> participant_;
 };
 
-/// The network of one process: participants that join with the same test name hear each other.
+/// The network of one process: participants with the same test name receive each other's messages.
 /// Thread-safe. The network lives as long as the hub or any participant or port of it.
 class Hub {
  public:

@@ -19,7 +19,7 @@ struct Member {
   TransportCounters counters;
 };
 
-/// A message under way to one inbox; ties are broken by the order of sending.
+/// A message on its way to one inbox; the order of sending decides between equal times.
 struct Delivery {
   Instant at{};
   std::uint64_t sequence = 0;

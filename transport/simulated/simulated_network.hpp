@@ -19,7 +19,7 @@ struct Outage {
   Duration end{};
 };
 
-/// How a simulated network treats a message, the same on every link.
+/// The properties of a simulated network, the same on every link.
 struct NetworkConditions {
   Duration latency = std::chrono::microseconds{50};
   Duration jitter{};         // uniform, added to the latency
@@ -42,9 +42,9 @@ struct NetworkState;
 /// A network under simulated time: the same seed and the same sends give the same deliveries.
 ///
 /// Commands, measurements, statuses, control messages and events can be lost, repeated and
-/// reordered; a loss that a reliable transport would mend must be mended by the nodes. The
-/// announcement is never lost: it stands for the transient-local sample that DDS delivers when
-/// it can. Single-threaded.
+/// reordered; the nodes must repair losses that a reliable transport would repair. The
+/// announcement is never lost: it represents the transient-local sample that DDS delivers when
+/// possible. Single-threaded.
 class SimulatedNetwork {
  public:
   SimulatedNetwork(std::uint64_t seed, NetworkConditions conditions);
@@ -55,12 +55,12 @@ class SimulatedNetwork {
   /// @param participant   for outages; unique.
   [[nodiscard]] std::unique_ptr<Transport> join(std::string_view participant);
 
-  /// Takes the participant off the network, as kill -9 does; the others learn it from their leases.
+  /// Removes the participant from the network, as kill -9 does; the others notice it by their leases.
   void kill(std::string_view participant);
 
-  /// When the next message arrives; kNever when none is under way.
+  /// Time at which the next message arrives; kNever when there is none.
   [[nodiscard]] Instant next_delivery() const noexcept;
-  /// Moves simulated time forward and puts what arrives by then into the inboxes.
+  /// Advances simulated time and puts the messages that have arrived into the inboxes.
   void advance_to(Instant now);
   /// Whether something arrived for the participant since the last call.
   [[nodiscard]] bool take_arrival(std::string_view participant) noexcept;

@@ -109,7 +109,7 @@ TEST(RunSummary, MissingStepsMakeDataInvalid) {
   run.site_skips_steps_100_to_102 = true;
   const RunSummary summary = summary_of(run);
   EXPECT_EQ(summary.exit_code, kExitDataInvalid);
-  EXPECT_THAT(summary.data_faults, ElementsAre("storey_1: 3 steps missing between others"));
+  EXPECT_THAT(summary.data_faults, ElementsAre("storey_1: 3 steps missing between recorded steps"));
 }
 
 TEST(RunSummary, ShortRecordMakesDataInvalid) {
@@ -117,7 +117,7 @@ TEST(RunSummary, ShortRecordMakesDataInvalid) {
   run.site_steps = ExampleRun::kSteps - 1;
   EXPECT_TRUE(summary_of(run).data_valid) << "the very last answer may be under way";
   run.site_steps = ExampleRun::kSteps - 2;
-  EXPECT_THAT(summary_of(run).data_faults, ElementsAre("storey_1: the record ends 2 steps before the test"));
+  EXPECT_THAT(summary_of(run).data_faults, ElementsAre("storey_1: the record ends 2 steps before the end of the test"));
 }
 
 TEST(RunSummary, InterlockIsListedOnceWithLimitAndExitCode) {
