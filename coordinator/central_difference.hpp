@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "coordinator/initial_motion.hpp"
 #include "coordinator/integrator.hpp"
 #include "mechanics/structure/factorised_matrix.hpp"
 #include "mechanics/structure/linear_structure.hpp"

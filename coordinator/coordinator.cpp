@@ -12,13 +12,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Arm and stop are sent again until they are obeyed.
+/// Interval at which arm and stop are sent again until every participant has followed them.
 constexpr Duration kControlRepeat = milliseconds{250};
 
-/// Stands in the record for the times of an exchange that never came to its end.
+/// Recorded as the times of an exchange that was not answered.
 constexpr double kUnanswered = std::numeric_limits<double>::quiet_NaN();
 
-[[nodiscard]] bool obeys(LifecycleState state, LifecycleState wanted) noexcept {
+[[nodiscard]] bool has_reached(LifecycleState state, LifecycleState wanted) noexcept {
   if (wanted == LifecycleState::armed) return state == LifecycleState::armed || state == LifecycleState::running;
   if (wanted == LifecycleState::finished) {
     return state == LifecycleState::finished || state == LifecycleState::refused || state == LifecycleState::lost;
@@ -43,7 +43,7 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrato
   HYBRIDTEST_ASSERT(std::cmp_equal(settings_.ground_acceleration_m_per_s2.size(), settings_.last_step + 1));
   HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
   row_.resize(4 + 4 * static_cast<std::size_t>(restoring_force_n_.size()));
-  // A site answers when its actuators have arrived, in paced mode a step later.
+  // In paced mode a site answers one step after the command: when its actuators have reached the target.
   if (settings_.mode == CouplingMode::paced) {
     settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
   }
@@ -67,7 +67,7 @@ Instant Coordinator::advance(Instant now) noexcept {
   if (phase_ == Phase::running) run(now);
   if (phase_ == Phase::stopping) stop(now);
   presence_.set_last_step(completed_steps_ - 1);
-  if (phase_ == Phase::done) static_cast<void>(presence_.advance(now));  // the last word goes out
+  if (phase_ == Phase::done) static_cast<void>(presence_.advance(now));  // sends the final state
   return next_wake(now, presence_wake);
 }
 
@@ -79,7 +79,7 @@ void Coordinator::take_control_messages(Instant now) noexcept {
   TestControl message;
   while (ports_.control_in.take(message)) {
     if (message.sender == presence_.identity().incarnation || message.sender_role != Role::operator_tool) continue;
-    // Passed on to all: an operator's tool may be gone before everyone has found it.
+    // Sent again to all participants: the operator's tool may have exited before they discovered it.
     switch (message.verb) {
       case ControlVerb::stop: begin_stop(now, StopReason::interrupted); break;
       case ControlVerb::emergency_stop:
@@ -97,7 +97,7 @@ void Coordinator::take_control_messages(Instant now) noexcept {
         step_due_ = std::max(step_due_, now);
         break;
       case ControlVerb::arm:
-      case ControlVerb::start: break;  // the coordinator's own to give
+      case ControlVerb::start: break;  // only the coordinator gives these
     }
   }
 }
@@ -187,7 +187,7 @@ void Coordinator::run(Instant now) noexcept {
       ledger_.open(ledger_.step(), now);
       for (std::size_t i = 0; i < commands_.size(); ++i) ledger_.count_attempt(static_cast<SubstructureIndex>(i));
       repeat_due_ = now + settings_.repeat_after;
-      // What the step before left behind is written while the others work on this one.
+      // The previous step is recorded now, while the substructures work on this one.
       if (completed_steps_ > 0) record_step(now);
     }
     while (!ledger_.is_complete() && ports_.measurements.take(measurement)) {
@@ -202,7 +202,7 @@ void Coordinator::run(Instant now) noexcept {
 }
 
 void Coordinator::watch_participants(Instant now) noexcept {
-  bool somebody_is_lost = false;
+  bool is_any_lost = false;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     const bool is_lost =
@@ -210,9 +210,9 @@ void Coordinator::watch_participants(Instant now) noexcept {
     if (!is_lost) continue;
     report(now, Severity::fault, EventCode::participant_lost, substructure.id);
     presence_.raise(FaultFlags::participant_lost);
-    somebody_is_lost = true;
+    is_any_lost = true;
   }
-  if (somebody_is_lost) {
+  if (is_any_lost) {
     begin_stop(now, StopReason::participant_lost);
     return;
   }
@@ -240,7 +240,7 @@ void Coordinator::open_step(Instant now) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
     const InterfaceMap& interface = settings_.substructures[i].interface;
-    // The points before are final now: velocity and acceleration in equilibrium.
+    // The previous point is final now: its velocity and acceleration are in equilibrium.
     if (step > 0) fill_point(interface, step - 1, integrator_->completed(), command.points[0]);
     std::move_backward(command.points.begin(), command.points.end() - 1, command.points.end());
     fill_point(interface, step, current, command.points[0]);
@@ -303,7 +303,7 @@ void Coordinator::complete_step(Instant now) noexcept {
     return;
   }
   if (settings_.mode == CouplingMode::paced) {
-    // One step ahead of its own time and never faster; what was lost is not made up for.
+    // A step is sent one step ahead of its own time and not earlier. Lost time is not made up for.
     step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
     if (step == 0) step_due_ = now;
   }
@@ -375,7 +375,7 @@ void Coordinator::stop(Instant now) noexcept {
 void Coordinator::report_missing(Instant now, LifecycleState wanted) noexcept {
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
-    if (peer != nullptr && obeys(peer->status.state, wanted)) continue;
+    if (peer != nullptr && has_reached(peer->status.state, wanted)) continue;
     report(now, Severity::fault, EventCode::participant_missing, substructure.id);
   }
 }
@@ -383,9 +383,9 @@ void Coordinator::report_missing(Instant now, LifecycleState wanted) noexcept {
 bool Coordinator::everyone_is(LifecycleState wanted) const noexcept {
   return std::ranges::all_of(settings_.substructures, [&](const CoupledSubstructure& substructure) {
     const Peer* peer = presence_.find(substructure.id);
-    // Nobody waits for the farewell of one that never came.
+    // A participant that never joined has nothing to finish.
     if (peer == nullptr) return wanted == LifecycleState::finished;
-    return obeys(peer->status.state, wanted);
+    return has_reached(peer->status.state, wanted);
   });
 }
 

@@ -15,7 +15,7 @@
 
 namespace hybridtest {
 
-/// A substructure as the coordinator sees it.
+/// What the coordinator knows of a substructure.
 struct CoupledSubstructure {
   ParticipantId id;
   Role role = Role::numerical_substructure;
@@ -28,18 +28,18 @@ struct CoordinatorSettings {
   double step_s = 0.0;
   double duration_s = 0.0;
   double time_scale = 1.0;  // paced: wall time over model time
-  Step last_step = 0;       // steps 0 .. last_step are taken
+  Step last_step = 0;       // the test has the steps 0 .. last_step
   std::vector<CoupledSubstructure> substructures;
   /// Load on each structure degree of freedom per unit of ground acceleration: -M iota [kg].
   Eigen::VectorXd load_per_ground_acceleration_kg;
   /// At each step 0 .. last_step [m/s2].
   std::vector<double> ground_acceleration_m_per_s2;
-  bool stop_on_recording_failure = false;            // of any participant
-  Duration settle = std::chrono::milliseconds{300};  // listen for an older coordinator first
+  bool stop_on_recording_failure = false;            // when any participant cannot record
+  Duration settle = std::chrono::milliseconds{300};  // waits for the status of an older coordinator
   Duration discovery_timeout = std::chrono::seconds{30};
   Duration arm_timeout = std::chrono::seconds{10};
-  Duration stop_timeout = std::chrono::seconds{10};  // for the others to come to rest
-  /// An unanswered command is sent again; in paced mode the length of a step is added.
+  Duration stop_timeout = std::chrono::seconds{10};  // for the other participants to come to rest
+  /// An unanswered command is sent again after this time; in paced mode the length of a step is added.
   Duration repeat_after = std::chrono::milliseconds{200};
 };
 
@@ -57,7 +57,7 @@ struct CoordinatorRecord {
   RowSink& exchanges;
 };
 
-/// How the test stands, for progress and for the verdict.
+/// State of the test, for the progress display and the summary.
 struct CoordinatorReport {
   LifecycleState state = LifecycleState::joining;
   StopReason reason = StopReason::none;
@@ -65,9 +65,9 @@ struct CoordinatorReport {
   Duration running_time{};   // from start to the end of stepping
 };
 
-/// The integration coordinator: gathers the participants, arms and starts them, and steps the
-/// structure through the ground motion, one command out and one force back per substructure
-/// and step, until the end or until something is wrong.
+/// The integration coordinator. It waits for the participants, arms and starts them, and steps the
+/// structure through the ground motion. In each step it sends one command to every substructure and
+/// takes one force from it. It ends the test after the last step or at the first fault.
 class Coordinator final : public Node {
  public:
   Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
@@ -75,7 +75,7 @@ class Coordinator final : public Node {
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
-  /// Ends the test safely, as Ctrl-C does; takes effect at the next advance().
+  /// Ends the test safely, as Ctrl-C does, at the next advance().
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
 
   [[nodiscard]] bool is_done() const noexcept { return phase_ == Phase::done; }
@@ -122,9 +122,9 @@ class Coordinator final : public Node {
   Instant phase_began_{};
   bool began_ = false;
   StepLedger ledger_;
-  std::vector<DisplacementCommand> commands_;  // newest per substructure, with its history
+  std::vector<DisplacementCommand> commands_;  // newest one per substructure, with its history
   Instant repeat_due_ = kNever;
-  Instant step_due_{};  // paced: the open step's own time; commands do not go out earlier
+  Instant step_due_{};  // paced: earliest time to send the commands of the open step
   bool step_is_sent_ = false;
   bool is_paused_ = false;
   StopReason requested_stop_ = StopReason::none;

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "mechanics/structure/linear_structure.hpp"
+
 namespace hybridtest {
 
 /// Motion of the whole structure at one step, one entry per degree of freedom.
@@ -13,21 +15,35 @@ struct MotionState {
 
 /// Explicit time integration of M a + C v + r(u) = f, one restoring force per step.
 ///
-/// The integrator stands at step i with u_i known and r_i awaited. advance(r_i, f_i) completes
+/// At step i the integrator knows u_i and waits for r_i. advance(r_i, f_i) completes
 /// step i and moves to step i + 1. Sizes are fixed at construction; advance() allocates nothing.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Step awaiting its restoring force: displacement is final; velocity and acceleration are
-  /// predictions. At step 0 the initial state.
+  /// The step that waits for its restoring force. The displacement is final; velocity and
+  /// acceleration are predictions. At step 0 the initial state.
   [[nodiscard]] virtual const MotionState& current() const noexcept = 0;
-  /// The step before, with velocity and acceleration in equilibrium. Meaningless before the
+  /// The step before, with velocity and acceleration in equilibrium. Not valid before the
   /// first advance().
   [[nodiscard]] virtual const MotionState& completed() const noexcept = 0;
   /// @param restoring_force_n, applied_force_n   one entry per degree of freedom, of the current step.
   virtual void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                        const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept = 0;
 };
+
+/// Initial motion of the structure; an empty vector means zero.
+struct InitialMotion {
+  Eigen::VectorXd displacement_m;
+  Eigen::VectorXd velocity_m_per_s;
+};
+
+/// The motion at step 0, its acceleration zero until the first restoring force is known.
+/// @throws ConfigError when sizes differ from `size` or numbers are not finite.
+[[nodiscard]] MotionState starting_state(const InitialMotion& initial, Eigen::Index size);
+
+/// Returns the structure, checked, for use in a member initialiser before the factorisations.
+/// @throws ConfigError unless `step_s` is a positive finite number; as require_consistent().
+const LinearStructure& require_integrable(const LinearStructure& structure, double step_s);
 
 }  // namespace hybridtest

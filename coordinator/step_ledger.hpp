@@ -9,16 +9,16 @@
 
 namespace hybridtest {
 
-/// What became of a measurement that the ledger was shown.
+/// Result of entering a measurement.
 enum class LedgerEntry : std::uint8_t {
   accepted,   // the first answer of its substructure to the open step
-  duplicate,  // this step was answered before
+  duplicate,  // this step has already been answered
   stale,      // an answer to a step that is closed
   foreign,    // not from the process this test armed, or an unknown substructure or step
 };
 
-/// Keeps account of the open step: who was asked, who has answered, how long it took.
-/// Each step is completed exactly once, whatever the network loses, repeats or reorders.
+/// State of the open step: which substructures have answered, and how long it took. Each step is
+/// completed exactly once, also when the network loses, repeats or reorders messages.
 class StepLedger {
  public:
   explicit StepLedger(std::size_t substructures) noexcept : count_{substructures} {}

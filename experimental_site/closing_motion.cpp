@@ -21,7 +21,7 @@ void ClosingMotion::begin(const InterfaceVector& displacement_m, const Interface
   period_ = 0;
   const bool moves = !velocity_m_per_s.isZero(0.0);
   halt_periods_ = moves ? static_cast<std::int64_t>(std::ceil(settings_.halt_s / settings_.period_s)) : 0;
-  return_periods_ = returns ? 1 : 0;  // at least, until it is known from where
+  return_periods_ = returns ? 1 : 0;  // set when the return begins
   if (halt_periods_ == 0) begin_return();
 }
 
@@ -48,10 +48,11 @@ void ClosingMotion::halt() noexcept {
 void ClosingMotion::begin_return() noexcept {
   if (!returns_) return;
   begin_m_ = displacement_m_;
-  // A raised cosine is fastest in its middle, pi/2 times its mean; it stays below half the limit.
-  const double least_s = std::numbers::pi * begin_m_.cwiseAbs().maxCoeff() / settings_.velocity_limit_m_per_s;
-  const double periods = std::ceil(std::max(settings_.return_time_s, least_s) / settings_.period_s);
-  return_periods_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(periods));  // also from zero in no time
+  // The highest velocity of a raised cosine is pi/2 times its mean; the return stays below half the limit.
+  const double return_s_min = std::numbers::pi * begin_m_.cwiseAbs().maxCoeff() / settings_.velocity_limit_m_per_s;
+  const double periods = std::ceil(std::max(settings_.return_time_s, return_s_min) / settings_.period_s);
+  return_periods_ =
+      std::max<std::int64_t>(1, static_cast<std::int64_t>(periods));  // one period even where the distance is zero
 }
 
 }  // namespace hybridtest

@@ -8,23 +8,23 @@ namespace hybridtest {
 
 struct ClosingMotionSettings {
   double period_s = 0.0;
-  double halt_s = 0.0;         // from moving to standing
-  double return_time_s = 0.0;  // at least, from there to zero; longer when the velocity limit asks for it
+  double halt_s = 0.0;         // time from moving to standing
+  double return_time_s = 0.0;  // from there to zero; longer where the velocity limit requires it
   double displacement_limit_m = 0.0;
   double velocity_limit_m_per_s = 0.0;
 };
 
-/// The last motion of a site: comes to a stand with constant deceleration, and returns to zero
-/// along a raised cosine that stays below half the velocity limit, or stays where it stands.
-/// Position and velocity are continuous when it is told how fast the site moves. Real-time safe.
+/// The last motion of a site. It stops with constant deceleration. Then it returns to zero along a
+/// raised cosine that stays below half the velocity limit, or stays where it stopped. Position and
+/// velocity are continuous if begin() gets the velocity of the site. Real-time safe.
 class ClosingMotion {
  public:
   ClosingMotion(const ClosingMotionSettings& settings, int dofs) noexcept;
 
-  /// @param velocity_m_per_s   zero to return at once, as an interlock does.
+  /// @param velocity_m_per_s   zero: the return starts at once, as after an interlock.
   void begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s, bool returns) noexcept;
 
-  /// One control period on.
+  /// Moves on by one control period.
   void advance() noexcept;
 
   [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }

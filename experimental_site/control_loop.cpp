@@ -9,23 +9,24 @@
 namespace hybridtest {
 namespace {
 
-/// In lockstep the return to zero has no pace of its own; other work gets its turn in between.
+/// In lockstep the return to zero is not paced by a clock. After this many control periods the other
+/// nodes of the thread run.
 constexpr int kPeriodsPerAdvance = 256;
 
-/// Every so many control periods one goes to the live views.
+/// One of this many control periods is sent to the live views.
 constexpr std::int64_t kSignalDecimation = 16;
 
-/// From full motion to standing, at least: half of it is the way that it takes at that speed.
-constexpr double kLeastHalt_s = 0.02;
+/// Shortest time from motion to standing.
+constexpr double kHalt_s_min = 0.02;
 
 /// Motion smaller than this share of the displacement limit does not scale the tracking indicator.
-constexpr double kLeastMotionShare = 0.05;
+constexpr double kMotionShareMin = 0.05;
 
 double period_s(const ControlLoopSettings& settings) noexcept { return settings.step_s / settings.periods_per_step; }
 
 ClosingMotionSettings closing_settings(const ControlLoopSettings& settings) noexcept {
   return {.period_s = period_s(settings),
-          .halt_s = std::max(settings.step_s, kLeastHalt_s),
+          .halt_s = std::max(settings.step_s, kHalt_s_min),
           .return_time_s = settings.return_time_s,
           .displacement_limit_m = settings.limits.displacement_m,
           .velocity_limit_m_per_s = settings.limits.velocity_m_per_s};
@@ -40,8 +41,7 @@ ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteComp
       rig_{rig},
       compensation_{std::move(compensation)},
       energy_error_{std::move(energy_error)},
-      tracking_{settings.dofs, period_s_, settings.tracking_window_s,
-                kLeastMotionShare * settings.limits.displacement_m},
+      tracking_{settings.dofs, period_s_, settings.tracking_window_s, kMotionShareMin * settings.limits.displacement_m},
       ports_{ports},
       record_{settings.dofs, control_record},
       trajectory_{settings.dofs, settings.step_s, settings.time_scale, settings.trajectory},
@@ -69,11 +69,11 @@ Instant ControlLoop::advance(Instant now) noexcept {
   LoopRequest request;
   while (ports_.requests.take(request)) obey(request, now);
 
-  // A target that is not reached yet is ours to reach; only where none is known one can be overdue.
+  // A command is overdue only when there is no target that is still to be reached.
   const bool waits_for_target = follows_targets() && !is_paused_ && !trajectory_.has_target() && !is_reached_;
   command_age_s_ = waits_for_target ? to_seconds(now - last_target_at_) : 0.0;
   for (int periods = 0; has_due_period(now) && periods < kPeriodsPerAdvance; ++periods) run_period();
-  // Between two targets lockstep has no control periods that would notice their absence.
+  // In lockstep there are no control periods between two targets, so overdue commands are checked here.
   if (!is_paced_by_time() && phase_ == Phase::running) static_cast<void>(passes_interlocks(false));
   return next_wake(now);
 }
@@ -114,7 +114,7 @@ void ControlLoop::arm(Instant now) noexcept {
   zero_offsets_.reset();
   interlocks_ = {};
   if (settings_.captures_zero_offsets) {
-    phase_ = Phase::zeroing;  // armed once they are captured
+    phase_ = Phase::zeroing;  // armed when they are captured
     return;
   }
   phase_ = Phase::standing;
@@ -180,7 +180,7 @@ void ControlLoop::come_to_rest() noexcept {
   if (stop_was_asked_) ports_.reports.send(loop_report::AtRest{});
 }
 
-/// At once, from wherever the command is.
+/// Starts at once from the present command.
 void ControlLoop::begin_return() noexcept {
   closing_.begin(command_.displacement_m, no_motion_, true);
   phase_ = Phase::closing;
@@ -215,7 +215,7 @@ void ControlLoop::run_period() noexcept {
     shape_command();
     if (passes_interlocks(false)) limit_motion();
   } else if (follows_targets()) {
-    shape_command();  // so that a compensator has seen the site stand when it goes on
+    shape_command();  // keeps the compensator up to date while the site stands
   }
   if (phase_ == Phase::closing) {
     closing_.advance();
@@ -228,7 +228,7 @@ void ControlLoop::run_period() noexcept {
     compensate_forces();
     observe_tracking();
   }
-  // What is reached as an interlock holds is measured when it has cleared.
+  // A target reached while an interlock holds is measured when the interlock has cleared.
   if (passes_interlocks(true)) {
     if (is_reached_ && phase_ == Phase::running) report_measurement();
   } else {
@@ -261,7 +261,7 @@ void ControlLoop::limit_motion() noexcept {
   const double reach_m = settings_.limits.velocity_m_per_s * period_s_;
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
     const double before_m = command_.displacement_m[k];
-    if (!std::isfinite(wanted_command_m_[k])) continue;  // whatever the interlocks were told to make of it
+    if (!std::isfinite(wanted_command_m_[k])) continue;  // never commanded, even where the interlock only warns
     const double slow_m = std::clamp(wanted_command_m_[k], before_m - reach_m, before_m + reach_m);
     const double limited_m = std::clamp(slow_m, -settings_.limits.displacement_m, settings_.limits.displacement_m);
     if (limited_m != wanted_command_m_[k]) motion_flags_ |= MeasurementFlags::saturated;
@@ -280,7 +280,7 @@ void ControlLoop::capture_zero_offsets() noexcept {
   zero_offsets_.capture(feedback_);
   if (!zero_offsets_.is_captured()) return;
   zero_offsets_.take_off(feedback_);
-  // The next sample differs from this one by the offset, and no sensor is broken for that.
+  // The next sample differs from this one by the offset; the step interlocks must not compare the two.
   interlocks_.has_sample = false;
   phase_ = Phase::standing;
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
@@ -300,7 +300,7 @@ void ControlLoop::compensate_forces() noexcept {
 }
 
 void ControlLoop::observe_tracking() noexcept {
-  // What is no number would stay in the sums; it has an interlock of its own.
+  // A value that is not finite would stay in the sums; the interlock `not_finite` acts on it.
   if (!target_.displacement_m.allFinite() || !feedback_.displacement_m.allFinite() || !feedback_.force_n.allFinite()) {
     return;
   }
@@ -359,18 +359,18 @@ void ControlLoop::hold(bool is_final) noexcept {
   if (phase_ == Phase::holding) hold_is_final_ = hold_is_final_ || is_final;
   if (phase_ != Phase::zeroing && phase_ != Phase::standing && phase_ != Phase::running) return;
   phase_before_hold_ = phase_;
-  phase_ = Phase::holding;  // the last command stays
+  phase_ = Phase::holding;  // the last command is kept
   hold_is_final_ = is_final;
   trajectory_.halt();
   target_.velocity_m_per_s.setZero();
 }
 
-/// What held has cleared: from rest, and from the command that was held.
+/// Continues after a hold, from rest and from the command that was held.
 void ControlLoop::go_on() noexcept {
   phase_ = phase_before_hold_;
   if (phase_ != Phase::running) return;
   resume_offset_.begin(command_.displacement_m - compensated_command_m_, no_motion_,
-                       std::max({settings_.ramp_in_s, settings_.step_s, kLeastHalt_s}));
+                       std::max({settings_.ramp_in_s, settings_.step_s, kHalt_s_min}));
 }
 
 void ControlLoop::report(const InterlockTrip& trip) noexcept {

@@ -31,9 +31,9 @@ struct ControlLoopSettings {
   InterlockRules rules = default_interlock_rules();
   double tracking_window_s = 1.0;  // of the tracking indicator, site time
   TrajectorySettings trajectory;
-  double ramp_in_s = 0.0;              // towards first targets that are not where the rig stands; a step at least
+  double ramp_in_s = 0.0;              // to a first target away from the position of the rig; at least one step
   bool captures_zero_offsets = false;  // at arming
-  bool returns_at_end = true;          // else it holds
+  bool returns_at_end = true;          // else it holds its position
   double return_time_s = 2.0;          // ramp back to zero, site time
 };
 
@@ -49,13 +49,13 @@ struct SiteCompensation {
   std::vector<std::unique_ptr<ForceCompensator>> forces;
 };
 
-/// The part of a site that stands between targets and the rig, once per control period:
-/// trajectory, compensator, motion limits, interlocks, exchange with the rig, force compensator,
-/// record. Interlocks judge forces as measured; the coordinator gets them as compensated. Actions
-/// of interlocks only become graver, but for a hold that clears: the loop then picks up from rest.
+/// The control loop of a site. Each control period runs in this order: trajectory, compensator,
+/// motion limits, interlocks, exchange with the rig, force compensator, record. Interlocks judge the
+/// measured forces; the coordinator gets the compensated ones. The action of an interlock can only
+/// become more severe, except that a hold may clear; the loop then continues from rest.
 ///
-/// In lockstep, control periods follow each other as fast as targets come; in the other modes each
-/// has its own time and those missed are made up for at once, so that the rig sees every one.
+/// In lockstep, control periods run as soon as there is a target. In the other modes each has its own
+/// time, and missed periods run at once, so that the rig gets every one of them.
 /// Allocates, locks and logs nothing after construction.
 class ControlLoop final : public Node {
  public:
@@ -67,8 +67,8 @@ class ControlLoop final : public Node {
   [[nodiscard]] static TableLayout control_layout(int dofs) { return ControlRecord::layout(dofs); }
 
  private:
-  /// disarmed -> zeroing (armed, offsets are captured) -> standing (commands stay at zero) ->
-  /// running -> holding or closing (comes to a stand or to zero) -> at_rest
+  /// disarmed -> zeroing (armed, captures the zero offsets) -> standing (commands stay at zero) ->
+  /// running -> holding or closing (stops, or returns to zero) -> at_rest
   enum class Phase : std::uint8_t { disarmed, zeroing, standing, running, holding, closing, at_rest };
 
   void obey(const LoopRequest& request, Instant now) noexcept;
@@ -112,8 +112,8 @@ class ControlLoop final : public Node {
   ControlLoopPorts ports_;
   ControlRecord record_;
   Trajectory trajectory_;
-  FadingOffset start_offset_;   // between where the rig stands and the path at its start
-  FadingOffset resume_offset_;  // between a held command and what the compensator wants after it
+  FadingOffset start_offset_;   // from the position of the rig to the start of the path
+  FadingOffset resume_offset_;  // from the held command to that of the compensator after it
   ClosingMotion closing_;
   ZeroOffsets zero_offsets_;
 
@@ -139,8 +139,8 @@ class ControlLoop final : public Node {
   bool is_reached_ = false;           // there is one
   TrajectoryPoint target_;            // with the offset at the start
   InterfaceVector no_motion_;
-  RigFeedback reading_;   // of the rig; with a fault it may stay as it was
-  RigFeedback feedback_;  // less the zero offsets
+  RigFeedback reading_;   // of the rig; unchanged where the rig reports a fault
+  RigFeedback feedback_;  // minus the zero offsets
   RigFeedback feedback_before_;
   InterfaceVector compensated_force_n_;
   InterfaceVector compensated_force_before_n_;

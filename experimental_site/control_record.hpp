@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// What one control period leaves behind.
+/// The recorded values of one control period.
 struct ControlSample {
   std::int64_t sample = 0;
   double time_s = 0.0;        // since arming
@@ -24,7 +24,7 @@ struct ControlSample {
   FaultFlags faults = FaultFlags::none;
 };
 
-/// The table `control` of a site: one row per control period. Appending allocates nothing.
+/// The table `control` of a site: one row per control period. append() does not allocate.
 class ControlRecord {
  public:
   ControlRecord(int dofs, RowSink& sink);

@@ -6,11 +6,11 @@
 
 namespace hybridtest {
 
-EnergyErrorMonitor::EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double least_displacement_m)
+EnergyErrorMonitor::EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double displacement_m_min)
     : initial_stiffness_n_per_m_{std::move(initial_stiffness_n_per_m)} {
-  const InterfaceVector least = InterfaceVector::Constant(initial_stiffness_n_per_m_.rows(), least_displacement_m);
-  least_strain_energy_j_ = 0.5 * least.cwiseAbs2().dot(initial_stiffness_n_per_m_.diagonal().cwiseAbs());
-  if (!(least_strain_energy_j_ > 0.0)) {
+  const InterfaceVector smallest_m = InterfaceVector::Constant(initial_stiffness_n_per_m_.rows(), displacement_m_min);
+  strain_energy_j_min_ = 0.5 * smallest_m.cwiseAbs2().dot(initial_stiffness_n_per_m_.diagonal().cwiseAbs());
+  if (!(strain_energy_j_min_ > 0.0)) {
     throw ConfigError("initial_stiffness_n_per_m: the diagonal must not be all zero; it scales the energy error");
   }
   reset();
@@ -18,7 +18,7 @@ EnergyErrorMonitor::EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m
 
 void EnergyErrorMonitor::reset() noexcept {
   energy_error_j_ = 0.0;
-  strain_energy_j_ = least_strain_energy_j_;
+  strain_energy_j_ = strain_energy_j_min_;
   has_sample_ = false;
 }
 

@@ -9,13 +9,13 @@ namespace hybridtest {
 ///
 ///   E = integral of f d(x_target) - integral of f d(x_measured)   [J], trapezoidal,
 ///
-/// negative where the structure gets energy that the specimen did not give. Normalised by the
+/// negative where the tracking error adds energy to the structure. Normalised by the
 /// largest strain energy of the initial stiffness under the targets so far, 1/2 x^T K0 x, but
-/// not less than that of `least_displacement_m` at every degree of freedom, so that noise at
-/// rest is no error.
+/// at least that of `displacement_m_min` at every degree of freedom, so that noise at rest does not
+/// count as an error.
 class EnergyErrorMonitor {
  public:
-  EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double least_displacement_m);
+  EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double displacement_m_min);
 
   void reset() noexcept;
   void sample(const InterfaceVector& target_m, const InterfaceVector& measured_m,
@@ -26,7 +26,7 @@ class EnergyErrorMonitor {
 
  private:
   InterfaceMatrix initial_stiffness_n_per_m_;
-  double least_strain_energy_j_;
+  double strain_energy_j_min_;
   double strain_energy_j_;
   double energy_error_j_ = 0.0;
   bool has_sample_ = false;

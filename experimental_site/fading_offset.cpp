@@ -3,7 +3,7 @@
 namespace hybridtest {
 namespace {
 
-/// Sums of sampling intervals are rounded; what is left of a duration below this share is none.
+/// A remaining duration below this share is zero up to the rounding of the sum of the intervals.
 constexpr double kRounding = 1e-9;
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 namespace hybridtest {
 
-/// A difference that fades away, so that a path which does not begin where the actuators stand is
-/// joined without a step in position or velocity: the cubic from a displacement and a velocity to
-/// zero displacement and zero velocity. Real-time safe.
+/// An offset that decays to zero along a cubic, from an initial displacement and velocity to zero
+/// displacement and zero velocity. Added to a path that does not begin at the position of the
+/// actuators, it avoids a step in position and velocity. Real-time safe.
 class FadingOffset {
  public:
   explicit FadingOffset(int dofs) noexcept;
@@ -17,7 +17,7 @@ class FadingOffset {
   void end() noexcept;
   void advance(double interval_s) noexcept;
 
-  /// Exactly zero once the duration has passed.
+  /// Exactly zero after the duration.
   [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }
   [[nodiscard]] const InterfaceVector& velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-/// What one interlock sees in one control sample.
+/// Input of one interlock in one control sample.
 struct Finding {
-  bool is_judged = false;  // there is a limit, and something to hold against it
+  bool is_judged = false;  // there is a limit and a value to compare with it
   bool is_passed = false;
   double observed = 0.0;
   double limit = 0.0;
 };
 
-/// What is no number counts for nothing here, so that it hides no other value; it has an interlock of its own.
+/// NaN counts as zero here, so that it hides no other value; the interlock `not_finite` acts on it.
 [[nodiscard]] double largest(const InterfaceVector& values) noexcept {
   double largest = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -40,7 +40,7 @@ struct Finding {
   return limit ? against(observed, *limit) : Finding{};
 }
 
-/// A sensor that reads the same is stuck once the command has moved away under it.
+/// A sensor with constant readings is stuck when the command has moved in the meantime.
 void count_stuck(double value, double before, double command_m, InterlockState::Stuck& stuck) noexcept {
   if (value != before) {
     stuck = {0, command_m, 0.0};
@@ -53,7 +53,7 @@ void count_stuck(double value, double before, double command_m, InterlockState::
 void remember(const InterlockInput& input, InterlockState& state) noexcept {
   const Eigen::Index dofs = input.measured_displacement_m.size();
   if (!std::exchange(state.has_sample, true)) {
-    state.measured_displacement_m = InterfaceVector::Constant(dofs, kNotANumber);  // nothing is the same as these
+    state.measured_displacement_m = InterfaceVector::Constant(dofs, kNotANumber);  // equal to no reading
     state.measured_force_n = state.measured_displacement_m;
   }
   for (Eigen::Index k = 0; k < dofs; ++k) {
@@ -92,7 +92,7 @@ void remember(const InterlockInput& input, InterlockState& state) noexcept {
   return input.phase == SitePhase::resting ? measured_m : std::fmax(measured_m, largest(input.target_displacement_m));
 }
 
-/// What was measured one control sample earlier.
+/// The value measured one control sample earlier.
 struct Before {
   InterfaceVector displacement_m;
   InterfaceVector force_n;
@@ -117,7 +117,7 @@ struct Before {
     case InterlockKind::stuck_sensor: return find_stuck(limits, input, state);
     default: break;
   }
-  if (input.phase != SitePhase::running) return {};  // no targets are followed
+  if (input.phase != SitePhase::running) return {};  // there is no target to follow
   switch (kind) {
     case InterlockKind::velocity: return against(largest(input.target_velocity_m_per_s), limits.velocity_m_per_s);
     case InterlockKind::tracking_error:
@@ -133,7 +133,7 @@ struct Before {
   return rule.action > SafetyAction::hold || rule.clears == ClearCondition::never;
 }
 
-/// @return whether the interlock let go.
+/// @return whether the interlock cleared.
 [[nodiscard]] bool clear(const InterlockRule& rule, const Finding& finding, const InterlockInput& input,
                          InterlockState::Latch& latch) noexcept {
   if (finding.is_passed) latch.clear_for_s = 0.0;

@@ -10,14 +10,14 @@
 
 namespace hybridtest {
 
-/// What a site does about a fault, in order of severity.
-///   warn           says so; the test goes on.
-///   hold           the last command stays; the rig keeps its pressure and its control.
+/// Action of a site on a fault, in order of severity.
+///   warn           reports the fault; the test continues.
+///   hold           keeps the last command; the rig keeps its pressure and its control.
 ///   ramp_to_zero   a controlled return, then stop_motion().
 ///   release        stop_motion() at once.
 enum class SafetyAction : std::uint8_t { none, warn, hold, ramp_to_zero, release };
 
-/// When an interlock lets go again. Those that ramp or release never do.
+/// Condition on which an interlock clears. Those that ramp or release never clear.
 enum class ClearCondition : std::uint8_t { when_cleared, operator_reset, never };
 
 enum class InterlockKind : std::uint8_t {
@@ -41,8 +41,8 @@ inline constexpr std::size_t kInterlockCount = 13;
 [[nodiscard]] std::string_view name(InterlockKind kind) noexcept;
 [[nodiscard]] FaultFlags fault_of(InterlockKind kind) noexcept;
 
-/// Limits of one site, the same for each of its interface degrees of freedom. Site time.
-/// What has no value is not judged.
+/// Limits of one site, the same for each of its interface degrees of freedom, in site time.
+/// A limit without a value is not checked.
 struct SiteLimits {
   double displacement_m = 0.0;
   double velocity_m_per_s = 0.0;
@@ -52,36 +52,36 @@ struct SiteLimits {
   double command_age_s = 0.0;                   // since the last new target
   std::optional<double> displacement_step_m{};  // measured, from one control period to the next
   std::optional<double> force_step_n{};         // likewise
-  std::optional<int> stuck_samples{};           // in a row measured the same to the last bit, while the command moves
+  std::optional<int> stuck_samples{};           // identical readings in a row, while the command moves
   double stuck_while_moving_m = 1e-4;           // by more than this; above the resolution of the sensors
   std::optional<double> tracking_indicator{};   // |lag_sine|, see TrackingIndicator
 };
 
-/// What an interlock does once its limit is passed.
+/// What an interlock does when its limit is exceeded.
 struct InterlockRule {
   SafetyAction action = SafetyAction::ramp_to_zero;
   ClearCondition clears = ClearCondition::never;
 };
 using InterlockRules = std::array<InterlockRule, kInterlockCount>;  // by InterlockKind
 
-/// Limits passed ramp to zero. What makes the measurement untrustworthy holds, since a controlled
-/// return would act on it; so does an overdue command. The operator's emergency stop releases.
-/// None of them clears.
+/// An exceeded limit ramps to zero. A fault that makes the measurement unreliable holds, because a
+/// controlled return would use that measurement; an overdue command holds too. The operator's
+/// emergency stop releases. None of them clears.
 [[nodiscard]] InterlockRules default_interlock_rules() noexcept;
 
-/// What may be expected of a site: until it is armed nothing is judged.
+/// State of the site, as the interlocks need it. Before it is armed nothing is checked.
 enum class SitePhase : std::uint8_t {
   standing,  // armed, commands at zero
   running,   // follows targets
   resting,   // holds or returns: targets are not followed
 };
 
-/// What the interlocks look at, once per control sample.
+/// Input of the interlocks, once per control sample.
 struct InterlockInput {
   SitePhase phase = SitePhase::running;
-  const InterfaceVector& target_displacement_m;  // wanted, before it is clipped
+  const InterfaceVector& target_displacement_m;  // before it is limited
   const InterfaceVector& target_velocity_m_per_s;
-  const InterfaceVector& command_displacement_m;  // as the compensator wants it; at rest as sent
+  const InterfaceVector& command_displacement_m;  // of the compensator, before it is limited; at rest as sent
   const InterfaceVector& measured_displacement_m;
   const InterfaceVector& force_n;
   double energy_error_ratio = 0.0;
@@ -90,22 +90,22 @@ struct InterlockInput {
   bool expects_commands = false;  // the test runs and is not paused
   bool rig_fault = false;
   bool emergency_stop = false;
-  bool is_new_sample = false;  // measured since the last call; the others only look again
+  bool is_new_sample = false;  // measured since the last call; else the same sample is checked again
   double period_s = 0.0;       // control period
 };
 
-/// What an interlock remembers from one control sample to the next.
+/// State of an interlock between two control samples.
 struct InterlockState {
   struct Latch {
     bool is_tripped = false;
-    double clear_for_s = 0.0;  // its condition has been absent for so long
+    double clear_for_s = 0.0;  // time since its condition was last present
   };
   std::array<Latch, kInterlockCount> latches{};
 
   bool has_sample = false;
   InterfaceVector measured_displacement_m;  // of the sample before
   InterfaceVector measured_force_n;
-  /// How long a sensor has read the same, and how far the command has gone meanwhile.
+  /// For how long a sensor has had the same reading, and how far the command has moved in that time.
   struct Stuck {
     int samples = 0;
     double command_then_m = 0.0;
@@ -125,24 +125,24 @@ struct InterlockTrip {
 };
 
 struct InterlockVerdict {
-  SafetyAction action = SafetyAction::none;  // the gravest of those in force
+  SafetyAction action = SafetyAction::none;  // the most severe one in force
   bool is_final = false;                     // one that never clears is in force with that action
   std::array<InterlockTrip, kInterlockCount> trips{};
-  int trip_count = 0;        // new ones, gravest first
-  bool has_cleared = false;  // one let go with this sample
+  int trip_count = 0;        // new ones, most severe first
+  bool has_cleared = false;  // one cleared with this sample
 };
 
-/// An interlock that clears by itself lets go when its condition has been absent for so long.
+/// An interlock that clears by itself does so when its condition has been absent for this time.
 inline constexpr double kClearAfter_s = 0.1;
 
-/// Judges one control sample: a pure function of its arguments, no clock.
+/// Checks one control sample: a pure function of its arguments, without a clock.
 ///
 /// @param state   from the last call; the new one is left in it. A fresh one at arming.
 [[nodiscard]] InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
                                      InterlockState& state) noexcept;
 
-/// The operator's reset: those that clear on it let go, if their condition is gone by the next
-/// sample; else they trip again. @return whether there was one.
+/// The operator's reset: clears the interlocks that wait for it. One whose condition is still present
+/// at the next sample trips again. @return whether one was waiting.
 bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexcept;
 
 }  // namespace hybridtest

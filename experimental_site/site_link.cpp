@@ -28,7 +28,7 @@ void SiteLink::take_messages(Instant now) noexcept {
   if (requested_stop_ != StopReason::none) begin_stop(std::exchange(requested_stop_, StopReason::none));
   for (Request request = membership_.next_request(now); request != Request::none && !is_done();
        request = membership_.next_request(now)) {
-    obey(request);
+    follow(request);
   }
   DisplacementCommand command;
   while (ports_.commands.take(command)) pass_on(command, now);
@@ -37,7 +37,7 @@ void SiteLink::take_messages(Instant now) noexcept {
 Instant SiteLink::pass_reports_on(Instant now) noexcept {
   const Instant wake = presence_.advance(now);  // sends the state that the messages led to
   LoopReport report;
-  while (ports_.reports.take(report)) heed(report, now);
+  while (ports_.reports.take(report)) handle(report, now);
   batch_signals();
   if (!is_done()) return wake;
   static_cast<void>(presence_.advance(now));  // sends the final state
@@ -48,7 +48,7 @@ bool SiteLink::is_done() const noexcept {
   return presence_.state() == LifecycleState::finished || presence_.state() == LifecycleState::refused;
 }
 
-void SiteLink::obey(Request request) noexcept {
+void SiteLink::follow(Request request) noexcept {
   switch (request) {
     case Request::arm: ports_.requests.send(loop_request::Arm{}); break;
     case Request::start:
@@ -75,8 +75,8 @@ void SiteLink::begin_stop(StopReason reason) noexcept {
 
 void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept {
   if (command.coordinator != membership_.coordinator()) return;
-  // A command can overtake the start message; it says the same.
-  if (presence_.state() == LifecycleState::armed) obey(Request::start);
+  // A command can overtake the start message; it then starts the loop.
+  if (presence_.state() == LifecycleState::armed) follow(Request::start);
   if (presence_.state() != LifecycleState::running) return;
   const Step newest = command.newest().step;
   if (newest < passed_on_ || !command.fits(dofs_)) return;
@@ -94,8 +94,8 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   }
 }
 
-void SiteLink::heed(const LoopReport& report, Instant now) noexcept {
-  struct Heed {
+void SiteLink::handle(const LoopReport& report, Instant now) noexcept {
+  struct Handle {
     SiteLink& link;
     Instant now;
 
@@ -125,7 +125,7 @@ void SiteLink::heed(const LoopReport& report, Instant now) noexcept {
     }
     void operator()(const loop_report::AtRest&) const noexcept { link.presence_.set_state(LifecycleState::finished); }
   };
-  std::visit(Heed{*this, now}, report);
+  std::visit(Handle{*this, now}, report);
 }
 
 void SiteLink::take_measurement(const StepMeasurement& measurement, Instant now) noexcept {

@@ -19,8 +19,8 @@ struct SiteLinkPorts {
   Inbox<SignalSample>& signals;
 };
 
-/// The network side of a site, without deadlines: passes targets on to the control loop in
-/// order and each once, and the loop's measurements and faults back to the coordinator.
+/// The network side of a site, without deadlines. It passes each target once and in order to the
+/// control loop, and the measurements and faults of the loop back to the coordinator.
 class SiteLink final : public Node {
  public:
   SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership, SiteLinkPorts ports,
@@ -33,22 +33,22 @@ class SiteLink final : public Node {
   /// Second half: from the loop to the network. @return when the link next wants to run.
   [[nodiscard]] Instant pass_reports_on(Instant now) noexcept;
 
-  /// Ends the test safely from this side, as Ctrl-C does; takes effect at the next advance().
+  /// Ends the test safely from the site, as Ctrl-C does, at the next advance().
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
 
   [[nodiscard]] bool is_done() const noexcept;
   [[nodiscard]] StopReason stop_reason() const noexcept {
-    // A link that is refused has nothing to stop.
+    // A link that was refused has not started a stop.
     return stop_reason_ != StopReason::none ? stop_reason_ : membership_.stop_reason();
   }
 
   [[nodiscard]] static TableLayout steps_layout(int dofs);
 
  private:
-  void obey(Request request) noexcept;
+  void follow(Request request) noexcept;
   void begin_stop(StopReason reason) noexcept;
   void pass_on(const DisplacementCommand& command, Instant now) noexcept;
-  void heed(const LoopReport& report, Instant now) noexcept;
+  void handle(const LoopReport& report, Instant now) noexcept;
   void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;
   void answer(Instant now, MeasurementFlags flags) noexcept;
   void record_step() noexcept;

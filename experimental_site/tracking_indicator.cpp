@@ -4,10 +4,10 @@
 
 namespace hybridtest {
 
-TrackingIndicator::TrackingIndicator(int dofs, double period_s, double window_s, double least_displacement_m) noexcept
+TrackingIndicator::TrackingIndicator(int dofs, double period_s, double window_s, double displacement_m_min) noexcept
     : kept_{std::exp(-period_s / window_s)},
-      least_square_m2_{least_displacement_m * least_displacement_m},
-      least_change_square_m2_{least_square_m2_ * (period_s / window_s) * (period_s / window_s)},
+      square_m2_min_{displacement_m_min * displacement_m_min},
+      change_square_m2_min_{square_m2_min_ * (period_s / window_s) * (period_s / window_s)},
       wanted_m_{InterfaceVector::Zero(dofs)},
       measured_m_{wanted_m_},
       mean_growth_m2_{wanted_m_},
@@ -35,7 +35,7 @@ double TrackingIndicator::lag_sine() const noexcept {
   double largest = 0.0;
   for (Eigen::Index k = 0; k < mean_growth_m2_.size(); ++k) {
     const double scale_m2 =
-        std::sqrt((mean_square_m2_[k] + least_square_m2_) * (mean_change_square_m2_[k] + least_change_square_m2_));
+        std::sqrt((mean_square_m2_[k] + square_m2_min_) * (mean_change_square_m2_[k] + change_square_m2_min_));
     const double lag_sine = scale_m2 > 0.0 ? mean_growth_m2_[k] / scale_m2 : 0.0;
     if (std::fabs(lag_sine) > std::fabs(largest)) largest = lag_sine;
   }

@@ -8,11 +8,11 @@
 namespace hybridtest {
 namespace {
 
-/// Path times closer than this share of a step are the same: the rounding of a sum of sampling
-/// intervals, not a place on the path.
+/// Path times that differ by less than this share of a step are equal up to the rounding of the sum of
+/// sampling intervals.
 constexpr double kSameTime = 1e-7;
 
-/// A path that runs at less than this rate counts as held.
+/// Below this rate the path counts as held.
 constexpr double kHeldBelow = 0.05;
 
 }  // namespace
@@ -39,7 +39,7 @@ void Trajectory::reset(const InterfaceVector& displacement_m) noexcept {
   end_velocity_m_per_s_ = zero;
   end_acceleration_m_per_s2_ = zero;
   flags_ = MeasurementFlags::none;
-  point_ = {displacement_m, zero, zero, 0.0, false, false};
+  point_ = {displacement_m, zero, zero, 0.0, false};
 }
 
 void Trajectory::set_target(const CommandPoint& target) noexcept {
@@ -56,7 +56,7 @@ void Trajectory::set_target(const CommandPoint& target) noexcept {
 
   if (!is_first_target_) {
     const double slow_down_s = interval_begin_s_ + kSlowDownAt * step_s_;
-    // With few samples to a step it can be late without a sample that slowed down.
+    // With few samples per step a target can be late although no sample was slowed down.
     if (path_time_s_ > slow_down_s + kSameTime * step_s_) flags_ |= MeasurementFlags::late;
     path_time_s_ = std::min(path_time_s_, slow_down_s);
   }
@@ -129,11 +129,10 @@ void Trajectory::evaluate() noexcept {
   }
   point_.velocity_m_per_s = rate_ * slope_m_per_s_;
   point_.path_time_s = path_time_s_;
-  point_.is_extrapolated = !has_target_ && settings_.type == TrajectoryType::predictor_corrector;
   point_.is_held = any(flags_ & MeasurementFlags::held);
 }
 
-/// Cubic Hermite between the place reached and the target.
+/// Cubic Hermite polynomial from the present position to the target.
 void Trajectory::correct(double since_s) noexcept {
   const double length_s = interval_begin_s_ + step_s_ - segment_begin_s_;
   const double x = since_s / length_s;
@@ -147,7 +146,7 @@ void Trajectory::correct(double since_s) noexcept {
   point_.acceleration_m_per_s2 = (1.0 - x) * begin_acceleration_m_per_s2_ + x * end_acceleration_m_per_s2_;
 }
 
-/// Taylor series from the last target, as long as the order says.
+/// Taylor series from the last target, up to the order of the predictor.
 void Trajectory::predict(double since_s) noexcept {
   point_.displacement_m = begin_displacement_m_ + since_s * begin_velocity_m_per_s_;
   slope_m_per_s_ = begin_velocity_m_per_s_;
@@ -162,7 +161,7 @@ void Trajectory::predict(double since_s) noexcept {
   point_.acceleration_m_per_s2 += since_s * begin_jerk_m_per_s3_;
 }
 
-/// Raised cosine from rest to rest over the first share of the step.
+/// Raised cosine from rest to rest over the first part of the step.
 void Trajectory::ramp(double since_s) noexcept {
   const double length_s = (1.0 - settings_.hold_share) * (interval_begin_s_ + step_s_ - segment_begin_s_);
   const double pi_x = std::numbers::pi * since_s / length_s;

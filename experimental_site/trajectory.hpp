@@ -7,17 +7,16 @@
 
 namespace hybridtest {
 
-/// Where the actuators should be at one control sample.
+/// Wanted motion of the actuators at one control sample.
 struct TrajectoryPoint {
   InterfaceVector displacement_m;         // [m]
   InterfaceVector velocity_m_per_s;       // [m/s] in site time
   InterfaceVector acceleration_m_per_s2;  // [m/s2] in site time
   double path_time_s = 0.0;               // [s] site time along the path
-  bool is_extrapolated = false;           // the next target is not known
-  bool is_held = false;                   // waiting for it, all but at rest
+  bool is_held = false;                   // waits for it, almost at rest
 };
 
-/// A target passed by the last sample, for the measurement that belongs to it.
+/// A target passed in the last sampling interval, for the measurement that belongs to it.
 struct ReachedTarget {
   CommandPoint target;
   /// Share of the last sampling interval at which the target was passed, in (0, 1]; 1 when the
@@ -41,17 +40,17 @@ struct TrajectorySettings {
 /// 2005): interpolates to the next target once it is known, extrapolates while it is not,
 /// slows down when it is late and waits short of the step's end as the last resort.
 ///
-/// The path is a function of path time. It is continued by a cubic through the place and
-/// velocity reached and those of the target at its time, and predicted by a polynomial while the
-/// target is unknown. The corrector is a cubic whatever the predictor's order: the least that
-/// joins two places and two velocities. Path time runs with site time; from
-/// `kSlowDownAt` of a step without its target it runs ever more slowly and tends to the
-/// step's end. When a late target comes, path time is set back to there, so that it is reached
-/// over the same share of a step, and picks up at a bounded rate. So position and velocity are
-/// continuous whenever targets arrive.
+/// The path is a function of path time. While the target is unknown it is predicted by a polynomial.
+/// Once the target is known it is a cubic from the present position and velocity to those of the
+/// target. The corrector is a cubic for every order of the predictor: the lowest order that joins two
+/// positions and two velocities. Path time runs with site time; from
+/// `kSlowDownAt` of a step without its target it slows down and tends to the end of the step. When a
+/// late target comes, path time is set back to that point, so that the target is reached over the
+/// same share of a step, and speeds up again at a bounded rate. Position and velocity are therefore
+/// continuous for any arrival times.
 ///
 /// Ramp and hold, for quasi-static tests: from rest to rest along a raised cosine, held for the
-/// last share of the step, measured at its end; nothing is predicted, and no target is late.
+/// last share of the step, measured at its end; without prediction and without late targets.
 ///
 /// Site time is model time times the time scale. Real-time safe.
 class Trajectory {
@@ -67,16 +66,16 @@ class Trajectory {
   /// At rest at `displacement_m`, before step 0.
   void reset(const InterfaceVector& displacement_m) noexcept;
 
-  /// The next target; steps in order, one at a time. The first one starts path time and is
-  /// taken to be where the path already stands.
+  /// The next target; steps in order, one at a time. The first one starts path time and must
+  /// be the present position of the path.
   void set_target(const CommandPoint& target) noexcept;
 
   /// Moves on by `interval_s` of site time.
   /// @param reached   filled when the result is true.
-  /// @return whether the target was passed; the interval is short enough that it is one at most.
+  /// @return whether the target was passed; the interval is short enough for one at most.
   [[nodiscard]] bool advance(double interval_s, ReachedTarget& reached) noexcept;
 
-  /// Stands still at once, as an interlock does; the next advance() picks up from rest.
+  /// Stops at once, for an interlock; the next advance() continues from rest.
   void halt() noexcept;
 
   [[nodiscard]] const TrajectoryPoint& point() const noexcept { return point_; }

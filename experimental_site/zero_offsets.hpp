@@ -9,11 +9,11 @@
 
 namespace hybridtest {
 
-/// What the sensors read while the rig stands at zero, averaged over the first samples after
-/// arming and from then on taken off what is measured. Real-time safe.
+/// Zero offsets of the sensors: their readings while the rig stands at zero, averaged over the first
+/// samples after arming and then subtracted from the measured values. Real-time safe.
 class ZeroOffsets {
  public:
-  /// Five periods of the mains, whose hum averages out; noise of a 1 kHz loop down to a tenth.
+  /// Five periods of the mains, so that its hum averages out; reduces the noise of a 1 kHz loop to a tenth.
   static constexpr double kAveraged_s = 0.1;
 
   ZeroOffsets(int dofs, double period_s) noexcept
@@ -27,7 +27,7 @@ class ZeroOffsets {
     offset_ = mean_;
     samples_ = 0;
   }
-  /// Values that are not finite are another's to act upon, and are left out.
+  /// Values that are not finite are left out; the interlock `not_finite` acts on them.
   void capture(const RigFeedback& feedback) noexcept {
     if (!feedback.displacement_m.allFinite() || !feedback.force_n.allFinite()) return;
     ++samples_;

@@ -12,7 +12,7 @@ void ElasticMatrix::trial(const InterfaceVector& displacement_m, const Interface
                           InterfaceVector& force_n) noexcept {
   HYBRIDTEST_ASSERT(displacement_m.size() == interface_dofs());
   HYBRIDTEST_ASSERT(force_n.size() == interface_dofs());
-  // lazyProduct: coefficient by coefficient, with no buffer to allocate.
+  // lazyProduct() allocates no buffer.
   force_n.noalias() = stiffness_n_per_m_.lazyProduct(displacement_m);
 }
 

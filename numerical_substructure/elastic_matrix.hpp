@@ -9,7 +9,7 @@ namespace hybridtest {
 /// Linear substructure condensed to its interface: force = stiffness * displacement.
 class ElasticMatrix final : public SubstructureModel {
  public:
-  /// @param stiffness_n_per_m   full and symmetric, for one from a file read_matrix_market().
+  /// @param stiffness_n_per_m   full and symmetric; read_matrix_market() reads one from a file.
   /// @throws ConfigError as checked_stiffness().
   explicit ElasticMatrix(const Eigen::MatrixXd& stiffness_n_per_m);
 

@@ -28,7 +28,7 @@ Instant NumericalNode::advance(Instant now) noexcept {
   DisplacementCommand command;
   while (commands_.take(command)) serve(command, now);
   if (!is_done()) return wake;
-  static_cast<void>(presence_.advance(now));  // the last word goes out
+  static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
 }
 
@@ -47,13 +47,13 @@ void NumericalNode::obey(Request request) noexcept {
     case Request::emergency_stop: presence_.set_state(LifecycleState::finished); break;
     case Request::pause:
     case Request::resume:
-    case Request::none: break;  // a model that is not asked stands still by itself
+    case Request::none: break;  // without commands the model does not move
   }
 }
 
 void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexcept {
   if (command.coordinator != membership_.coordinator()) return;
-  // A command can overtake the start message; it says the same.
+  // A command can overtake the start message; it then starts the test.
   if (presence_.state() == LifecycleState::armed) presence_.set_state(LifecycleState::running);
   if (presence_.state() != LifecycleState::running) return;
   if (!command.fits(force_n_.size())) return;

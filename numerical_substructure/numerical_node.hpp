@@ -14,8 +14,8 @@
 
 namespace hybridtest {
 
-/// Serves the restoring force of a structural model: one command in, one force out. Each step
-/// changes the model once, however often its command arrives.
+/// Answers each displacement command with the restoring force of a structural model. A step changes
+/// the model once, also when its command arrives several times.
 class NumericalNode final : public Node {
  public:
   /// @param index   position of this substructure in the scenario.
@@ -25,7 +25,7 @@ class NumericalNode final : public Node {
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
-  /// Leaves the test, as Ctrl-C does; takes effect at the next advance().
+  /// Leaves the test, as Ctrl-C does, at the next advance().
   void request_stop(StopReason reason) noexcept {
     if (!is_done()) requested_stop_ = reason;
   }

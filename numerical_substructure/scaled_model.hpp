@@ -7,7 +7,7 @@
 
 namespace hybridtest {
 
-/// A model that is stiffer than it should be by a factor, its history unchanged.
+/// A model whose forces and stiffness are multiplied by a factor; its history is unchanged.
 class ScaledModel final : public SubstructureModel {
  public:
   /// @param model   not null.

@@ -9,18 +9,18 @@
 
 namespace hybridtest {
 
-/// Storeys in series, each a law of the drift between its two floors. A storey pulls its upper
-/// floor back by its force and its lower floor along by as much.
+/// Storeys in series, each a law of the drift between its two floors. The force of a storey acts
+/// against the drift on its upper floor and in the opposite direction on its lower floor.
 class ShearBuilding final : public SubstructureModel {
  public:
-  /// What the first storey stands on.
+  /// Base of the first storey.
   enum class Base : std::uint8_t {
     ground,     // n storeys on n degrees of freedom, the floors above them
     first_dof,  // n storeys on n + 1 degrees of freedom, the first of which is the base
   };
 
   /// @param storeys   from the base up; none null.
-  /// @throws ConfigError when they are none or need more than kMaxInterfaceDofs.
+  /// @throws ConfigError for no storey, and when they need more than kMaxInterfaceDofs.
   ShearBuilding(std::vector<std::unique_ptr<Law>> storeys, Base base);
 
   [[nodiscard]] int interface_dofs() const noexcept override;

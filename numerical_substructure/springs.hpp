@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// One spring per interface degree of freedom, none coupled to another.
+/// One spring per interface degree of freedom, without coupling.
 class Springs final : public SubstructureModel {
  public:
   /// @param laws   1 to kMaxInterfaceDofs, in the order of the interface; none null.

@@ -29,7 +29,7 @@ EventLog::EventLog(Outbox<Event>& network, Outbox<Event>& record, const std::fil
   logger_ = std::make_shared<spdlog::logger>("events", sinks.begin(), sinks.end());
   logger_->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
   logger_->flush_on(spdlog::level::info);
-  // A full disk must not take the test down with it; the recorder reports it.
+  // A full disk must not end the test; the recorder reports it.
   logger_->set_error_handler([](const std::string&) {});
 }
 

@@ -14,17 +14,17 @@ class logger;
 
 namespace hybridtest {
 
-/// Where the events of one participant go: to the others, into its recording, and, once the
-/// node has had its turn, to standard error and `events.log`.
+/// Distributes the events of one participant: at once to the other participants and into its
+/// recording; after the node has run, to standard error and `events.log`.
 class EventLog final : public Outbox<Event> {
  public:
-  /// @param directory   of the run; `events.log` there is appended to.
-  /// @param to_terminal   also to standard error, by which a participant started by hand speaks.
+  /// @param directory   of the run; the events are appended to its `events.log`.
+  /// @param to_terminal   also to standard error, for a participant that was started by hand.
   EventLog(Outbox<Event>& network, Outbox<Event>& record, const std::filesystem::path& directory, bool to_terminal);
   ~EventLog() override;
 
   bool send(const Event& event) noexcept override;
-  /// Writes what was sent since the last call. Not for a control thread.
+  /// Writes the events sent since the last call. Not for a control thread.
   void write();
 
  private:

@@ -4,7 +4,7 @@
 
 namespace hybridtest {
 
-/// A number that no other process of the test will draw; not 0.
+/// A random number that identifies this process among those of the test; not 0.
 [[nodiscard]] Incarnation draw_incarnation();
 
 }  // namespace hybridtest

@@ -14,27 +14,27 @@
 
 namespace hybridtest {
 
-/// How well a control loop kept its time.
+/// Timing of a control loop.
 struct LoopTiming {
-  DurationHistogram start_lateness;  // from the time of a control period to its start
-  DurationHistogram busy;            // from there to its end
-  std::int64_t overruns = 0;         // control periods that were over when they began
+  DurationHistogram start_lateness;  // from the time at which a control period is due to its start
+  DurationHistogram busy;            // from its start to its end
+  std::int64_t overruns = 0;         // control periods that had already ended when they were started
 };
 
-/// The thread of a control loop: absolute deadlines and, when granted, real-time scheduling. It
-/// looks for requests in every control period, and every millisecond while it has none.
+/// The thread of a control loop, with absolute deadlines and, when granted, real-time scheduling. It
+/// takes requests in every control period, and every millisecond while there are no control periods.
 class LoopThread {
  public:
-  /// Starts it. What it runs, and the clock, outlive it.
+  /// Starts the thread. The loop and the clock must outlive it.
   LoopThread(Node& loop, const ProcessClock& clock, const RealTimeRequest& request, Duration control_period);
   ~LoopThread();
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
   [[nodiscard]] const RealTimeGrant& grant() const noexcept { return grant_; }
-  /// Ends it after the control period that it is in.
+  /// Ends the thread after the present control period.
   void stop();
-  /// Once it has been stopped.
+  /// Valid after stop().
   [[nodiscard]] const LoopTiming& timing() const noexcept { return timing_; }
 
  private:
@@ -47,7 +47,7 @@ class LoopThread {
 };
 
 /// Tables of a site whose loop has a thread: `loop_timing`, one row, and `loop_start_lateness`,
-/// one row for each bin of the histogram that holds something.
+/// one row for each bin of the histogram that is not empty.
 [[nodiscard]] std::vector<TableLayout> loop_timing_tables();
 void record_loop_timing(const LoopTiming& timing, const RealTimeRequest& request, const RealTimeGrant& grant,
                         RowSink& summary, RowSink& histogram);

@@ -9,7 +9,8 @@
 
 namespace hybridtest {
 
-/// The command line's say on how participants find each other: deployment, not part of the test.
+/// Options of the command line for how participants find each other. They belong to the deployment and
+/// not to the test.
 class NetworkOptions {
  public:
   void add_to(CLI::App& app);

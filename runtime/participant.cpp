@@ -5,8 +5,8 @@
 namespace hybridtest {
 namespace {
 
-/// Requests or reports that can be under way between link and loop: a target a step, and the
-/// few that begin and end a test.
+/// Capacity of the queues between link and loop: one target per step, and the few messages that begin
+/// and end a test.
 constexpr std::size_t kLoopQueue = 64;
 
 CoordinatorSettings coordinator_settings(const Scenario& scenario) {
@@ -106,7 +106,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   rig_ = substructure.make_rig(control_period_s);
   if (!substructure.site.rig_tables.empty()) rig_->record_to(surroundings.sink);
   rig_->connect();
-  // A twentieth of the displacement limit: smaller motion does not scale the energy error.
+  // A motion below a twentieth of the displacement limit does not scale the energy error.
   EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
   loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
                                         std::move(energy_error), ControlLoopPorts{requests_, waking_reports_, signals_},

@@ -20,7 +20,7 @@
 
 namespace hybridtest {
 
-/// What a participant is given by whoever runs it, live or simulated. Outlives the participant.
+/// What a participant needs from its process or from the simulation. Must outlive the participant.
 struct ParticipantSurroundings {
   Transport& transport;
   Outbox<Event>& events;
@@ -28,7 +28,7 @@ struct ParticipantSurroundings {
   Incarnation incarnation = 0;
 };
 
-/// One participant of a test, wired: its node, and the ports the node uses.
+/// One participant of a test: its node, and the ports of the node.
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -101,7 +101,7 @@ class SiteParticipant final : public Participant {
     if (node_) return *node_;
     return *link_;
   }
-  /// For its own thread.
+  /// For the thread of the control loop.
   [[nodiscard]] Node& control_loop() noexcept { return *loop_; }
   [[nodiscard]] Rig& rig() noexcept { return *rig_; }
   [[nodiscard]] bool is_done() const noexcept override { return link_->is_done(); }
@@ -111,7 +111,7 @@ class SiteParticipant final : public Participant {
   [[nodiscard]] static std::vector<TableLayout> tables(const SubstructureScenario& substructure);
 
  private:
-  /// Passes on and wakes the thread at the other end, if there is another.
+  /// Sends, and wakes the thread that receives, if there is one.
   template <class Message>
   class WakingOutbox final : public Outbox<Message> {
    public:
@@ -141,7 +141,7 @@ class SiteParticipant final : public Participant {
   std::optional<SiteNode> node_;  // none when the loop has its own thread
 };
 
-/// The participant that serves a substructure, whichever its role.
+/// The participant of a substructure, numerical or experimental.
 [[nodiscard]] std::unique_ptr<Participant> make_substructure_participant(const Scenario& scenario,
                                                                          const SubstructureScenario& substructure,
                                                                          const ParticipantSurroundings& surroundings);

@@ -26,10 +26,10 @@
 namespace hybridtest {
 namespace {
 
-/// Rows of control-rate tables that may wait for the disk: two minutes at 1 kHz.
+/// Capacity of the tables at control rate while the disk is busy: two minutes at 1 kHz.
 constexpr std::size_t kRingRows = 1U << 17U;
 
-/// Everything of a process but its node.
+/// All parts of a process except its node.
 class ProcessSurroundings {
  public:
   ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
@@ -63,7 +63,7 @@ class ProcessSurroundings {
   EventLog event_log_;
 };
 
-/// Between two runs of the node: passes on stop requests, writes events, watches the recording.
+/// Runs after each advance() of the node: passes on stop requests, writes events, checks the recording.
 class Housekeeping {
  public:
   Housekeeping(Participant& participant, ProcessSurroundings& process, bool may_wait)
@@ -76,7 +76,7 @@ class Housekeeping {
     }
     watch_recording(now);
     process_.event_log().write();
-    // Lockstep has no deadlines: rather than lose records it waits for the disk.
+    // Lockstep has no deadlines: it waits for the disk so that no record is lost.
     if (may_wait_) wait_while([&] { return process_.recorder().should_drain() && !process_.recorder().failed(); });
   }
 
@@ -84,6 +84,7 @@ class Housekeeping {
   void watch_recording(Instant now) {
     if (!reported_failure_ && process_.recorder().failed()) {
       reported_failure_ = true;
+      std::fprintf(stderr, "the recording failed: %s\n", process_.recorder().error_text().c_str());
       participant_.presence().raise(FaultFlags::recording_failed);
       participant_.presence().report(now, Severity::fault, EventCode::recording_failed);
     }
@@ -103,14 +104,14 @@ class Housekeeping {
   bool reported_drop_ = false;
 };
 
-/// Of the process, once its records are closed: a part taken to the end counts as data only with all its records.
+/// Exit code of the process, after its records are closed. A completed part is valid only with all its records.
 int exit_code_of(const Participant& participant, const Recorder& recorder) {
   const int exit_code = exit_code_for(participant.stop_reason());
   const bool has_holes = recorder.failed() || recorder.dropped() > 0;
   return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
 }
 
-/// @param at_the_end   the last word to the recording, before it is closed.
+/// @param at_the_end   called before the recording is closed, for its last rows.
 void run_to_the_end(
     Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, CouplingMode mode,
     const std::function<void()>& at_the_end = [] {}) {
@@ -159,7 +160,7 @@ void report_grant(Presence& presence, Instant now, const RealTimeRequest& reques
   report("memory", grant.memory_error, 0.0);
 }
 
-/// The link on this thread, the control loop on its own.
+/// Runs the link on this thread and the control loop on its own thread.
 void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
                                const Scenario& scenario, const SubstructureScenario& substructure) {
   const RealTimeRequest& request = substructure.site.real_time;
@@ -168,9 +169,10 @@ void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings
   report_grant(participant.presence(), clock.now(), request, loop.grant());
   process.event_log().write();
   if (!loop.grant().is_complete() && !request.allow_degraded) {
-    throw ConfigError{substructure.id +
-                      ": not all of real_time was granted, see the lines above; "
-                      "real_time.allow_degraded: true starts all the same"};
+    throw ConfigError{
+        substructure.id +
+        ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
+        "real_time.allow_degraded: true to start without them"};
   }
   run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
     loop.stop();
@@ -203,7 +205,7 @@ int run_role(const Scenario& scenario, const ParticipantProcessOptions& options,
   if (substructure == nullptr) {
     std::string known;
     for (const auto& other : scenario.substructures) known += (known.empty() ? "" : ", ") + other.id;
-    throw ConfigError{"--id " + options.id + ": the scenario has no such substructure; it has " + known};
+    throw ConfigError{"--id " + options.id + ": the scenario has no such substructure; expected one of " + known};
   }
   if (substructure->role != role) {
     throw ConfigError{"--id " + options.id + ": this substructure is served by the program " +

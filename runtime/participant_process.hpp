@@ -9,17 +9,17 @@
 
 namespace hybridtest {
 
-/// How one participant is started: the options its three programs share.
+/// Options of one participant, the same for the three programs.
 struct ParticipantProcessOptions {
   std::filesystem::path scenario_file;
   std::vector<std::string> overrides;
-  std::string id;                       // of the substructure; the coordinator has none to choose
-  std::filesystem::path run_directory;  // made if it is not there
+  std::string id;                       // of the substructure; not used by the coordinator
+  std::filesystem::path run_directory;  // created if it does not exist
   fast_dds::FastDdsSettings network;
 };
 
-/// The whole life of the process that is this participant: reads the scenario, joins the test,
-/// takes part until it ends, closes the records.
+/// Runs one participant in this process: reads the scenario, joins the test, takes part until it ends,
+/// closes the records.
 /// @return the exit code of the process; errors are printed.
 int run_participant_process(const ParticipantProcessOptions& options, Role role) noexcept;
 

@@ -43,7 +43,7 @@ void prepare_run_directory(const std::filesystem::path& directory, const Scenari
   std::filesystem::create_directories(directory);
   const std::filesystem::path file = directory / "scenario.yaml";
   copy_ground_motion(directory, scenario);
-  // Participants on one machine share the directory; whoever comes last writes the same bytes.
+  // Participants on one machine share the directory; each writes the same bytes.
   const std::filesystem::path partial =
       directory / ("." + std::to_string(scenario.digest[0]) + "." + std::to_string(::getpid()) + ".scenario.yaml");
   std::ofstream{partial} << scenario.effective;
@@ -55,7 +55,7 @@ void prepare_run_directory(const std::filesystem::path& directory, const Scenari
 void require_new_run(const std::filesystem::path& directory, std::string_view participant) {
   if (!std::filesystem::exists(run_file(directory, participant))) return;
   throw ConfigError{"--out " + directory.string() + ": '" + std::string{participant} +
-                    "' has recorded a run in this directory already; choose another"};
+                    "' has already recorded a run in this directory; choose another one"};
 }
 
 std::filesystem::path run_file(const std::filesystem::path& directory, std::string_view participant) {
@@ -87,7 +87,7 @@ TableLayout test_layout() {
 }
 
 std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code) {
-  // Step 0 is where the test starts from; a step completed is one taken from there.
+  // Step 0 is the initial state; it is not counted as a completed step.
   const Step taken = std::max<Step>(report.completed_steps - 1, 0);
   return {static_cast<double>(scenario.time.last_step), static_cast<double>(taken), static_cast<double>(report.reason),
           to_seconds(report.running_time), static_cast<double>(exit_code)};

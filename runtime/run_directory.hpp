@@ -17,7 +17,7 @@ namespace hybridtest {
 
 /// Makes the directory and writes `scenario.yaml`, the effective scenario with its ground motion
 /// beside it, so that the directory can be run again.
-/// @throws ConfigError when the directory cannot be made or holds a run of something else.
+/// @throws ConfigError when the directory cannot be made or holds a run of another scenario.
 void prepare_run_directory(const std::filesystem::path& directory, const Scenario& scenario);
 
 /// @throws ConfigError when this participant has recorded into the directory before.
@@ -28,7 +28,7 @@ void require_new_run(const std::filesystem::path& directory, std::string_view pa
 [[nodiscard]] RunFileHeader run_file_header(const Scenario& scenario, std::string_view participant, Role role,
                                             Incarnation incarnation);
 
-/// The one-row table `test` by which the coordinator closes its record.
+/// The table `test`, with one row, that the coordinator writes at the end.
 [[nodiscard]] TableLayout test_layout();
 [[nodiscard]] std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code);
 

@@ -11,10 +11,10 @@
 namespace hybridtest {
 namespace {
 
-/// Coordinator reports to the observer every so many runs of the coordinator's node.
+/// The observer gets a progress report after this number of runs of the coordinator.
 constexpr std::int64_t kProgressEvery = 512;
 
-/// A participant's own clock: starts when it does and runs a little fast or slow.
+/// The clock of a participant: starts with the participant and has a small drift.
 class DriftingClock {
  public:
   DriftingClock(Duration start, double drift) noexcept : start_{start}, rate_{1.0 + drift} {}
@@ -147,7 +147,7 @@ class Simulation {
       if (participant.is_over() || !has_started || (!has_arrival && participant.wake > now_)) continue;
       const Instant local = participant.clock.local(now_);
       const Instant wake = participant.participant->node().advance(local);
-      // A node that wants to run again at once does so a nanosecond later: time moves on.
+      // A node that is due at once runs a nanosecond later, so that time moves on.
       participant.wake = std::max(participant.clock.simulated(wake), now_ + Duration{1});
       if (&participant == &participants_.front() && ++coordinator_runs_ % kProgressEvery == 0) {
         if (observer_.progress(report())) participant.participant->request_stop(StopReason::interrupted);
@@ -177,7 +177,7 @@ class Simulation {
   const SimulationObserver& observer_;
   Random random_;
   simulated::SimulatedNetwork network_;
-  std::deque<SimulatedParticipant> participants_;  // participants hold on to each other's places
+  std::deque<SimulatedParticipant> participants_;  // a deque: references to its elements must stay valid
   Instant now_{};
   std::int64_t coordinator_runs_ = 0;
 };
@@ -189,8 +189,8 @@ SimulationResult simulate(const Scenario& scenario, const SimulationSettings& se
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (!substructure.site.rig_is_elsewhere) continue;
     throw ConfigError{"the rig of " + substructure.id + " is of type " + substructure.site.rig_type +
-                      ": it stands outside this process, where there is no simulated time; give it another type, "
-                      "such as `simulated`, or take `hybridtest run`"};
+                      ": it runs outside this process and cannot follow simulated time; choose another type, "
+                      "such as `simulated`, or use `hybridtest run`"};
   }
   return Simulation{scenario, settings, observer}.run();
 }

@@ -12,7 +12,7 @@
 
 namespace hybridtest {
 
-/// A participant that dies without a word.
+/// A participant that ends without a message, as a process that is killed.
 struct SimulatedKill {
   std::string participant;
   Duration at{};  // simulated time
@@ -22,17 +22,17 @@ struct SimulationSettings {
   std::uint64_t seed = 0;
   simulated::NetworkConditions network;
   std::vector<SimulatedKill> kills;
-  /// Clocks run fast or slow by up to so much, drawn by the seed.
+  /// Largest drift of a clock; the drift is drawn from the seed.
   double clock_drift_ppm_max = 50.0;
-  /// Nothing a test needs takes this long; a simulation that does is ended and reported.
+  /// A simulation that takes longer is ended and reported; no test needs this time.
   Duration time_limit = std::chrono::hours{24};
 };
 
-/// Where the simulation's records and events go, and who is told of progress.
+/// Receives the records, events and progress of a simulation.
 struct SimulationObserver {
   std::function<RowSink&(const std::string& participant, const TableLayout& table)> sink;
   std::function<void(const Event& event)> event = [](const Event&) {};
-  /// Called now and then with the coordinator's report; true asks for a safe stop.
+  /// Called at intervals with the report of the coordinator; true requests a safe stop.
   std::function<bool(const CoordinatorReport& report)> progress = [](const CoordinatorReport&) { return false; };
 };
 

@@ -6,8 +6,6 @@
 #include <optional>
 #include <string_view>
 
-#include "coordinator/ground_motion/unit_factor.hpp"
-
 namespace hybridtest {
 namespace {
 
@@ -37,8 +35,8 @@ std::vector<std::string> header_words(std::string_view line) {
   return words;
 }
 
-/// The number that belongs to the name at `position`: right behind it, or, in older files, the
-/// one at the same place of the numbers before all names.
+/// The number that belongs to a name: the word after it or, in older files, the number in the same
+/// order, all numbers standing before all names.
 std::optional<double> named_number(const std::vector<std::string>& words, const std::string& name,
                                    std::size_t place_in_old_files) {
   const auto found = std::find(words.begin(), words.end(), name);
@@ -66,10 +64,10 @@ Sampling read_sampling(const std::vector<Line>& lines, const std::string& name) 
   if (!dt_s) refuse(name, header->number, "the header has no step DT; " + std::string{kExpectedHeader});
   if (!points) refuse(name, header->number, "the header has no number of points; " + std::string{kExpectedHeader});
   if (*dt_s <= 0.0) refuse(name, header->number, "the step DT is not positive, expected seconds such as .005");
-  if (*points < 1.0 || *points > static_cast<double>(kMaxGroundMotionPoints) || *points != std::floor(*points)) {
+  if (*points < 1.0 || *points > static_cast<double>(kGroundMotionPointsMax) || *points != std::floor(*points)) {
     refuse(name, header->number,
            "the number of points NPTS is out of range, expected a whole number from 1 to " +
-               std::to_string(kMaxGroundMotionPoints));
+               std::to_string(kGroundMotionPointsMax));
   }
   return {.points = static_cast<std::size_t>(*points), .dt_s = *dt_s, .line = header->number};
 }
@@ -123,7 +121,7 @@ GroundMotion parse_at2(const std::vector<Line>& lines, const std::string& name, 
   const std::size_t begin = first_row(lines, sampling);
   const double factor = metres_per_second_squared(header_unit(lines, begin, name, options)) * options.scale;
   const std::string announced =
-      std::to_string(sampling.points) + " values, as line " + std::to_string(sampling.line) + " announces";
+      std::to_string(sampling.points) + " values, as given in line " + std::to_string(sampling.line);
 
   GroundMotion motion{.dt_s = sampling.dt_s, .start_s = 0.0, .acceleration_m_per_s2 = {}};
   for (std::size_t row = begin; row < lines.size(); ++row) {

@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// Whether a file is PEER AT2: by the end of its name or by NPTS among its first lines.
+/// Whether a file is PEER AT2: its name ends in .AT2, or one of its first lines contains NPTS.
 [[nodiscard]] bool is_at2(const std::vector<motion_text::Line>& lines, const std::string& name);
 
 /// @throws ConfigError as read_ground_motion().

@@ -6,8 +6,6 @@
 #include <optional>
 #include <string_view>
 
-#include "coordinator/ground_motion/unit_factor.hpp"
-
 namespace hybridtest {
 namespace {
 
@@ -17,7 +15,7 @@ using motion_text::refuse;
 using motion_text::shown;
 using motion_text::upper_case;
 
-/// Printed times are rounded; more than this share of the step is another spacing.
+/// Printed times are rounded. Spacings that differ by more than this share of the step are unequal.
 constexpr double kSpacingTolerance = 0.01;
 
 std::string formatted(const char* format, double first, double second) {
@@ -55,8 +53,8 @@ void append_row(Rows& rows, const std::vector<std::string_view>& words, const Li
                (rows.columns <= 2 ? std::to_string(rows.columns) + " as in the lines before"
                                   : std::string{"one (acceleration) or two (time, acceleration)"}));
   }
-  if (rows.lines.size() == kMaxGroundMotionPoints) {
-    refuse(name, line.number, "more rows follow, expected at most " + std::to_string(kMaxGroundMotionPoints));
+  if (rows.lines.size() == kGroundMotionPointsMax) {
+    refuse(name, line.number, "more rows follow, expected at most " + std::to_string(kGroundMotionPointsMax));
   }
   for (const auto word : words) {
     const auto value = number(word);
@@ -97,12 +95,13 @@ AccelerationUnit unit_of(const Rows& rows, const std::string& name, const Ground
   const auto named = rows.names.empty() ? std::nullopt : unit_in_name(rows.names.back());
   if (named && options.unit && *named != *options.unit) {
     refuse(name, rows.names_line,
-           "the column " + shown(rows.names.back()) + " has another unit than the one that was given with the file");
+           "the column " + shown(rows.names.back()) +
+               " is in another unit than the one given for the file; remove one of the two");
   }
   const auto unit = options.unit ? options.unit : named;
   if (!unit) {
     refuse(name, rows.names.empty() ? rows.lines.front() : rows.names_line,
-           "the unit of the acceleration is unknown; give it with the file, or begin the file with a line of names "
+           "the unit of the acceleration is unknown; give it in the scenario, or begin the file with a line of names "
            "such as 'time_s,ground_acceleration_m_per_s2' ('_g' and '_cm_per_s2' likewise)");
   }
   return *unit;
@@ -159,7 +158,7 @@ GroundMotion parse_columns(const std::vector<Line>& lines, const std::string& na
   } else {
     if (!options.dt_s) {
       refuse(name, rows.lines.front(),
-             "the file has one column and no times, so its step must be given with it, in seconds");
+             "the file has one column and no times; give its step, in seconds, in the scenario");
     }
     motion.dt_s = *options.dt_s;
   }

@@ -7,7 +7,7 @@
 namespace hybridtest {
 namespace {
 
-/// A step that is a multiple of dt meets the samples up to rounding, the last one too.
+/// Times that are samples up to rounding count as samples, the last one too.
 constexpr double kSampleRounding = 1e-9;
 
 }  // namespace
@@ -16,7 +16,7 @@ double GroundMotion::at(double model_time_s) const noexcept {
   if (acceleration_m_per_s2.empty()) return 0.0;
   const double position = (model_time_s - start_s) / dt_s;
   const auto last = static_cast<double>(acceleration_m_per_s2.size() - 1);
-  // Written so that a time that is not a number counts as outside.
+  // Written so that NaN counts as outside.
   if (!(position >= -kSampleRounding && position <= last + kSampleRounding)) return 0.0;
   const double inside = std::clamp(position, 0.0, last);
   const auto index = static_cast<std::size_t>(inside);

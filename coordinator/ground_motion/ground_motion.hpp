@@ -5,7 +5,7 @@
 
 namespace hybridtest {
 
-/// Acceleration of the ground at equally spaced times, straight in between and zero outside.
+/// Acceleration of the ground at equally spaced times; linear in between, zero outside.
 struct GroundMotion {
   double dt_s = 0.0;
   double start_s = 0.0;  // time of the first value

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <system_error>
 
 #include "core/config_error.hpp"
@@ -11,8 +12,8 @@
 namespace hybridtest::motion_text {
 namespace {
 
-constexpr std::size_t kLongestNumber = 64;
-constexpr std::size_t kLongestShown = 60;
+constexpr std::size_t kNumberLengthMax = 64;
+constexpr std::size_t kShownLengthMax = 60;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
@@ -24,7 +25,7 @@ std::vector<Line> split_lines(std::string_view text) {
     const std::size_t end = text.find_first_of("\r\n");
     lines.push_back({.text = text.substr(0, end), .number = static_cast<int>(lines.size()) + 1});
     if (end == std::string_view::npos) break;
-    // Files that went through several systems end their lines in \r\r\n.
+    // Files converted between operating systems can end their lines in \r\r\n.
     const std::size_t after_returns = text.find_first_not_of('\r', end);
     const bool has_feed = after_returns != std::string_view::npos && text[after_returns] == '\n';
     text.remove_prefix(has_feed ? after_returns + 1 : end + 1);
@@ -62,12 +63,12 @@ std::vector<std::string_view> split_words(std::string_view line, bool comma_sepa
 }
 
 std::optional<double> number(std::string_view word) {
-  // The library's reader takes no plus sign.
+  // std::from_chars accepts no plus sign.
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  if (word.empty() || word.size() > kLongestNumber) return std::nullopt;
-  char buffer[kLongestNumber];
+  if (word.empty() || word.size() > kNumberLengthMax) return std::nullopt;
+  char buffer[kNumberLengthMax];
   std::transform(word.begin(), word.end(), buffer, [](char c) { return c == 'D' || c == 'd' ? 'E' : c; });
-  // Only what a decimal number is made of: the library also reads "nan" and "infinity".
+  // Only characters of a decimal number: std::from_chars also reads "nan" and "infinity".
   if (std::any_of(buffer, buffer + word.size(), [](char c) {
         return (c < '0' || c > '9') && c != '.' && c != '-' && c != '+' && c != 'E' && c != 'e';
       })) {
@@ -88,8 +89,8 @@ std::string upper_case(std::string_view text) {
 
 std::string shown(std::string_view text) {
   std::string result{"'"};
-  for (const char c : text.substr(0, kLongestShown)) result += c >= ' ' && c <= '~' ? c : '?';
-  result += text.size() > kLongestShown ? "…'" : "'";
+  for (const char c : text.substr(0, kShownLengthMax)) result += c >= ' ' && c <= '~' ? c : '?';
+  result += text.size() > kShownLengthMax ? "…'" : "'";
   return result;
 }
 
@@ -98,3 +99,25 @@ void refuse(const std::string& file, int line, const std::string& what) {
 }
 
 }  // namespace hybridtest::motion_text
+
+namespace hybridtest {
+
+double metres_per_second_squared(AccelerationUnit unit) noexcept {
+  switch (unit) {
+    case AccelerationUnit::g: return kStandardGravity_m_per_s2;
+    case AccelerationUnit::cm_per_s2: return 0.01;
+    case AccelerationUnit::m_per_s2: break;
+  }
+  return 1.0;
+}
+
+void require_same_step(const std::string& file, int line, double dt_s, const GroundMotionOptions& options) {
+  if (!options.dt_s || std::abs(*options.dt_s - dt_s) <= 0.01 * dt_s) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the step in the file is %.6g s, the step given for the file is %.6g s; leave out the latter", dt_s,
+                *options.dt_s);
+  motion_text::refuse(file, line, text);
+}
+
+}  // namespace hybridtest

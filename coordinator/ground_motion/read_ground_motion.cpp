@@ -16,7 +16,7 @@ namespace {
 void check_options(const GroundMotionOptions& options, const std::string& name) {
   if (!std::isfinite(options.scale)) motion_text::refuse(name, 0, "the scale is not a finite number");
   if (options.dt_s && !(std::isfinite(*options.dt_s) && *options.dt_s > 0.0)) {
-    motion_text::refuse(name, 0, "the step given with the file is not positive, expected seconds such as 0.005");
+    motion_text::refuse(name, 0, "the step given for the file is not positive, expected seconds such as 0.005");
   }
 }
 
@@ -33,11 +33,12 @@ std::string read_file(const std::filesystem::path& file) {
   char block[1 << 16];
   while (stream.read(block, sizeof block) || stream.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kMaxGroundMotionBytes) {
-      motion_text::refuse(name, 0, "is larger than " + std::to_string(kMaxGroundMotionBytes >> 20U) + " MiB");
+    if (text.size() > kGroundMotionBytesMax) {
+      motion_text::refuse(name, 0,
+                          "is too large, expected at most " + std::to_string(kGroundMotionBytesMax >> 20U) + " MiB");
     }
   }
-  if (stream.bad()) motion_text::refuse(name, 0, "cannot be read to its end");
+  if (stream.bad()) motion_text::refuse(name, 0, "cannot be read to the end");
   return text;
 }
 
@@ -54,8 +55,9 @@ GroundMotion parse_ground_motion(std::string_view text, const std::string& name,
                         "one (acceleration)");
   }
   GroundMotion motion = is_at2(lines, name) ? parse_at2(lines, name, options) : parse_columns(lines, name, options);
-  if (motion.peak_m_per_s2() > kMaxGroundAcceleration_m_per_s2) {
-    motion_text::refuse(name, 0, "the largest acceleration after scaling is above 1e6 m/s2; check unit and scale");
+  if (motion.peak_m_per_s2() > kGroundAcceleration_m_per_s2_max) {
+    motion_text::refuse(name, 0,
+                        "the largest acceleration after scaling is above 1e6 m/s2; check the unit and the scale");
   }
   return motion;
 }

@@ -16,22 +16,22 @@ inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
 
 enum class AccelerationUnit : std::uint8_t { g, m_per_s2, cm_per_s2 };
 
-/// What a file cannot say or says elsewhere.
+/// What the file does not contain.
 struct GroundMotionOptions {
   /// Multiplies every value; any finite number.
   double scale = 1.0;
   /// Unit of the values. AT2 files without it are in g, as their header says; text files without
   /// it need a header whose acceleration column ends in `_m_per_s2`, `_cm_per_s2` or `_g`.
   std::optional<AccelerationUnit> unit;
-  /// Spacing of a one-column file, which needs it; where the file has its own, both must agree.
+  /// Step of a one-column file, where it is required. Where the file has its own step, both must agree.
   std::optional<double> dt_s;
 };
 
-/// Longest motion that is read: a bound on memory, not on taste (over an hour at 1 kHz).
-inline constexpr std::size_t kMaxGroundMotionPoints = 5'000'000;
-/// Larger accelerations are a mistake in unit or scale, and would overflow later on.
-inline constexpr double kMaxGroundAcceleration_m_per_s2 = 1e6;
-inline constexpr std::size_t kMaxGroundMotionBytes = std::size_t{64} << 20U;
+/// Longest motion that is read; limits the memory (over an hour at 1 kHz).
+inline constexpr std::size_t kGroundMotionPointsMax = 5'000'000;
+/// Larger accelerations are a wrong unit or scale and would overflow later.
+inline constexpr double kGroundAcceleration_m_per_s2_max = 1e6;
+inline constexpr std::size_t kGroundMotionBytesMax = std::size_t{64} << 20U;
 
 /// Reads a ground motion from one of
 ///
@@ -54,7 +54,7 @@ inline constexpr std::size_t kMaxGroundMotionBytes = std::size_t{64} << 20U;
 [[nodiscard]] GroundMotion read_ground_motion(const std::filesystem::path& file,
                                               const GroundMotionOptions& options = {});
 
-/// The same from text; `name` stands for the file in messages and in the choice of the format.
+/// The same from text. `name` is the file name in messages and for the choice of the format.
 [[nodiscard]] GroundMotion parse_ground_motion(std::string_view text, const std::string& name,
                                                const GroundMotionOptions& options = {});
 

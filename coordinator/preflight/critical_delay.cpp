@@ -17,10 +17,10 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The sweep: points evenly spaced on a logarithmic scale, besides those around each pole.
 constexpr int kSweepPoints = 1500;
-/// Phases this close below zero are rounding of zero.
+/// Phases below zero by no more than this are zero up to rounding.
 constexpr double kPhaseRounding = 1e-9;
-/// Growth rates this small against the fastest pole are rounding of zero; a double pole at zero is
-/// only known to the square root of machine precision.
+/// Growth rates below this share of the fastest pole are zero up to rounding: a double pole at zero
+/// is only accurate to the square root of machine precision.
 constexpr double kGrowthRounding = 1e-7;
 
 Eigen::MatrixXd given_or_zero(const Eigen::MatrixXd& given, Eigen::Index size) {
@@ -42,7 +42,7 @@ void add(DenseSystem& system, const CoupledSite& site, bool with_stiffness) {
   if (with_stiffness) system.stiffness_n_per_m += to_structure * part.stiffness_n_per_m * to_structure.transpose();
 }
 
-/// The structure without the late site; of the others the stiffness is in the structure already.
+/// The structure without the delayed site. The stiffness of the other sites is already in the structure.
 DenseSystem without_late_site(const LinearStructure& structure, const std::vector<CoupledSite>& sites,
                               std::size_t late) {
   DenseSystem rest{.mass_kg = Eigen::MatrixXd{structure.mass_kg},
@@ -57,7 +57,7 @@ DenseSystem without_late_site(const LinearStructure& structure, const std::vecto
   return rest;
 }
 
-/// Finds where the moduli of the loop transfer's eigenvalues pass one.
+/// Finds the frequencies at which an eigenvalue of the loop transfer has the modulus 1.
 class CrossingSearch {
  public:
   CrossingSearch(const LoopTransfer& transfer, std::vector<double> frequencies)
@@ -89,7 +89,7 @@ class CrossingSearch {
     bisect(branch, frequencies_[i], frequencies_[i + 1]);
   }
 
-  /// A peak below one or a dip above one among the samples may pass it in between.
+  /// A peak below 1, or a minimum above 1, can cross 1 between two samples.
   void examine_extreme(Eigen::Index branch, std::size_t i) {
     const double here = samples_[i][branch];
     const double sign = here > 0.0 ? -1.0 : 1.0;
@@ -145,7 +145,7 @@ class CrossingSearch {
   CriticalDelay earliest_{.delay_s = kInfinity, .frequency_rad_per_s = 0.0};
 };
 
-/// Past this nothing crosses: well above every pole, and the loop gain has fallen below one.
+/// Above this frequency there is no crossing: it is above every pole, and the loop gain is below 1.
 double highest_frequency(const LoopTransfer& transfer, double fastest_pole) {
   double frequency = 10.0 * fastest_pole;
   while (std::abs(transfer.eigenvalues(frequency)[0]) >= 1.0) frequency *= 2.0;
@@ -166,7 +166,7 @@ std::vector<double> sweep(const LoopTransfer& transfer, const Eigen::VectorXcd& 
   for (int i = 0; i <= kSweepPoints; ++i) {
     frequencies.push_back(low * std::pow(high / low, static_cast<double>(i) / kSweepPoints));
   }
-  // A resonance is as wide as its damping; between the even points it would be missed.
+  // A resonance is as narrow as its damping is small; the even points alone would miss it.
   for (const auto& pole : transfer.structure_poles_rad_per_s()) {
     const double width = std::max(std::abs(pole.real()), 1e-6 * std::abs(pole.imag()));
     for (const double offset : {-10.0, -3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0, 10.0}) {
@@ -200,13 +200,13 @@ CriticalDelay critical_delay(const LinearStructure& structure, const std::vector
   add(coupled, sites[late], true);
   const Eigen::VectorXcd coupled_poles = poles_rad_per_s(coupled);
   if (const auto unstable = unstable_without_delay(coupled_poles)) return *unstable;
-  // No motion has any stiffness or damping: nothing is fed back.
+  // No mode has stiffness or damping: there is no feedback.
   if (coupled_poles.cwiseAbs().maxCoeff() <= 0.0) return {.delay_s = kInfinity, .frequency_rad_per_s = 0.0};
 
   const LoopTransfer transfer{rest, specimen(sites[late]), sites[late].interface};
-  // Inertia measured late that exceeds the structure's own is unstable at any delay (a neutral
-  // equation whose difference operator is unstable).
-  if (transfer.largest_modulus_at_infinity() >= 1.0) return {.delay_s = 0.0, .frequency_rad_per_s = kInfinity};
+  // If the delayed inertia of the specimen is larger than that of the structure, the test is unstable
+  // at any delay (a neutral equation with an unstable difference operator).
+  if (transfer.modulus_at_infinity_max() >= 1.0) return {.delay_s = 0.0, .frequency_rad_per_s = kInfinity};
   return CrossingSearch{transfer, sweep(transfer, coupled_poles)}.earliest();
 }
 

@@ -8,21 +8,21 @@
 
 namespace hybridtest {
 
-/// Where the coupled test becomes unstable.
+/// Limit of stability of the coupled test.
 struct CriticalDelay {
   double delay_s = 0.0;              // 0: unstable or undamped without any delay; infinite: stable with any delay
-  double frequency_rad_per_s = 0.0;  // of the motion that neither grows nor decays then; 0 where there is none
+  double frequency_rad_per_s = 0.0;  // of the motion at that limit; 0 where there is none
 };
 
-/// The pure delay of one site's force at which the coupled linear test turns unstable.
+/// Critical delay: the pure delay of the force of one site at which the coupled linear test becomes unstable.
 ///
-/// The equation of motion with the force of site s late by tau has the characteristic equation
+/// The equation of motion with the force of site s delayed by tau has the characteristic equation
 ///
-///   det[ A(l) + e^{-l tau} B S(l) B^T ] = 0,
-///   A = l^2 M + l C + K - B K_e B^T + (other sites, undelayed),   S = l^2 M_e + l C_e + K_e.
+///   det[ A(l) + e^{-l tau} B^T S(l) B ] = 0,
+///   A = l^2 M + l C + K - B^T K_e B + (other sites, undelayed),   S = l^2 M_e + l C_e + K_e.
 ///
 /// By Sylvester's identity it has a root i w exactly when an eigenvalue mu of the loop transfer
-/// matrix S(iw) B^T A(iw)^-1 B satisfies 1 + e^{-iw tau} mu = 0. So |mu(w)| = 1 gives the
+/// matrix S(iw) B A(iw)^-1 B^T satisfies 1 + e^{-iw tau} mu = 0. So |mu(w)| = 1 gives the
 /// crossing frequencies and w tau = arg(-mu), in [0, 2 pi), the delay of each; roots move
 /// continuously with tau, so the smallest delay of all crossings is where stability is lost
 /// (Mercan and Ricles, 2007; Gu, Kharitonov and Chen, Stability of Time-Delay Systems, 2003,

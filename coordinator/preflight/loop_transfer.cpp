@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// First-order form with states (reference * u, v), both of the size of a velocity.
+/// First-order form with the states (reference * u, v), both with the magnitude of a velocity.
 Eigen::MatrixXd state_matrix(const DenseSystem& system, const Eigen::LLT<Eigen::MatrixXd>& mass, double reference) {
   const Eigen::Index size = system.mass_kg.rows();
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(2 * size, 2 * size);
@@ -66,7 +66,7 @@ Eigen::VectorXcd LoopTransfer::eigenvalues(double frequency_rad_per_s) const {
   return values;
 }
 
-double LoopTransfer::largest_modulus_at_infinity() const {
+double LoopTransfer::modulus_at_infinity_max() const {
   const Eigen::MatrixXd limit = substructure_.mass_kg * flexibility_at_infinity_;
   return Eigen::EigenSolver<Eigen::MatrixXd>{limit, false}.eigenvalues().cwiseAbs().maxCoeff();
 }

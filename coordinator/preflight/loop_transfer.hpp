@@ -35,11 +35,11 @@ class LoopTransfer {
   [[nodiscard]] Eigen::VectorXcd eigenvalues(double frequency_rad_per_s) const;
 
   /// The same in the limit of infinite frequency: of M_e B M^-1 B^T.
-  [[nodiscard]] double largest_modulus_at_infinity() const;
+  [[nodiscard]] double modulus_at_infinity_max() const;
 
  private:
   DenseSystem substructure_;
-  double reference_rad_per_s_ = 1.0;  // scales displacement states to the size of velocities
+  double reference_rad_per_s_ = 1.0;  // scales the displacement states to the magnitude of velocities
   Eigen::MatrixXcd triangular_;       // Schur form of the state matrix
   Eigen::MatrixXcd input_;            // 2n x p, in Schur coordinates
   Eigen::MatrixXcd output_;           // p x 2n, in Schur coordinates

@@ -53,18 +53,4 @@ Eigen::VectorXd stiffness_share_by_mode(const LinearStructure& structure, const 
   return share;
 }
 
-Eigen::MatrixXd equivalent_damping_n_s_per_m(const CoupledSite& site, double delay_s) {
-  return -delay_s * site.stiffness_n_per_m;
-}
-
-Eigen::VectorXd equivalent_damping_ratios(const VibrationModes& modes, const CoupledSite& site, double delay_s) {
-  Eigen::VectorXd ratios = Eigen::VectorXd::Zero(modes.count());
-  for (Eigen::Index mode = 0; mode < modes.count(); ++mode) {
-    const double omega = modes.frequency_rad_per_s[mode];
-    if (omega <= 0.0) continue;
-    ratios[mode] = -delay_s * specimen_stiffness(site, modes.shapes.col(mode)) / (2.0 * omega);
-  }
-  return ratios;
-}
-
 }  // namespace hybridtest

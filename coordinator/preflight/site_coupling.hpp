@@ -24,19 +24,10 @@ struct CoupledSite {
 /// @throws ConfigError naming the site.
 void require_consistent(const LinearStructure& structure, const CoupledSite& site);
 
-/// How much of the structure's stiffness the site holds, mode by mode: the strain energy in the
-/// specimen over that of the whole structure, phi^T B^T K_e B phi / phi^T K phi, 0 to 1; not a
-/// number for a motion without stiffness. The larger, the more a delay at the site matters.
+/// Stiffness share of the site in each mode: the strain energy in the specimen over that of the whole
+/// structure, phi^T B^T K_e B phi / phi^T K phi, 0 to 1; NaN for a mode without stiffness. The larger
+/// the share, the larger the effect of a delay at the site.
 [[nodiscard]] Eigen::VectorXd stiffness_share_by_mode(const LinearStructure& structure, const VibrationModes& modes,
                                                       const CoupledSite& site);
-
-/// What a delay tau of the site's force is to the structure, to first order in tau: damping of
-/// -K_e tau (Horiuchi et al., 1999). p x p.
-[[nodiscard]] Eigen::MatrixXd equivalent_damping_n_s_per_m(const CoupledSite& site, double delay_s);
-
-/// The same as a damping ratio of each mode, -tau phi^T B^T K_e B phi / (2 omega), to be added to
-/// damping_ratios(); 0 for a motion without stiffness.
-[[nodiscard]] Eigen::VectorXd equivalent_damping_ratios(const VibrationModes& modes, const CoupledSite& site,
-                                                        double delay_s);
 
 }  // namespace hybridtest

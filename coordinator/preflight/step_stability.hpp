@@ -4,18 +4,18 @@
 
 namespace hybridtest {
 
-/// What an explicit integrator's step may be.
+/// Stability limit of the step of an explicit integrator.
 struct StepStability {
   double highest_frequency_rad_per_s = 0.0;
   double step_s_max = 0.0;  // infinite for a structure without stiffness
 };
 
 /// Central differences and explicit Newmark are stable while omega dt <= 2, that is
-/// dt <= T_n/pi of the highest mode, whatever damping they treat implicitly (Belytschko and
+/// dt <= T_n/pi of the highest mode, for any damping that they treat implicitly (Belytschko and
 /// Hughes, Computational Methods for Transient Analysis, 1983, chapter 2).
 ///
-/// The limit is that of the initial stiffness: laws that stiffen later on, and forces of a
-/// specimen's own mass or damper, lower it.
+/// The limit is that of the initial stiffness: a law that becomes stiffer, and the mass or
+/// damping of a specimen, lower it.
 [[nodiscard]] StepStability step_stability(const VibrationModes& modes) noexcept;
 
 /// @throws ConfigError when `step_s` is above the limit, with the highest frequency, the limit

@@ -22,7 +22,7 @@ std::string read_file(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream{file, std::ios::binary};
   if (!stream) fail(std::generic_category().message(errno));
-  std::string text(kMaxBytes + 1, '\0');
+  std::string text(kBytesMax + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) fail(std::generic_category().message(errno));
   text.resize(static_cast<std::size_t>(stream.gcount()));
@@ -36,7 +36,7 @@ std::unique_ptr<DocumentState> read_document(std::string_view text, std::string 
   Source& source = state->sources.emplace_back();
   source.name = std::move(name);
   std::vector<Finding> findings;
-  auto root = read_yaml(text, source, "", kMaxDepth, findings);
+  auto root = read_yaml(text, source, "", kDepthMax, findings);
   const bool is_mapping = root && root->kind == Node::Kind::mapping;
   if (root && !is_mapping)
     findings.push_back({root->place, "expected a mapping (key: value) at the top, found " + described(*root)});

@@ -8,9 +8,9 @@
 namespace hybridtest::config {
 
 /// Deepest nesting of a configuration; far beyond any sensible one, far below the stack.
-inline constexpr int kMaxDepth = 64;
+inline constexpr int kDepthMax = 64;
 /// Longest key; longer ones cannot be written back as simple YAML keys.
-inline constexpr std::size_t kMaxKeyLength = 200;
+inline constexpr std::size_t kKeyLengthMax = 200;
 
 /// Where a piece of configuration comes from: a file or one override.
 struct Source {

@@ -85,8 +85,8 @@ class Walk {
       return fail(place() + " is " + described(*node_) + " and has no key '" + shown(key) + "'");
     Node* child = node_->child(key);
     if (child == nullptr && !may_create) return fail(place() + " has no key '" + shown(key) + "'" + key_hint(key));
-    if (child == nullptr && key.size() > kMaxKeyLength)
-      return fail("a key has at most " + std::to_string(kMaxKeyLength) + " characters");
+    if (child == nullptr && key.size() > kKeyLengthMax)
+      return fail("a key has at most " + std::to_string(kKeyLengthMax) + " characters");
     if (child == nullptr) {
       child = &node_->children.emplace_back();
       child->key = key;
@@ -166,8 +166,8 @@ void apply_override(std::string_view assignment, Source& source, Node& root, std
   const auto steps = split_path(path);
   if (equals == std::string_view::npos || !steps)
     return refuse("expected key.path=value, for example time.step_s=0.002 or substructures[0].rig.type=ideal");
-  const int depth_left = kMaxDepth - static_cast<int>(steps->size());
-  if (depth_left <= 0) return refuse("nested more than " + std::to_string(kMaxDepth) + " levels deep");
+  const int depth_left = kDepthMax - static_cast<int>(steps->size());
+  if (depth_left <= 0) return refuse("nested more than " + std::to_string(kDepthMax) + " levels deep");
   const std::string_view value = assignment.substr(equals + 1);
   if (value.find_first_not_of(" \t\r\n") == std::string_view::npos) return refuse("expected a value after '='");
 

@@ -12,7 +12,7 @@ namespace hybridtest::config {
 namespace {
 
 /// Limit of the number of reports; limits the work on hostile input.
-constexpr std::size_t kMaxIssues = 1000;
+constexpr std::size_t kIssuesMax = 1000;
 
 auto order_of(const Place& place) { return std::tuple{place.source->order, place.line, place.column}; }
 
@@ -131,7 +131,7 @@ void SectionState::write(std::string& out, std::size_t indentation, std::string_
   }
 }
 
-bool DocumentState::is_full() const noexcept { return issues.size() >= kMaxIssues; }
+bool DocumentState::is_full() const noexcept { return issues.size() >= kIssuesMax; }
 
 bool DocumentState::report(Finding finding, std::shared_ptr<const SectionState> missing_section) {
   if (is_full()) return false;

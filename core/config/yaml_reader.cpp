@@ -39,8 +39,8 @@ bool is_explicit_tag(const std::string& tag) { return !tag.empty() && tag != "?"
 /// the difference between 5 and "5".
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  TreeBuilder(const Source& source, std::string_view path, int max_depth, std::vector<Finding>& findings)
-      : source_{source}, path_{path}, max_depth_{max_depth}, findings_{findings} {}
+  TreeBuilder(const Source& source, std::string_view path, int depth_max, std::vector<Finding>& findings)
+      : source_{source}, path_{path}, depth_max_{depth_max}, findings_{findings} {}
 
   [[nodiscard]] Node take_root() { return std::move(root_); }
   [[nodiscard]] const Place& start() const { return start_; }
@@ -116,8 +116,8 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void push(Node node, const YAML::Mark& mark, YAML::EmitterStyle::value style) {
-    if (static_cast<int>(stack_.size()) >= max_depth_)
-      throw YAML::ParserException(mark, "nested more than " + std::to_string(kMaxDepth) + " levels deep");
+    if (static_cast<int>(stack_.size()) >= depth_max_)
+      throw YAML::ParserException(mark, "nested more than " + std::to_string(kDepthMax) + " levels deep");
     stack_.emplace_back();
     stack_.back().node = std::move(node);
     stack_.back().start = place_of(source_, mark);
@@ -152,13 +152,13 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void take_key(Open& open, const Node& node) {
     open.drop = true;
-    if (node.kind == Node::Kind::scalar && !node.text.empty() && node.text.size() <= kMaxKeyLength) {
+    if (node.kind == Node::Kind::scalar && !node.text.empty() && node.text.size() <= kKeyLengthMax) {
       const auto [first, inserted] = open.first_places.try_emplace(node.text, node.place);
       open.drop = !inserted;
       if (!inserted) report_duplicate(node, first->second);
     } else if (node.kind == Node::Kind::scalar && !node.text.empty()) {
       report(node.place,
-             "a key has at most " + std::to_string(kMaxKeyLength) + " characters, found " + described(node));
+             "a key has at most " + std::to_string(kKeyLengthMax) + " characters, found " + described(node));
     } else if (node.kind != Node::Kind::refused) {
       report(node.place, "a key must be a name, found " + described(node));
     }
@@ -189,7 +189,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   const Source& source_;
   std::string path_;
-  int max_depth_;
+  int depth_max_;
   std::vector<Finding>& findings_;
   std::vector<Open> stack_;
   Place start_;
@@ -221,10 +221,10 @@ bool is_plain_text(std::string_view text, const Source& source, std::vector<Find
 
 }  // namespace
 
-std::optional<Node> read_yaml(std::string_view text, const Source& source, std::string_view path, int max_depth,
+std::optional<Node> read_yaml(std::string_view text, const Source& source, std::string_view path, int depth_max,
                               std::vector<Finding>& findings) {
-  if (text.size() > kMaxBytes) {
-    findings.push_back({{&source, 0, 0}, "larger than " + std::to_string(kMaxBytes >> 20U) + " MiB"});
+  if (text.size() > kBytesMax) {
+    findings.push_back({{&source, 0, 0}, "larger than " + std::to_string(kBytesMax >> 20U) + " MiB"});
     return std::nullopt;
   }
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -234,7 +234,7 @@ std::optional<Node> read_yaml(std::string_view text, const Source& source, std::
   // The parser does not report an unclosed quote if the text ends with a new line. The added comment
   // makes it report one.
   std::istringstream stream{std::string{text} + "\n#"};
-  TreeBuilder builder{source, path, max_depth, findings};
+  TreeBuilder builder{source, path, depth_max, findings};
   try {
     YAML::Parser parser{stream};
     Node root;
@@ -242,7 +242,7 @@ std::optional<Node> read_yaml(std::string_view text, const Source& source, std::
     if (parser.HandleNextDocument(builder)) root = builder.take_root();
     // Called once only: after some stray tokens the parser finds empty documents forever.
     std::vector<Finding> unused;
-    TreeBuilder second{source, path, max_depth, unused};
+    TreeBuilder second{source, path, depth_max, unused};
     if (parser.HandleNextDocument(second)) {
       findings.push_back({second.start(), "a second YAML document, or text outside the first, begins here"});
       return std::nullopt;

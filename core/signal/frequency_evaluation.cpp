@@ -14,9 +14,9 @@
 namespace hybridtest {
 namespace {
 
-constexpr std::size_t kLeastSamples = 16;
+constexpr std::size_t kSamplesMin = 16;
 constexpr double kTaperShare = 0.1;  // of the length, at either end
-constexpr double kLeastCoherence = 0.5;
+constexpr double kCoherenceMin = 0.5;
 
 double taper(std::size_t i, std::size_t size) {
   const double edge = kTaperShare * static_cast<double>(size);
@@ -48,7 +48,7 @@ bool rests(std::span<const double> signal) {
 std::optional<FrequencyEvaluation> evaluate_tracking_frequency(std::span<const double> target,
                                                                std::span<const double> measured, double period_s) {
   HYBRIDTEST_ASSERT(target.size() == measured.size());
-  if (target.size() < kLeastSamples || !(period_s > 0.0) || rests(target) || rests(measured)) return {};
+  if (target.size() < kSamplesMin || !(period_s > 0.0) || rests(target) || rests(measured)) return {};
   const auto input = spectrum(target);
   const auto output = spectrum(measured);
   std::complex<double> cross{};
@@ -62,7 +62,7 @@ std::optional<FrequencyEvaluation> evaluate_tracking_frequency(std::span<const d
     frequency_moment += static_cast<double>(i) * std::norm(input[i]);
   }
   const double coherence = std::abs(cross) / std::sqrt(input_power * output_power);
-  if (!(coherence >= kLeastCoherence)) return {};
+  if (!(coherence >= kCoherenceMin)) return {};
 
   const double length = 2.0 * static_cast<double>(input.size() - 1);
   FrequencyEvaluation result;

@@ -9,7 +9,7 @@
 namespace hybridtest {
 namespace {
 
-constexpr std::size_t kLongestCompared = 200;
+constexpr std::size_t kComparedLengthMax = 200;
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1);
@@ -32,7 +32,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known) {
-  if (name.empty() || name.size() > kLongestCompared) return std::nullopt;
+  if (name.empty() || name.size() > kComparedLengthMax) return std::nullopt;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   std::optional<std::string> nearest;
   for (const std::string& candidate : known) {

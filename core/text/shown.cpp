@@ -6,10 +6,10 @@
 namespace hybridtest {
 
 std::string shown(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
+  constexpr std::size_t kShownLengthMax = 60;
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
-    if (i >= kLongest) return out + "...";
+    if (i >= kShownLengthMax) return out + "...";
     const std::size_t length = utf8_length(text.substr(i));
     const auto byte = static_cast<unsigned char>(text[i]);
     if (length <= 1 && (length == 0 || byte < 0x20U || byte == 0x7FU)) {

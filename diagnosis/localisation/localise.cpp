@@ -71,7 +71,6 @@ Localisation localise(const GapSignals& signals, InterfaceKind kind) {
   }
   found.main_windows = windows_holding(found.windows, kBetterPart);
   found.main_bands = bands_holding(found.bands, kBetterPart);
-  found.main_regions = regions_holding(found.motion, kBetterPart);
   return found;
 }
 

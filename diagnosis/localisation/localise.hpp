@@ -39,7 +39,6 @@ struct Localisation {
   // What holds the better part, half of the energy, in few words.
   std::vector<TimeWindow> main_windows;
   std::vector<BandShare> main_bands;
-  std::vector<GapRegion> main_regions;
 };
 
 /// @param signals   at least 64 samples.

@@ -23,7 +23,6 @@ class SeriesView {
   [[nodiscard]] GapSignals after() const noexcept;  // has_augmented()
   /// Of the output, as drawn: `force [kN]`, and what a value is multiplied by.
   [[nodiscard]] const std::string& output_label() const noexcept { return output_label_; }
-  [[nodiscard]] double output_scale() const noexcept { return output_scale_; }
 
   /// A range of samples, both ends of a drawing.
   struct Range {

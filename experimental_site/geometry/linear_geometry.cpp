@@ -15,9 +15,10 @@ InterfaceMatrix checked_matrix(const Eigen::MatrixXd& matrix) {
     throw ConfigError{"a geometry of " + size + "; expected at least as many actuators, at most " +
                       std::to_string(kMaxInterfaceDofs)};
   }
-  if (!matrix.allFinite()) throw ConfigError{"a geometry with a number that is not finite"};
+  if (!matrix.allFinite()) throw ConfigError{"the matrix of the geometry holds a number that is not finite"};
   if (matrix.colPivHouseholderQr().rank() < matrix.cols()) {
-    throw ConfigError{"a geometry of " + size + " that leaves one of them free: its columns depend on each other"};
+    throw ConfigError{"a geometry of " + size +
+                      " does not determine every degree of freedom: its columns are linearly dependent"};
   }
   return matrix;
 }

@@ -6,7 +6,7 @@
 
 namespace hybridtest {
 
-/// Small displacements, levers, actuators side by side: stroke = matrix * pose.
+/// Linear geometry, for small displacements, levers and parallel actuators: stroke = matrix * pose.
 class LinearGeometry final : public SetupGeometry {
  public:
   /// @param matrix   actuators by degrees of freedom; [-], and [m] for rotations.

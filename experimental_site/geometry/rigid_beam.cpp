@@ -8,24 +8,23 @@
 namespace hybridtest {
 namespace {
 
-/// [m] An arm of moment shorter than this does not hold a rotation.
-constexpr double kShortestArm_m = 1e-6;
+/// [m] Below this lever arm the actuators do not hold the rotation.
+constexpr double kArm_m_min = 1e-6;
 
 }  // namespace
 
 RigidBeam::RigidBeam(const std::array<Actuator, 2>& actuators) : actuators_{actuators} {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     length_at_rest_m_[i] = (actuators_[i].attachment_m - actuators_[i].anchor_m).norm();
-    if (!(length_at_rest_m_[i] > kShortestArm_m) || !std::isfinite(length_at_rest_m_[i])) {
+    if (!(length_at_rest_m_[i] > kArm_m_min) || !std::isfinite(length_at_rest_m_[i])) {
       throw ConfigError{"actuator " + std::to_string(i + 1) +
-                        " of the rigid beam has no length: its anchor is at its "
-                        "attachment"};
+                        " of the rigid beam has no length: its anchor and its attachment are the same point"};
     }
   }
   InterfaceMatrix jacobian{2, 2};
   derivative(InterfaceVector::Zero(2), jacobian);
   const double determinant_m = jacobian(0, 0) * jacobian(1, 1) - jacobian(0, 1) * jacobian(1, 0);
-  if (!(std::abs(determinant_m) > kShortestArm_m)) {
+  if (!(std::abs(determinant_m) > kArm_m_min)) {
     throw ConfigError{
         "the two actuators of the rigid beam act along one line or across the displacement: together they do not hold "
         "displacement and rotation"};

@@ -6,7 +6,7 @@ namespace hybridtest {
 namespace {
 
 constexpr int kIterations = 20;
-/// [m] and [rad]: a thousandth of what the best transducers resolve.
+/// [m] and [rad]: a thousandth of the resolution of the best transducers.
 constexpr double kTolerance = 1e-12;
 
 }  // namespace
@@ -23,7 +23,7 @@ bool find_pose(const SetupGeometry& geometry, const InterfaceVector& stroke_m, I
     const Eigen::ColPivHouseholderQR<InterfaceMatrix> factors{jacobian};
     if (factors.rank() < geometry.dofs()) return false;
     const InterfaceVector step = factors.solve(difference_m);
-    // What is below the tolerance is left out, so that strokes at rest are a pose at rest, to the last bit.
+    // Differences below the tolerance are ignored, so that strokes at rest give exactly the pose at rest.
     if (step.cwiseAbs().maxCoeff() <= kTolerance) {
       pose = found;
       return true;
@@ -37,7 +37,7 @@ void transfer_forces(const SetupGeometry& geometry, const InterfaceVector& pose,
                      InterfaceVector& dof_force) noexcept {
   InterfaceMatrix jacobian{geometry.actuators(), geometry.dofs()};
   geometry.derivative(pose, jacobian);
-  // lazyProduct: coefficient by coefficient, with no buffer to allocate.
+  // lazyProduct() allocates no buffer.
   dof_force.noalias() = jacobian.transpose().lazyProduct(force_n);
 }
 

@@ -4,10 +4,10 @@
 
 namespace hybridtest {
 
-/// How the actuators of a site are placed: from interface degrees of freedom to strokes.
+/// Placement of the actuators of a site: maps interface degrees of freedom to strokes.
 ///
-/// A pose is the displacements [m] and rotations [rad] of the degrees of freedom, zero at rest. A
-/// stroke [m] is by how much an actuator is longer than at rest. At least as many actuators as
+/// A pose holds the displacements [m] and rotations [rad] of the degrees of freedom, zero at rest. A
+/// stroke [m] is the length of an actuator minus its length at rest. At least as many actuators as
 /// degrees of freedom. Allocates nothing after construction.
 class SetupGeometry {
  public:
@@ -22,16 +22,17 @@ class SetupGeometry {
   virtual void derivative(const InterfaceVector& pose, InterfaceMatrix& jacobian) const noexcept = 0;
 };
 
-/// The pose that measured strokes mean: Gauss-Newton from a pose nearby, at most 20 iterations. With more
-/// actuators than degrees of freedom the one with the least sum of squared stroke differences.
-/// @param pose   in: nearby, such as at the sample before. Out: within 1e-12 m or rad; unchanged when not found.
-/// @return false when it was not found: strokes that no pose has, numbers that are none, or a pose in which
-///         the actuators do not hold the degrees of freedom.
+/// The pose that belongs to measured strokes: Gauss-Newton iteration from a nearby pose, at most 20 steps.
+/// With more actuators than degrees of freedom, the pose with the least sum of squared stroke differences.
+/// @param pose   in: a nearby pose, such as that of the previous sample. Out: exact to 1e-12 m or rad;
+///               unchanged when not found.
+/// @return false when not found: no pose has these strokes, a number is not finite, or the actuators do not
+///         hold the degrees of freedom in that pose.
 [[nodiscard]] bool find_pose(const SetupGeometry& geometry, const InterfaceVector& stroke_m,
                              InterfaceVector& pose) noexcept;
 
-/// Forces [N] and moments [N m] at the degrees of freedom that do the virtual work of the actuators' forces:
-/// derivative at the pose, transposed, times the forces.
+/// Forces [N] and moments [N m] at the degrees of freedom, by virtual work: the transposed derivative at the
+/// pose times the actuator forces.
 /// @param dof_force   sized dofs() by the caller.
 void transfer_forces(const SetupGeometry& geometry, const InterfaceVector& pose, const InterfaceVector& force_n,
                      InterfaceVector& dof_force) noexcept;

@@ -9,11 +9,11 @@
 
 namespace hybridtest {
 
-/// A rig whose commands and feedback are in interface degrees of freedom, around one whose are in
-/// actuators. Life cycle and threads are those of the rig inside.
+/// Makes a rig with actuator coordinates usable in interface degrees of freedom. Life cycle and threads
+/// are those of the inner rig.
 ///
-/// A fault besides those of the rig inside: a command beyond the stroke limit (the actuators are sent as
-/// far as the limit), and measured strokes that no pose has (the feedback is then the last good one).
+/// Faults in addition to those of the inner rig: a command beyond the stroke limit (the actuators go to the
+/// limit), and measured strokes that no pose has (the feedback is then the last good one).
 class TransformedRig final : public Rig {
  public:
   /// @param rig              in actuator coordinates; not null.

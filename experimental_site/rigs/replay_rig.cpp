@@ -16,7 +16,8 @@ RecordedMeasurement checked_record(RecordedMeasurement record) {
   if (rows == 0 || record.displacement_m.size() != rows || record.force_n.size() != rows) {
     throw ConfigError{"a record of " + std::to_string(rows) + " times, " +
                       std::to_string(record.displacement_m.size()) + " displacements and " +
-                      std::to_string(record.force_n.size()) + " forces; expected as many of each, at least one"};
+                      std::to_string(record.force_n.size()) +
+                      " forces; expected the same number of each, at least one"};
   }
   const auto width = record.displacement_m.front().size();
   for (std::size_t row = 0; row < rows; ++row) {
@@ -24,13 +25,13 @@ RecordedMeasurement checked_record(RecordedMeasurement record) {
     const InterfaceVector& displacement_m = record.displacement_m[row];
     const InterfaceVector& force_n = record.force_n[row];
     if (width < 1 || displacement_m.size() != width || force_n.size() != width) {
-      throw ConfigError{where + "another number of actuators than in the first"};
+      throw ConfigError{where + "the number of actuators differs from that of row 1"};
     }
     if (!std::isfinite(record.time_s[row]) || !displacement_m.allFinite() || !force_n.allFinite()) {
       throw ConfigError{where + "a number that is not finite"};
     }
     if (row > 0 && !(record.time_s[row] > record.time_s[row - 1])) {
-      throw ConfigError{where + "its time is not later than that of the row before"};
+      throw ConfigError{where + "its time is not later than that of the previous row"};
     }
   }
   return record;
@@ -50,12 +51,12 @@ void ReplayRig::connect() {
 }
 
 void ReplayRig::arm() {
-  // One step, so that a stop_motion() from another thread is not overrun.
+  // One atomic step, so that it does not undo a stop_motion() from another thread.
   Phase expected = Phase::connected;
   if (phase_.compare_exchange_strong(expected, Phase::armed) || expected == Phase::armed) return;
   throw std::runtime_error{
-      "the replay rig cannot be armed: it is not connected, or was stopped since; "
-      "connect it anew"};
+      "the replay rig cannot be armed: it is not connected, or it was stopped after that; "
+      "connect it again"};
 }
 
 RigStatus ReplayRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {
@@ -73,7 +74,7 @@ RigStatus ReplayRig::exchange(const ActuatorCommand& command, RigFeedback& feedb
 
 bool ReplayRig::move_to(double time_s) noexcept {
   const std::vector<double>& times = record_.time_s;
-  // A control period moves on by a row or two, so the search is short; time never runs backwards here.
+  // A control period passes one or two rows, so the search is short. Time never decreases here.
   while (row_ + 1 < times.size() && times[row_ + 1] <= time_s) ++row_;
   if (row_ + 1 == times.size()) {
     present_.displacement_m = record_.displacement_m.back();

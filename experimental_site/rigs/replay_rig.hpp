@@ -9,27 +9,27 @@
 
 namespace hybridtest {
 
-/// What was measured once, over time.
+/// A recorded measurement.
 struct RecordedMeasurement {
-  std::vector<double> time_s;                   // [s] strictly rising, at least one
+  std::vector<double> time_s;                   // [s] strictly increasing, at least one
   std::vector<InterfaceVector> displacement_m;  // [m] one for each time
   std::vector<InterfaceVector> force_n;         // [N] one for each time
 };
 
-/// Feeds a recorded measurement back, whatever is commanded: for post-mortems, where interlocks,
-/// compensation or coordinator are tried again on what a specimen once answered.
+/// Returns a recorded measurement as the feedback, independent of the command. For the analysis after
+/// a test: interlocks, compensation or coordinator run again on the recorded answer of a specimen.
 ///
-/// The record's first time is the time of arming; values lie straight between those of the record.
-/// Before arm() it stands at the record's begin, once stopped where it is.
+/// The first time of the record is the time of arming. Values between two rows are interpolated
+/// linearly. Before arm() the feedback is the first row; after stop_motion() it does not change.
 class ReplayRig final : public Rig {
  public:
   enum class AtEnd : std::uint8_t {
-    fault,  // beyond the record's end there is nothing to tell
-    hold,   // the last measurement stays
+    fault,  // an exchange after the end of the record is a fault
+    hold,   // the last measurement is kept
   };
 
   /// @throws ConfigError for a record without rows, of unequal lengths or widths, with numbers that are not
-  ///         finite, or with times that do not rise.
+  ///         finite, or with times that do not increase.
   ReplayRig(RecordedMeasurement record, AtEnd at_end);
 
   void connect() override;
@@ -46,7 +46,7 @@ class ReplayRig final : public Rig {
 
   RecordedMeasurement record_;
   AtEnd at_end_;
-  std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() touches
+  std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() uses
   std::size_t row_ = 0;                            // the last one that is not later than now
   RigFeedback present_;
 };

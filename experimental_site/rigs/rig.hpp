@@ -9,14 +9,14 @@
 
 namespace hybridtest {
 
-/// What the control loop asks of the actuators at one control sample.
+/// Command to the actuators at one control sample.
 struct ActuatorCommand {
   std::int64_t sample = 0;         // counts control periods since arming
   double time_s = 0.0;             // [s] since arming
   InterfaceVector displacement_m;  // [m] one per actuator
 };
 
-/// What the rig measured at the same sample.
+/// Measured values at the same control sample.
 struct RigFeedback {
   InterfaceVector displacement_m;  // [m] as the transducers read
   InterfaceVector force_n;         // [N] as the load cells read
@@ -24,19 +24,19 @@ struct RigFeedback {
 
 enum class RigStatus : std::uint8_t { healthy, fault };
 
-/// Where a rig finds the tables that it records by itself.
+/// Gives a rig the tables that it records itself.
 using RigTables = std::function<RowSink&(std::string_view table)>;
 
 /// A transfer system with its specimen and sensors, real or simulated.
 ///
 /// Life cycle: constructed -> connect() -> arm() -> exchange() once per control period ->
-/// stop_motion(). Nothing moves before arm() and after stop_motion().
+/// stop_motion(). The actuators do not move before arm() and after stop_motion().
 class Rig {
  public:
   virtual ~Rig() = default;
 
-  /// Before connect(): where to append, at every exchange(), what it knows besides its feedback. The
-  /// layouts of such tables are read with the scenario (scenario/catalogue/rigs.hpp); most rigs have none.
+  /// Before connect(): the tables to which the rig appends a row in every exchange(), with values besides
+  /// its feedback. Their layouts come from the scenario (scenario/catalogue/rigs.hpp); most rigs have none.
   /// @param tables   the sinks outlive the rig.
   virtual void record_to(const RigTables& /*tables*/) {}
   /// May throw; nothing moves.

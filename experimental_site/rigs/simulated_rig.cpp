@@ -70,12 +70,12 @@ void SimulatedRig::connect() {
 }
 
 void SimulatedRig::arm() {
-  // One step, so that a stop_motion() from another thread is not overrun.
+  // One atomic step, so that it does not undo a stop_motion() from another thread.
   Phase expected = Phase::connected;
   if (phase_.compare_exchange_strong(expected, Phase::armed) || expected == Phase::armed) return;
   throw std::runtime_error{
-      "the simulated rig cannot be armed: it is not connected, or was stopped since; "
-      "connect it anew"};
+      "the simulated rig cannot be armed: it is not connected, or it was stopped after that; "
+      "connect it again"};
 }
 
 RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {

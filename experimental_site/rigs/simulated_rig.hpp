@@ -15,16 +15,16 @@
 
 namespace hybridtest {
 
-/// A laboratory in software: each actuator moves its degree of freedom of the specimen as its
-/// transfer system lets it, and is measured with noise. Effects of the library act where they belong;
-/// those of network and compensator on the command before the transfer system, as they would on its
-/// way to a real one. Velocity and acceleration of an actuator are its backward differences.
+/// A simulated laboratory. Each actuator moves one degree of freedom of the specimen through its
+/// transfer system; displacement and force are measured with noise. Effects of the library act at
+/// their interface; those of network and compensator act on the command before the transfer system.
+/// Velocity and acceleration of an actuator are backward differences of its displacement.
 ///
-/// Once stopped it holds where it stands and still measures. connect() puts everything back to
-/// new, noise included, so that a run can be repeated; arm() needs a connect() since the last
-/// stop_motion(). A command of the wrong size or with a number that is not finite moves nothing
-/// and is a fault; so is a motion or a force that grows beyond all numbers, or an exchange()
-/// before connect(). With a fault the feedback is the last good one.
+/// After stop_motion() the rig holds its position and still measures. connect() resets everything,
+/// noise included, so that a run can be repeated; arm() needs a connect() after the last
+/// stop_motion(). These are faults: a command of the wrong size or with a number that is not finite
+/// (the actuators do not move), a motion or force that overflows, and an exchange() before
+/// connect(). With a fault the feedback is the last good one.
 class SimulatedRig final : public Rig {
  public:
   using SensorNoise = hybridtest::SensorNoise;
@@ -68,7 +68,7 @@ class SimulatedRig final : public Rig {
     NoisySensor displacement_sensor;
     NoisySensor force_sensor;
     Motion motion{};
-    Motion given{};  // to the specimen, as its effects changed it
+    Motion given{};  // to the specimen, changed by its effects
     double read_m = 0.0;
   };
 
@@ -80,8 +80,8 @@ class SimulatedRig final : public Rig {
   std::unique_ptr<Specimen> specimen_;
   std::vector<Actuator> actuators_;
   double control_period_s_;
-  std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() touches
-  InterfaceVector displacement_m_;                 // and below: as the specimen is given them
+  std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() uses
+  InterfaceVector displacement_m_;                 // this and the following: input of the specimen
   InterfaceVector velocity_m_per_s_;
   InterfaceVector force_n_;
 };

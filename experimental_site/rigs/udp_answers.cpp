@@ -3,7 +3,7 @@
 namespace hybridtest {
 namespace {
 
-/// How far `later` is behind `earlier` in a count that wraps; negative when it comes before.
+/// Distance from `earlier` to `later` in a sequence number that wraps around; negative when `later` comes first.
 std::int32_t distance(std::uint32_t earlier, std::uint32_t later) noexcept {
   return static_cast<std::int32_t>(later - earlier);
 }

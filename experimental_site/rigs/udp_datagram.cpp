@@ -1,11 +1,11 @@
 #include "experimental_site/rigs/udp_datagram.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <concepts>
 
 #include "core/assert.hpp"
-#include "experimental_site/rigs/checksum.hpp"
 
 namespace hybridtest {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kCommandMagic = "HTDC";
 constexpr std::string_view kMeasurementMagic = "HTDM";
 
-// Offsets that both datagrams share; the checksum fills the last four bytes of each.
+// Offsets of both datagrams; the checksum is in the last four bytes of each.
 constexpr std::size_t kVersionAt = 4;
 constexpr std::size_t kSizeAt = 6;
 constexpr std::size_t kSequenceAt = 8;
@@ -73,7 +73,7 @@ void seal(std::span<std::byte> bytes) noexcept {
   put(bytes, end, crc32(bytes.first(end)));
 }
 
-/// What both datagrams have in common.
+/// Checks that both datagrams have in common.
 DatagramDefect defect_of(std::span<const std::byte> bytes, std::string_view magic, std::size_t size,
                          std::uint8_t highest_state) noexcept {
   if (bytes.size() < kSequenceAt) return DatagramDefect::size;
@@ -89,7 +89,29 @@ DatagramDefect defect_of(std::span<const std::byte> bytes, std::string_view magi
   return get<std::uint8_t>(bytes, kStateAt) > highest_state ? DatagramDefect::state : DatagramDefect::none;
 }
 
+/// Remainder of each byte for crc32().
+constexpr std::array<std::uint32_t, 256> kRemainders = [] {
+  constexpr std::uint32_t kReflectedPolynomial = 0xEDB88320U;
+  std::array<std::uint32_t, 256> remainders{};
+  for (std::uint32_t byte = 0; byte < remainders.size(); ++byte) {
+    std::uint32_t remainder = byte;
+    for (int bit = 0; bit < 8; ++bit) {
+      remainder = (remainder >> 1U) ^ ((remainder & 1U) != 0 ? kReflectedPolynomial : 0U);
+    }
+    remainders[byte] = remainder;
+  }
+  return remainders;
+}();
+
 }  // namespace
+
+std::uint32_t crc32(std::span<const std::byte> bytes) noexcept {
+  std::uint32_t remainder = 0xFFFFFFFFU;
+  for (const std::byte byte : bytes) {
+    remainder = (remainder >> 8U) ^ kRemainders[(remainder ^ std::to_integer<std::uint32_t>(byte)) & 0xFFU];
+  }
+  return ~remainder;
+}
 
 std::string_view describe(DatagramDefect defect) noexcept {
   switch (defect) {

@@ -16,7 +16,7 @@
 namespace hybridtest {
 namespace {
 
-/// Errors such as that nobody listens are told once for each datagram sent, and are no reason to stop waiting.
+/// Linux reports an unreachable port once for each datagram sent. This does not end the wait.
 constexpr int kErrorsInARow = 64;
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
@@ -36,8 +36,8 @@ void check(int result, const char* what) {
   if (result < 0) throw std::runtime_error{std::string{what} + ": " + std::strerror(errno)};
 }
 
-/// Whether something can be read before the patience is over. Linux writes back what is left of
-/// it, so that no clock has to be read.
+/// Whether a datagram can be read before the time is over. Linux writes back the time that is left,
+/// so that no clock has to be read.
 bool is_readable(int socket, Duration& patience) noexcept {
   constexpr Duration::rep kPerSecond = 1'000'000'000;
   timeval left{};
@@ -65,14 +65,14 @@ void UdpPort::open() {
   try {
     const Addresses peer = look_up(address_.host.c_str(), address_.port, AF_UNSPEC, 0);
     socket_ = ::socket(peer->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    check(socket_, "no socket");
-    // select() has no room for higher numbers.
+    check(socket_, "no socket could be opened");
+    // select() cannot handle a higher number.
     if (socket_ >= FD_SETSIZE) throw std::runtime_error{"too many open files"};
     if (address_.local_port != 0) {
       const Addresses local = look_up(nullptr, address_.local_port, peer->ai_family, AI_PASSIVE);
-      check(::bind(socket_, local->ai_addr, local->ai_addrlen), "its local port cannot be had");
+      check(::bind(socket_, local->ai_addr, local->ai_addrlen), "its local port cannot be used");
     }
-    check(::connect(socket_, peer->ai_addr, peer->ai_addrlen), "no way there");
+    check(::connect(socket_, peer->ai_addr, peer->ai_addrlen), "the address cannot be reached");
   } catch (const std::runtime_error& error) {
     close();
     throw std::runtime_error{"udp " + where + ": " + error.what()};

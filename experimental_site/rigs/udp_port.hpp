@@ -8,13 +8,13 @@
 
 namespace hybridtest {
 
-/// A UDP socket that talks to one address and hears nobody else.
+/// A UDP socket that sends to one address and receives from no other.
 class UdpPort final : public DatagramPort {
  public:
   struct Address {
     std::string host;              // name or number, IPv4 or IPv6
     std::uint16_t port = 0;        // of the peer
-    std::uint16_t local_port = 0;  // 0: any that is free
+    std::uint16_t local_port = 0;  // 0: any free port
   };
 
   explicit UdpPort(Address address) : address_{std::move(address)} {}
@@ -24,7 +24,7 @@ class UdpPort final : public DatagramPort {
 
   void open() override;
   bool send(std::span<const std::byte> datagram) noexcept override;
-  /// That nobody listens there, as the network may report, counts as nothing having come.
+  /// An unreachable port, as the network may report it, counts as no datagram.
   [[nodiscard]] std::optional<std::size_t> receive(std::span<std::byte> buffer, Duration& patience) noexcept override;
 
  private:

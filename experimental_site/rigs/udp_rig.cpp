@@ -12,13 +12,13 @@ namespace {
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "exchange() must not lock");
 
-/// connect() and arm() repeat themselves so often until they are answered.
+/// Interval at which connect() and arm() repeat their request until it is answered.
 constexpr Duration kRepeat = std::chrono::milliseconds{20};
-/// So many that one gets through where every second one is lost, in 99 of 100 cases.
+/// Where every second datagram is lost, at least one of these arrives in 99 of 100 cases.
 constexpr int kStopDatagrams = 7;
-/// More than the system keeps for a socket by default, so that an exchange after a pause sees the newest.
+/// More than the default receive queue of a socket, so that an exchange after a pause gets the newest.
 constexpr int kAnswersPerExchange = 512;
-/// With room to see that one is too long.
+/// One byte more than a datagram, so that a longer one is detected.
 constexpr std::size_t kReceiveBytes = 2 * kMeasurementBytes;
 
 std::int64_t whole_samples(Duration duration, Duration control_period) {
@@ -78,26 +78,26 @@ void UdpRig::connect() {
     throw std::runtime_error{"the controller " + settings_.name + " does not become inactive; its state is " +
                              std::to_string(static_cast<int>(answers_.newest().state)) + ", its status bits " +
                              std::to_string(answers_.newest().status) +
-                             ": clear its fault, and see that nobody else commands it"};
+                             ": clear its fault, and check that no other computer commands it"};
   }
   const bool follows_datagrams = (answers_.newest().status & kFollowsDatagrams) != 0;
   if (follows_datagrams != settings_.follows_datagrams) {
     throw std::runtime_error{"the controller " + settings_.name +
-                             (follows_datagrams ? " moves on with the datagrams; expected one with a clock of its own"
-                                                : " has a clock of its own; expected one that moves on with the "
+                             (follows_datagrams ? " follows the datagrams; expected a controller with its own clock"
+                                                : " has its own clock; expected a controller that follows the "
                                                   "datagrams, as a simulator does")};
   }
   phase_ = Phase::connected;
 }
 
 void UdpRig::arm() {
-  // One step, so that a stop_motion() from another thread is not overrun.
+  // One atomic step, so that it does not undo a stop_motion() from another thread.
   Phase expected = Phase::connected;
   if (!phase_.compare_exchange_strong(expected, Phase::armed)) {
     if (expected == Phase::armed) return;
     throw std::runtime_error{
-        "the udp rig cannot be armed: it is not connected, or was stopped since; "
-        "connect it anew"};
+        "the udp rig cannot be armed: it is not connected, or it was stopped after that; "
+        "connect it again"};
   }
   const bool is_active = repeat_until(ControllerRequest::active, [this] {
     return answers_.newest().state == ControllerState::active || phase_ != Phase::armed;
@@ -195,13 +195,13 @@ RigStatus UdpRig::status(Phase phase) const noexcept {
 std::string UdpRig::silence() const {
   std::string text = "no answer from the controller " + settings_.name;
   if (answers_.last_defect() != DatagramDefect::none) {
-    text += " that can be understood: " + std::string{describe(answers_.last_defect())};
+    text += " that is valid; the last datagram had " + std::string{describe(answers_.last_defect())};
     if (answers_.last_defect() == DatagramDefect::actuators) {
       text += ", expected " + std::to_string(settings_.actuators);
     }
     return text;
   }
-  return text + ": is it running, and does the network let datagrams pass both ways?";
+  return text + ": check that it is running and that the network passes datagrams in both directions";
 }
 
 void UdpRig::record(std::int64_t sample, std::uint32_t sent) noexcept {

@@ -18,10 +18,10 @@ namespace hybridtest {
 /// A laboratory's real-time controller (Simulink Real-Time, Speedgoat, dSPACE, LabVIEW RT) behind a
 /// UDP gateway: one datagram of commands out, the newest measurement back; docs/udp_rig.md.
 ///
-/// A fault: a controller that has not answered a new command for `watchdog`, reports a fault, or
-/// has left the state `active` by itself. The feedback is the newest measurement that has come.
-/// stop_motion() says so several times, since one datagram may be lost; so does every exchange()
-/// after it. arm() needs a connect() since the last stop_motion().
+/// These are faults: the controller has not answered a new command for `watchdog`, reports a fault, or
+/// has left the state `active` by itself. The feedback is the newest measurement received.
+/// stop_motion() sends the request several times, because a datagram may be lost; every exchange()
+/// after it repeats the request. arm() needs a connect() after the last stop_motion().
 class UdpRig final : public Rig {
  public:
   struct Settings {
@@ -29,9 +29,9 @@ class UdpRig final : public Rig {
     int actuators = 1;               // 1 to kMaxInterfaceDofs
     Duration control_period{};       // from one exchange() to the next; positive, below 4.29 s
     Duration watchdog{};             // at least two control periods
-    Duration reply_wait{};           // exchange() waits so long at most for the answer to its own command
+    Duration reply_wait{};           // longest wait of exchange() for the answer to its own command
     Duration connect_timeout{};      // of connect() and of arm()
-    bool follows_datagrams = false;  // the controller's time goes on with the exchanges, not by a clock of its own
+    bool follows_datagrams = false;  // the time of the controller follows the exchanges and not a clock
   };
 
   /// @throws ConfigError for values outside these ranges, and for a wait of a control period or more
@@ -42,10 +42,10 @@ class UdpRig final : public Rig {
   [[nodiscard]] static TableLayout link_layout();
   void record_to(const RigTables& tables) override;
 
-  /// @throws std::runtime_error when no controller for so many actuators answers in time, ready to be armed.
+  /// @throws std::runtime_error when no controller with this number of actuators is ready to be armed in time.
   void connect() override;
-  /// @throws std::runtime_error without a connect() before, when stopped since then, or when the controller
-  ///         does not become active in time.
+  /// @throws std::runtime_error without a connect(), when stopped after it, or when the controller does not
+  ///         become active in time.
   void arm() override;
   [[nodiscard]] RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override;
   void stop_motion() noexcept override;
@@ -70,12 +70,12 @@ class UdpRig final : public Rig {
   RowSink* link_record_ = nullptr;
   std::vector<double> row_;
 
-  // What stop_motion() shares with the others.
+  // Used by stop_motion() from any thread.
   std::atomic<Phase> phase_{Phase::disconnected};
   std::atomic<std::uint32_t> sequence_{0};
   std::atomic<std::uint32_t> loop_count_{0};
 
-  ActuatorCommand rest_;  // what is sent while nothing is commanded
+  ActuatorCommand rest_;  // sent while there is no command
   UdpAnswers answers_;
   std::uint32_t answered_ = 0;  // newest command known to have reached the controller
   std::int64_t silent_samples_ = 0;

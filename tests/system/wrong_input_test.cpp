@@ -86,7 +86,7 @@ TEST_F(WrongInput, KeepsExistingRunDirectory) {
   const std::string before = text_of(recorded("run").file("coordinator"));
   StartedProgram second = start_run(scenario, "run", {"--set", "time.duration_s=0.1"});
   ASSERT_THAT(second.wait(), Optional(kExitConfiguration));
-  EXPECT_THAT(second.standard_error(), HasSubstr("has recorded a run in this directory already"));
+  EXPECT_THAT(second.standard_error(), HasSubstr("has already recorded a run in this directory"));
   EXPECT_EQ(text_of(recorded("run").file("coordinator")), before);
 }
 

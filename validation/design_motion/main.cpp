@@ -9,7 +9,7 @@
 namespace {
 
 /// EN 1998-1:2004, 3.2.3.1.2(4)c.
-constexpr double kLowestAllowed = 0.9;
+constexpr double kSpectrumRatioMin = 0.9;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const auto motion = hybridtest::design_motion::design_motion(settings);
-    if (motion.fit.lowest < kLowestAllowed) {
+    if (motion.fit.lowest < kSpectrumRatioMin) {
       std::fprintf(stderr,
                    "design_motion: the spectrum falls to %.3f of the target between 0.05 and 4 s, below the 0.9 that "
                    "Eurocode 8 allows; try another seed or more iterations\n",

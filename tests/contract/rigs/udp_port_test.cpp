@@ -114,7 +114,7 @@ TEST_F(UdpPorts, ReportWhyOpeningFailed) {
   EXPECT_THAT([&] { nowhere.open(); }, ThrowsMessage<std::runtime_error>(HasSubstr("udp no.such.host.invalid:5000:")));
   here_.open();
   UdpPort same{{.host = "127.0.0.1", .port = there_number_, .local_port = here_number_}};
-  EXPECT_THAT([&] { same.open(); }, ThrowsMessage<std::runtime_error>(HasSubstr("its local port cannot be had")));
+  EXPECT_THAT([&] { same.open(); }, ThrowsMessage<std::runtime_error>(HasSubstr("its local port cannot be used")));
 }
 
 }  // namespace

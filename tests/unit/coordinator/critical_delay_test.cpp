@@ -270,7 +270,7 @@ TEST(LoopTransfer, IsTheFrequencyResponseOfTheLoop) {
     const Complex expected = (20.0 + root * 0.2 + root * root * 0.3) / (50.0 + root * 0.7 + root * root * 2.0);
     EXPECT_LT(std::abs(transfer.eigenvalues(omega)[0] - expected), 1e-13 * std::abs(expected));
   }
-  EXPECT_NEAR(transfer.largest_modulus_at_infinity(), 0.15, 1e-15);
+  EXPECT_NEAR(transfer.modulus_at_infinity_max(), 0.15, 1e-15);
 }
 
 }  // namespace

@@ -89,9 +89,9 @@ TEST(At2, AppliesScaleAndUnit) {
 
 TEST(At2, RejectsCountThatDisagreesWithHeader) {
   EXPECT_EQ(complaint(at2("NPTS= 4, DT= .01 SEC", "1 2\n3\n")),
-            "motion.txt:6: the file ends after 3 values, expected 4 values, as line 4 announces");
+            "motion.txt:6: the file ends after 3 values, expected 4 values, as given in line 4");
   EXPECT_EQ(complaint(at2("NPTS= 4, DT= .01 SEC", "1 2\n3 4\n5\n6")),
-            "motion.txt:7: more values follow, expected 4 values, as line 4 announces");
+            "motion.txt:7: more values follow, expected 4 values, as given in line 4");
   EXPECT_THAT(complaint(at2("NPTS= 4, DT= .01 SEC", "")), HasSubstr("after 0 values, expected 4"));
 }
 
@@ -170,7 +170,7 @@ TEST(Columns, ReadOneWithTheStepGiven) {
   const GroundMotion motion = parse("acceleration_m_per_s2\n1\n2\n3", {.scale = 2.0, .unit = {}, .dt_s = 0.005});
   EXPECT_EQ(motion.dt_s, 0.005);
   EXPECT_EQ(motion.acceleration_m_per_s2, (std::vector<double>{2.0, 4.0, 6.0}));
-  EXPECT_THAT(complaint("1\n2\n3", in_g()), AllOf(StartsWith("motion.txt:1: "), HasSubstr("step must be given")));
+  EXPECT_THAT(complaint("1\n2\n3", in_g()), AllOf(StartsWith("motion.txt:1: "), HasSubstr("give its step")));
 }
 
 TEST(Columns, RejectUnknownUnit) {
@@ -197,7 +197,7 @@ TEST(GroundMotionFile, RejectsEmptyFilesAndOptionsOutOfRange) {
               HasSubstr("scale"));
   EXPECT_THAT(complaint("1\n", {.scale = 1.0, .unit = AccelerationUnit::g, .dt_s = 0.0}), HasSubstr("not positive"));
   EXPECT_THAT(complaint(at2("NPTS= 1, DT= .01 SEC", "1"), {.scale = 1.0, .unit = {}, .dt_s = 0.02}),
-              HasSubstr("expected the 0.02 s"));
+              HasSubstr("the step given for the file is 0.02 s"));
   EXPECT_THAT(complaint("0 1e300\n1 2", {.scale = 1e300, .unit = AccelerationUnit::g, .dt_s = {}}),
               HasSubstr("above 1e6 m/s2"));
 }

@@ -30,14 +30,6 @@ TEST(SiteCoupling, StoreySharesAddUpToOneInEachMode) {
   EXPECT_NEAR(lower[0], 4.0 / (4.0 + 3.0 * (x - 1.0) * (x - 1.0)), 1e-12);
 }
 
-TEST(SiteCoupling, DelayActsAsNegativeDamping) {
-  const LinearStructure structure = test::oscillator(2.0, 0.0, 50.0);  // 5 rad/s
-  const VibrationModes modes = vibration_modes(structure);
-  const CoupledSite site = spring(InterfaceMap{1, {{0}}}, 30.0);
-  EXPECT_DOUBLE_EQ(equivalent_damping_n_s_per_m(site, 0.02)(0, 0), -0.6);
-  EXPECT_NEAR(equivalent_damping_ratios(modes, site, 0.02)[0], -0.6 / (2.0 * 2.0 * 5.0), 1e-16);
-}
-
 TEST(SiteCoupling, MotionWithoutStiffnessHasNoShare) {
   const LinearStructure structure = test::oscillator(2.0, 0.0, 0.0);
   const VibrationModes modes = vibration_modes(structure);

@@ -88,7 +88,7 @@ TEST(ReplayRig, RejectsInvalidRecord) {
   refused([](auto& record) { record.force_n.pop_back(); }, "2 forces");
   refused([](auto& record) { record.time_s[2] = 10.1; }, "row 3 of the record: its time is not later");
   refused([](auto& record) { record.force_n[1][0] = std::numeric_limits<double>::quiet_NaN(); }, "row 2 of the record");
-  refused([](auto& record) { record.displacement_m[1] = InterfaceVector{{1.0, 2.0}}; }, "another number of actuators");
+  refused([](auto& record) { record.displacement_m[1] = InterfaceVector{{1.0, 2.0}}; }, "number of actuators differs");
 }
 
 }  // namespace

@@ -350,5 +350,70 @@ TEST_F(SiteLinkTest, BatchesSignalsForLiveViews) {
   EXPECT_EQ(blocks[0].samples.back().force_n, kMaxSignalSamples - 1);
 }
 
+/// Reaches every target at once.
+class PromptLoop final : public Node {
+ public:
+  PromptLoop(Inbox<LoopRequest>& requests, Outbox<LoopReport>& reports) : requests_{requests}, reports_{reports} {}
+
+  Instant advance(Instant) noexcept override {
+    ++runs;
+    LoopRequest request;
+    while (requests_.take(request)) {
+      const auto* target = std::get_if<loop_request::Target>(&request);
+      if (target == nullptr) continue;
+      const InterfaceVector& reached_m = target->point.displacement_m;
+      reports_.send(StepMeasurement{.step = target->point.step,
+                                    .model_time_s = 0.0,
+                                    .target_displacement_m = reached_m,
+                                    .imposed_displacement_m = reached_m,
+                                    .measured_displacement_m = reached_m,
+                                    .force_n = reached_m,
+                                    .flags = MeasurementFlags::none});
+    }
+    return kNever;
+  }
+
+  int runs = 0;
+
+ private:
+  Inbox<LoopRequest>& requests_;
+  Outbox<LoopReport>& reports_;
+};
+
+TEST_F(SiteLinkTest, SiteNodeAnswersCommandInOneRun) {
+  start();
+  PromptLoop loop{requests_, reports_};
+  SiteNode node{link_, loop};
+  commands_.send(command(0));
+  static_cast<void>(node.advance(now_));
+  EXPECT_EQ(loop.runs, 1);
+  EXPECT_EQ(take_measurements().size(), 1U);
+}
+
+TEST_F(SiteLinkTest, LinkAloneDoesNotAnswerBeforeLoopRuns) {  // control of the test before
+  start();
+  PromptLoop loop{requests_, reports_};
+  commands_.send(command(0));
+  advance();
+  static_cast<void>(loop.advance(now_));
+  EXPECT_TRUE(take_measurements().empty());
+  advance();
+  EXPECT_EQ(take_measurements().size(), 1U);
+}
+
+TEST_F(SiteLinkTest, SendsChangedStateInSameRun) {
+  join();
+  control(ControlVerb::arm);
+  advance();
+  loop_says(loop_report::Armed{});
+  advance();
+  take_all(own_statuses_);
+  control(ControlVerb::start);
+  advance();
+  const auto statuses = take_all(own_statuses_);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().state, LifecycleState::running);
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "experimental_site/rigs/checksum.hpp"
 
 namespace hybridtest {
 namespace {

@@ -258,13 +258,14 @@ TEST(UdpRig, ConnectReportsControllerInFault) {
 TEST(UdpRig, ConnectReportsOtherPace) {
   Bench bench;
   bench.controller.status = kFollowsDatagrams;
-  EXPECT_THAT([&] { bench.rig->connect(); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("moves on with the datagrams; expected one with a clock")));
+  EXPECT_THAT(
+      [&] { bench.rig->connect(); },
+      ThrowsMessage<std::runtime_error>(HasSubstr("follows the datagrams; expected a controller with its own clock")));
   UdpRig::Settings follower = settings();
   follower.follows_datagrams = true;
   Bench other{follower};
   EXPECT_THAT([&] { other.rig->connect(); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("has a clock of its own; expected one that moves on")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("has its own clock; expected a controller that follows")));
 }
 
 TEST(UdpRig, ArmStopsControllerThatStaysInactive) {
@@ -277,8 +278,9 @@ TEST(UdpRig, ArmStopsControllerThatStaysInactive) {
 
 TEST(UdpRig, ReportsPortThatCannotBeOpened) {
   Bench bench;
-  bench.port->on_open = [] { throw std::runtime_error{"udp rig.example:5000: no way there"}; };
-  EXPECT_THAT([&] { bench.rig->connect(); }, ThrowsMessage<std::runtime_error>(HasSubstr("no way there")));
+  bench.port->on_open = [] { throw std::runtime_error{"udp rig.example:5000: the address cannot be reached"}; };
+  EXPECT_THAT([&] { bench.rig->connect(); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("the address cannot be reached")));
 }
 
 TEST(UdpRig, RejectsInvalidSettings) {

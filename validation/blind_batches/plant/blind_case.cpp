@@ -11,10 +11,10 @@ namespace hybridtest::blind {
 namespace {
 
 /// A foreign effect of which a single library effect explains more is no unknown one.
-constexpr double kMostExplainedOfUnknown = 0.5;
+constexpr double kExplainedOfUnknownMax = 0.5;
 constexpr int kAttempts = 20;
 /// Digital stages have no noise; this stands for their rounding.
-constexpr double kLeastFloor = 1e-6;
+constexpr double kFloorMin = 1e-6;
 
 /// Of a recording against the true and the user's model, driven by what was measured.
 struct Residuals {
@@ -31,7 +31,7 @@ Residuals residuals_of(Residual residual, const Site& site, const PlantEffects& 
     result.user_model = difference(output, stage_output(residual, site, {}, user_input));
     // The true model may amplify noise that does not hide its effect.
     const double of_noise = rms(difference(result.user_model, true_gap(residual, site, signals)));
-    result.floor = std::max(std::min(rms(result.true_model), of_noise), kLeastFloor * rms(output));
+    result.floor = std::max(std::min(rms(result.true_model), of_noise), kFloorMin * rms(output));
     return result;
   };
   switch (residual) {
@@ -64,7 +64,7 @@ PlantEffect draw_from(const std::vector<CatalogueEntry>& catalogue, const CaseSe
 PlantEffects draw_foreign(const CaseSetting& setting, RandomStream& random) {
   PlantEffect best;
   double least = 2.0;
-  for (int attempt = 0; attempt < kAttempts && least > kMostExplainedOfUnknown; ++attempt) {
+  for (int attempt = 0; attempt < kAttempts && least > kExplainedOfUnknownMax; ++attempt) {
     PlantEffect effect = draw_from(foreign_effects(), setting, random, random.log_uniform(0.03, 0.4));
     const Residual residual = residual_of(effect.interface, setting.columns);
     const History gap = true_gap(residual, setting.site, run_plant(setting.site, {effect}, setting.fit_m.front()));

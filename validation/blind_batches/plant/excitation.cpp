@@ -10,10 +10,10 @@ namespace hybridtest::blind {
 namespace {
 
 /// Above this no motion is asked for: straight lines between samples would show.
-constexpr double kHighestHz = 12.0;
+constexpr double kFrequency_hz_max = 12.0;
 
 double highest_hz(const ExcitationSettings& settings, double share) {
-  return std::min(kHighestHz, share * settings.velocity_m_per_s / (kTwoPi * settings.stroke_m));
+  return std::min(kFrequency_hz_max, share * settings.velocity_m_per_s / (kTwoPi * settings.stroke_m));
 }
 
 /// Oscillator under white noise below an envelope (Jennings, Housner and Tsai, 1968), by
@@ -46,7 +46,7 @@ History sweep(const ExcitationSettings& settings, std::size_t samples, RandomStr
   const double length_s = static_cast<double>(samples) / settings.rate_hz;
   const double low_hz = random.log_uniform(0.15, 0.4);
   const double steady_hz = std::max(low_hz, highest_hz(settings, 1.0));
-  const double high_hz = std::min(kHighestHz, steady_hz * random.uniform(2.0, 6.0));
+  const double high_hz = std::min(kFrequency_hz_max, steady_hz * random.uniform(2.0, 6.0));
   const double rate = std::log(high_hz / low_hz);
   History motion(samples);
   for (std::size_t i = 0; i < samples; ++i) {

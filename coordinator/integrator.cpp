@@ -1,4 +1,4 @@
-#include "coordinator/initial_motion.hpp"
+#include "coordinator/integrator.hpp"
 
 #include <cmath>
 #include <string>
