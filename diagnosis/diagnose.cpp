@@ -6,24 +6,16 @@
 #include <map>
 #include <utility>
 
-#include "diagnosis/identification/modelled_segments.hpp"
-#include "diagnosis/localisation/gap_signals.hpp"
-#include "diagnosis/scoring/score.hpp"
-#include "diagnosis/traces/trace.hpp"
+#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/localisation/sensor_checks.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
-#include "diagnosis/verdict/carrying_over.hpp"
-#include "diagnosis/verdict/cause_shares.hpp"
-#include "diagnosis/verdict/excitation.hpp"
-#include "diagnosis/verdict/judgement.hpp"
-#include "diagnosis/verdict/next_experiment.hpp"
-#include "diagnosis/verdict/ranked_cause.hpp"
-#include "diagnosis/verdict/repeatability.hpp"
-#include "diagnosis/verdict/selection.hpp"
-#include "diagnosis/verdict/sensor_facts.hpp"
+#include "diagnosis/verdict/causes.hpp"
+#include "diagnosis/verdict/experiments.hpp"
+#include "diagnosis/verdict/library_fits.hpp"
 #include "diagnosis/verdict/shrink.hpp"
-#include "diagnosis/verdict/unjudged.hpp"
 #include "diagnosis/verdict/where.hpp"
-#include "diagnosis/verdict/with_traces.hpp"
 
 namespace hybridtest {
 namespace {
@@ -50,7 +42,6 @@ bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
 /// The verdict's causes first, then what else was considered.
 std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
                               const Judgement& judgement) {
-  constexpr std::size_t kMostAlternatives = 8;
   std::vector<RankedCause> ranking;
   const bool has_causes = report::names_a_cause(judgement.verdict);
   std::vector<const EffectType*> listed;
@@ -65,7 +56,7 @@ std::vector<RankedCause> rank(const IdentificationProblem& problem, const Select
     }
     std::ranges::stable_sort(ranking, std::greater{}, &RankedCause::share);
   }
-  for (std::size_t i = 0; i < selection.library.size() && ranking.size() < kMostAlternatives; ++i) {
+  for (std::size_t i = 0; i < selection.library.size() && ranking.size() < tuning::kRankingMax; ++i) {
     const Candidate& candidate = selection.library[i];
     const auto known = std::ranges::find(listed, candidate.type);
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
@@ -112,22 +103,18 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
   return series;
 }
 
-/// Shorter recordings are too short to say where in them a gap lies.
-constexpr std::size_t kLeastToLocalise = 64;
-
 GapPlace place_of(const report::InterfaceSeries& series) {
-  constexpr std::size_t kWindows = 24;
-  constexpr std::size_t kMotionBins = 6;
-  constexpr double kMostOfIt = 0.5;
   GapPlace place{.interface = series.interface, .time_windows = {}, .bands = {}, .regions = {}};
-  if (series.measured.size() < kLeastToLocalise) return place;
+  if (series.measured.size() < tuning::kLocaliseSamplesMin) return place;
   std::vector<double> residual(series.measured.size());
   std::ranges::transform(series.measured, series.model, residual.begin(), std::minus{});
   const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
-  place.time_windows = windows_holding(gap_over_time(signals, std::min(kWindows, signals.size())), kMostOfIt);
+  place.time_windows =
+      windows_holding(gap_over_time(signals, std::min(tuning::kPlaceWindows, signals.size())), tuning::kMainShare);
   const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
-  place.bands = bands_holding(gap_over_frequency(signals, spectra), kMostOfIt);
-  place.regions = regions_holding(gap_over_motion(signals, kMotionBins, kMotionBins), kMostOfIt);
+  place.bands = bands_holding(gap_over_frequency(signals, spectra), tuning::kMainShare);
+  place.regions =
+      regions_holding(gap_over_motion(signals, tuning::kMotionBins, tuning::kMotionBins), tuning::kMainShare);
   return place;
 }
 

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/localisation/band_shares.hpp"
+#include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/localisation/localise.hpp"
-#include "diagnosis/localisation/time_windows.hpp"
 #include "diagnosis/recording.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
 #include "plant/site_model.hpp"

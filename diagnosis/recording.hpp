@@ -17,7 +17,7 @@ enum class Channel : std::uint8_t {
   measured_acceleration,  // [m/s2]
   measured_force,         // [N] positive when it resists a positive displacement
 };
-inline constexpr std::size_t kChannels = 6;
+inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::measured_force) + 1;
 
 /// As a column is headed: `measured_force_n`.
 [[nodiscard]] std::string_view column_name(Channel channel) noexcept;

@@ -1,27 +1,226 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
-/// Every number of the diagnosis that was chosen and not derived, with what it was chosen for.
+/// Every number of the diagnosis that was chosen and not derived, by subject, with what it was chosen for. Two kinds
+/// stand elsewhere: the search ranges of the effects (identification/search_table.hpp) and the layout of the page
+/// (page/). tests/architecture/tuning_test.cpp finds any other.
 namespace hybridtest::tuning {
+
+// Intake: what is still a recording.
+
+/// Rows of data below which a recording tells nothing.
+inline constexpr std::size_t kSamplesMin = 16;
+/// Size of a file that is still read: 2 GiB.
+inline constexpr std::uintmax_t kFileSizeMax_bytes = std::uintmax_t{1} << 31U;
+/// Columns of a file above which it is no recording.
+inline constexpr std::size_t kColumnsMax = 200;
+/// Degrees of freedom of one site that a suffix tells apart.
+inline constexpr std::size_t kDofsMax = 12;
+/// Findings of different kinds that are listed; a file with more is no recording.
+inline constexpr std::size_t kFindingsMax = 50;
+/// Share of the sample period by which one interval may differ from it.
+inline constexpr double kEvenSpacing = 0.01;
+/// An interval of more than this many periods is a gap, a shorter one uneven sampling.
+inline constexpr double kGapPeriods = 1.5;
+/// Time stamps whose last digit is coarser than this share of the period excuse nothing; else an interval may be off by
+/// this many of that digit (one, and rounding).
+inline constexpr double kLastDigitOfPeriodMax = 0.1;
+inline constexpr double kLastDigits = 1.01;
+/// Rounding of time stamps far from zero, as a share of them: about two units in the last place.
+inline constexpr double kTimeRounding = 4e-16;
+
+// Intake: units that contradict their header.
+
+/// A displacement or a speed above these is suspected to be in another unit than metres.
+inline constexpr double kDisplacementMax_m = 10.0;
+inline constexpr double kSpeedMax_m_per_s = 10.0;
+/// Time over which that speed is taken.
+inline constexpr double kSpeedWindow_s = 0.02;
+/// How far the ratio of two spans may be from a unit's: channels differ by gain, lag and noise.
+inline constexpr double kUnitRatioTolerance = 0.25;
+/// A channel that is less correlated with another one rests, or does not take part in the motion.
+inline constexpr double kUnitCorrelationMin = 0.5;
+/// Correlation of an acceleration with the one that the displacement went through. Noise of the latter takes from both
+/// by as much as the tolerance of the ratio.
+inline constexpr double kAccelerationCorrelationMin = 0.8;
+/// Correlation of a force with the one that the model predicts.
+inline constexpr double kForceCorrelationMin = 0.3;
+/// Factor within which a force has to be of another unit: of a thousand or a million, no specimen is so much softer
+/// than its model; of 4448 (kips) less.
+inline constexpr double kForceFactor = 3.0;
+inline constexpr double kKipsFactor = 1.5;
+/// A wrong stiffness may be as large as 9.8 or 4.4: kilograms and pounds of force have to be nearer, and what is left
+/// after conversion [rms over rms] smaller.
+inline constexpr double kForceOfMassFactor = 1.03;
+inline constexpr double kForceOfMassLeaves = 0.1;
+/// The slowest controller that is recorded. With samples further apart, time is suspected to be in milliseconds or
+/// less.
+inline constexpr double kControlPeriodMax_s = 0.1;
+/// By which factor, and to which gap [rms over rms], the model has to come nearer with another unit of time.
+inline constexpr double kTimeUnitNearer = 3.0;
+inline constexpr double kTimeUnitNear = 0.3;
+
+// Signals: smoothing, reversals, rest.
+
+/// Degree of the local polynomials that derivatives are taken from.
+inline constexpr std::ptrdiff_t kSmoothingDegree = 4;
+/// Half-widths that are tried, in samples, each about 1.4 times the one before.
+inline constexpr std::array<std::size_t, 9> kSmoothingHalfWidths{3, 4, 5, 7, 10, 14, 20, 28, 40};
+/// What a wider window may leave, over what white noise alone would leave [variance]: the smoothing error then stays
+/// below half the noise.
+inline constexpr double kSmoothingLeaves = 1.2;
+/// Rounding of recorded values, as a share of their mean square.
+inline constexpr double kRoundingVariance = 1e-24;
+/// Weights of the flat smoother are left out beyond so many deviations of its widest part: 3e-4 of the largest.
+inline constexpr double kSmootherReach = 4.0;
+/// Deviations [samples] by which force and motion are smoothed alike, each about 1.4 times the one before.
+inline constexpr std::array kSmoothingDeviations{0.0, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 23.0, 32.0};
+/// The deviation taken, over the best one. At the best one, smoothing takes off the motion as much as the noise that is
+/// left. As the force is smoothed too, that is not missed, and the next step is quieter.
+inline constexpr double kSmoothingNextStep = 1.4;
+/// A reversal is a motion back by more than this share of the whole span: above what noise does.
+inline constexpr double kReversalShare = 0.02;
+/// Rest is a stretch so long in which the motion stays within this share of its whole span.
+inline constexpr double kRestLength_s = 0.2;
+inline constexpr double kRestSpan = 0.001;
+/// Reach of the central differences of maps and screens: quiet enough for 10 um of noise, short enough for 20 Hz.
+inline constexpr double kVelocityReach_s = 0.005;
+
+// Where: tables and plots of one interface.
+
+/// Samples below which a recording is too short to say where in it a gap lies.
+inline constexpr std::size_t kLocaliseSamplesMin = 64;
+/// Share of the energy that the listed windows, bands and regions hold together.
+inline constexpr double kMainShare = 0.5;
+/// Windows of the list and of the plot, and stretches that parameters are fitted to.
+inline constexpr std::size_t kPlaceWindows = 24;
+inline constexpr std::size_t kTimeWindows = 40;
+inline constexpr std::size_t kParameterWindows = 16;
+/// Bins of |displacement| and |velocity|, of the distance since a reversal, and of cycles at most.
+inline constexpr std::size_t kMotionBins = 6;
+inline constexpr std::size_t kReversalBins = 16;
+inline constexpr std::size_t kCycleBinsMax = 16;
+/// Segments of a spectrum: lengths, powers of two, and how many averages they leave where the signal allows.
+inline constexpr std::size_t kSpectrumSegmentMin = 16;
+inline constexpr std::size_t kSpectrumSegmentMax = 8192;
+inline constexpr std::size_t kSpectrumAverages = 8;
+/// Lines of the spectrum that the first band holds; below them nothing can be told apart.
+inline constexpr double kFirstBandLines = 3.0;
+/// A window whose amplitude is below this share of the largest is at rest; with fewer windows nothing drifts.
+inline constexpr double kWindowAmplitudeMin = 0.05;
+inline constexpr std::size_t kDriftWindowsMin = 4;
+/// Rank correlations are cut here, so that Fisher's z stays finite.
+inline constexpr double kRankCorrelationMax = 0.999999;
+/// Share of the force's variance that goes with the displacement, below which a specimen is no spring.
+inline constexpr double kElasticShareMin = 0.5;
+/// Equal samples in a row at an extreme that count as clipped.
+inline constexpr std::size_t kClippedRun = 3;
+/// Lag of the force that is looked for; the recording has to be so many times longer, and the correlation so large.
+inline constexpr double kForceLagMax_s = 0.05;
+inline constexpr std::size_t kForceLagRecordings = 4;
+inline constexpr double kForceLagCorrelationMin = 0.5;
+
+// Repeatability.
+
+/// Two recordings repeat each other when their inputs differ by less than this [rms over rms].
+inline constexpr double kSameInput = 0.01;
+/// A cycle repeats another one where the input comes back within this share of half its span.
+inline constexpr double kSameCycle = 0.02;
+/// Cycles are counted between reversals of this many times the usual threshold, and need at least so many.
+inline constexpr double kCycleThreshold = 10.0;
+inline constexpr std::size_t kCycleReversalsMin = 5;
+/// The period of cycles is looked for within this share of the mean one.
+inline constexpr double kCycleSpread = 0.03;
+
+// Traces: what shows in the digits of a recording.
+
+/// Latest arrival of a target that is looked for.
+inline constexpr double kArrivalLagMax_s = 0.5;
+/// Share of moving samples whose lag is found, above which the targets are those that were sent.
+inline constexpr double kLagsFoundMin = 0.9;
+/// Share of steps in which a lag shrinks, above which it fluctuates: a drift never goes back.
+inline constexpr double kLagsShrinkingMin = 0.002;
+/// Share of fresh targets that are equally late when nothing but loss is at work.
+inline constexpr double kEquallyLateMin = 0.97;
+/// Readings below which no step of a converter is looked for.
+inline constexpr std::size_t kStepSamplesMin = 64;
+/// Bins over the span of the readings, and over how many times that their spectrum goes: it resolves steps to a quarter
+/// of what tells neighbouring ones apart.
+inline constexpr std::ptrdiff_t kStepBins = std::ptrdiff_t{1} << 15;
+inline constexpr std::ptrdiff_t kStepPadding = 4;
+/// Steps in a span, at least, and per bin at most.
+inline constexpr double kStepsInSpanMin = 6.0;
+inline constexpr double kStepsPerBinMax = 0.25;
+/// Steps are no finer than that multiple of the white noise: of a noise of half a step the coherence is 0.007.
+inline constexpr double kStepOverNoise = 2.0;
+/// Coherence of steps whose error, q / sqrt(12), is twice the noise behind the converter; with less it may as well be
+/// an encoder's error that comes back with its pitch.
+inline constexpr double kStepCoherenceMin = 0.66;
+/// Multiple of the coherence that a signal without steps may have by its reversals.
+inline constexpr double kStepOverChance = 4.0;
+/// Of the coherence of the best step found, that of the coarser one that is meant.
+inline constexpr double kStepAsCoherent = 0.8;
+/// Golden section for the number of steps: how far from the spectrum's line, and how many times.
+inline constexpr double kStepReach = 0.3;
+inline constexpr int kStepSections = 24;
+
+// Segments and what they are compared by.
 
 /// Rate at which predictions are compared [Hz]. Ten samples per cycle of the fastest motion that
 /// servo-hydraulic actuators follow (about 25 Hz).
 inline constexpr double kFitRate_hz = 250.0;
-
+/// Before the record everything stood where it stands at its first sample, for so long.
+inline constexpr double kRestBefore_s = 0.5;
+/// Of the one draw of noise that floors are taken from.
+inline constexpr std::uint64_t kNoiseSeed = 1;
 /// Share of the signal that no model is expected to reproduce: keeps noise-free records from being
 /// judged by rounding, and weighs interfaces against each other.
 inline constexpr double kModelAllowance = 0.0005;
-
 /// Held-out blocks per recording; as many as cycles allow within these.
-inline constexpr double kFewestBlocks = 5.0;
-inline constexpr double kMostBlocks = 12.0;
+inline constexpr double kBlocksMin = 5.0;
+inline constexpr double kBlocksMax = 12.0;
+/// A law is a spring when its force at these shares of the peak is proportional, within this share.
+inline constexpr std::array kSpringProbes{-1.0, -0.4, 0.3, 0.7};
+inline constexpr double kSpringRounding = 1e-9;
+/// Step of the slope over a wrong stiffness ratio.
+inline constexpr double kStiffnessStep = 1e-3;
 
-/// How far a search goes: its steps, the relative gain below which it stops, and how many of the
-/// starts it follows.
+// Search: how far it goes.
+
+/// Its steps, the relative gain below which it stops, and how many of the starts it follows.
 inline constexpr int kSearchIterations = 12;
 inline constexpr double kSearchTolerance = 1e-5;
 inline constexpr std::size_t kRefinedStarts = 2;
+/// Starts by the number of searched parameters: 0, 1, 2, 3 or more.
+inline constexpr std::array<int, 4> kStarts{0, 7, 12, 18};
+/// Ranges of positive values over more than this factor are searched in their logarithm.
+inline constexpr double kLogarithmicFactor = 10.0;
+/// Instants are looked for with so many times the starts, then by halving steps from and to these shares of the record.
+inline constexpr int kInstantStarts = 6;
+inline constexpr double kInstantStepMax = 1e-2;
+inline constexpr double kInstantStepMin = 1e-5;
+/// Step of the numeric derivatives, as a share of the range: what the smoothest effects need is smaller, but a
+/// clearance or a friction has to move over several samples to be felt. In the search, and at the optimum.
+inline constexpr double kDifferenceStep = 1e-3;
+inline constexpr double kSlopeStep = 1e-3;
+/// Nearer than this share of the range to its end a parameter has hit it.
+inline constexpr double kAtBound = 1e-3;
+/// Shares added to the diagonal of normal equations: in the projection, where columns that are almost multiples of each
+/// other would cancel in huge numbers, and in the covariance.
+inline constexpr double kProjectionRidge = 1e-10;
+inline constexpr double kCovarianceRidge = 1e-9;
+/// Several effects are linear together when their prediction is what their columns say, to this share of the
+/// residual; else they are linearised again where they are, so many times and by that step (in units of the parameter).
+inline constexpr double kAsGoodAsLinear = 1e-3;
+inline constexpr int kRelinearisations = 3;
+inline constexpr double kCoefficientStep = 1e-2;
+/// Largest correlation of neighbouring residuals that is believed.
+inline constexpr double kNeighbourCorrelationMax = 0.999;
+
+// Score of a candidate [nats].
 
 /// Independent samples that a second of a structured residual is worth.
 inline constexpr double kIndependentPerSecond = 5.0;
@@ -34,10 +233,15 @@ inline constexpr double kSensorPrior = 1.0;
 /// By how much an effect has to be better for each parameter that it has more than another [nats]: of two that do
 /// equally well on data not fitted, the simpler one is meant. Half the logarithm of the independent samples of 30 s.
 inline constexpr double kParameterPrior = 2.5;
+/// Share of its range by which a ratio may be off its fallback and still count as left out: the search resolves no
+/// less.
+inline constexpr double kRangeUnresolved = 1e-3;
 /// An effect so far behind the best one on the coarse record is not looked at again, nor paired [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are searched together with the first.
 inline constexpr std::size_t kRefittedPairs = 5;
+
+// Which effects are chosen.
 
 /// Gain over the model as it is above which there is something to explain [nats].
 inline constexpr double kDetectionGain = 5.0;
@@ -45,17 +249,19 @@ inline constexpr double kDetectionGain = 5.0;
 /// in the median recording.
 inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
-/// Share of that recording's whole gap [variance] that it has to explain unless it is but a wrong number of the model.
+/// Share of that recording's whole gap [variance] that it has to explain, unless it is a wrong number of the model.
 inline constexpr double kAnotherEffectExplains = 0.03;
-/// Unless it leaves less than this share of what was left.
+/// Or unless it leaves less than this share of what was left.
 inline constexpr double kSmallEffectLeaves = 0.15;
 /// Of what the best further effect explains: a wrong number of the model that explains so much is taken in its place.
 inline constexpr double kNumberInstead = 0.95;
-/// Of the gap: with less left than this, or not clearly above the floor, nobody looks for a further effect.
+/// Share of the gap: with less left than this, or not clearly above the floor, no further effect is looked for.
 inline constexpr double kNothingLeft = 0.002;
-/// How many of the best single effects a second one is looked for beside, and the most effects together.
+/// How many of the best single effects a second one is looked for beside, and how many are chosen together at most.
 inline constexpr std::size_t kLeadersPaired = 2;
-inline constexpr std::size_t kMostEffects = 4;
+inline constexpr std::size_t kEffectsMax = 4;
+
+// Verdict.
 
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
@@ -72,15 +278,42 @@ inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;
-/// Likewise where everything is computed and nothing measured: wrong ratios come within a hundredth, right ones
-/// within rounding.
-inline constexpr double kComputedLeaves = 1e-6;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;
+/// A cause that changes a held-out prediction by less than this share of the floor does not act there: a limit that is
+/// not reached changes nothing at all.
+inline constexpr double kCauseActs = 0.1;
 /// Probabilities are the softmax of the scores over this: fitted on development batches, where the first of a set was
 /// right more often than the scores alone say.
 inline constexpr double kTemperature = 0.5;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
+/// Entries of the ranking, causes included.
+inline constexpr std::size_t kRankingMax = 8;
+
+// Intervals.
+
+/// Quantiles of the standard normal: 95 % two-sided, and one in a hundred two-sided for a drift.
+inline constexpr double kTwoSided95 = 1.96;
+inline constexpr double kTwoSided99 = 2.576;
+/// Draws of a bootstrap, and how many of them lie beyond either end of a 95 % interval.
+inline constexpr std::size_t kResamples = 200;
+inline constexpr std::size_t kResamplesBeyond = kResamples / 40;
+/// Blocks per segment that the shrinking is resampled from.
+inline constexpr std::size_t kShrinkBlocks = 12;
+
+// The computed structure: everything is computed and nothing measured.
+
+/// As kNamedLeaves: wrong ratios come within a hundredth, right ones within rounding.
+inline constexpr double kComputedLeaves = 1e-6;
+/// Gauss-Newton on its ratios: steps, halvings of a step, step of the differences, change below which it is found.
+inline constexpr int kRatioIterations = 12;
+inline constexpr int kRatioHalvings = 8;
+inline constexpr double kRatioDifference = 1e-6;
+inline constexpr double kRatioSettled = 1e-12;
+/// Share of a ground motion's root mean square below which two are the same, written with other digits.
+inline constexpr double kSameMotion = 1e-9;
+/// Network latency of a test that is run again: short beside any step.
+inline constexpr int kRerunLatency_us = 50;
 
 }  // namespace hybridtest::tuning

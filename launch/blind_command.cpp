@@ -6,13 +6,12 @@
 #include <string>
 
 #include "core/exit_code.hpp"
-#include "diagnosis/runs/diagnose_site.hpp"
-#include "diagnosis/runs/read_recording.hpp"
+#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "launch/commands.hpp"
 #include "scenario/scenario_digest.hpp"
-#include "validation/blind_batches/make_batch.hpp"
-#include "validation/blind_batches/run_batch.hpp"
-#include "validation/blind_batches/score/score_batch.hpp"
+#include "validation/blind_batches/batch.hpp"
+#include "validation/blind_batches/score/score.hpp"
 #include "validation/studies/output_file.hpp"
 #include "validation/studies/parallel_runs.hpp"
 #include "validation/studies/study_progress.hpp"

@@ -5,9 +5,9 @@
 
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
-#include "diagnosis/replay/replay.hpp"
-#include "diagnosis/runs/diagnose_site.hpp"
-#include "diagnosis/runs/read_recording.hpp"
+#include "diagnosis/replay.hpp"
+#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "launch/commands.hpp"
 #include "scenario/site_model_file.hpp"
 

@@ -5,17 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "diagnosis/identification/bounded_search.hpp"
-#include "diagnosis/identification/variable_projection.hpp"
+#include "diagnosis/identification/search.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
-
-/// Step of the numeric derivatives at the optimum, as a share of the search range.
-constexpr double kSlopeStep = 1e-3;
-/// Nearer than this to the end of its range a parameter is said to have hit it.
-constexpr double kAtBound = 1e-3;
-constexpr double kRidge = 1e-9;
 
 /// What fit and held-out residuals are linear in around the optimum.
 struct Linearisation {
@@ -33,10 +27,10 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, solution) : Eigen::VectorXd{};
   for (Eigen::Index i = 0; i < searched; ++i) {
     Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? kSlopeStep : -kSlopeStep;
+    const double step = places[i] < 0.5 ? tuning::kSlopeStep : -tuning::kSlopeStep;
     moved[i] += step;
     result.columns.col(i) = (projection.predicted(moved, solution) - here) / step;
-    const bool at_bound = places[i] < kAtBound || places[i] > 1.0 - kAtBound;
+    const bool at_bound = places[i] < tuning::kAtBound || places[i] > 1.0 - tuning::kAtBound;
     if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
   }
   result.columns.rightCols(solution.columns.cols()) = solution.columns;
@@ -58,12 +52,13 @@ double effective_share(const Eigen::VectorXd& residual) {
   if (n < 3) return 1.0;
   const double total = residual.squaredNorm();
   if (total <= 0.0) return 1.0;
-  const double r = std::clamp(residual.head(n - 1).dot(residual.tail(n - 1)) / total, 0.0, 0.999);
+  const double r =
+      std::clamp(residual.head(n - 1).dot(residual.tail(n - 1)) / total, 0.0, tuning::kNeighbourCorrelationMax);
   return (1.0 - r) / (1.0 + r);
 }
 
 Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
-  normal.diagonal() *= 1.0 + kRidge;
+  normal.diagonal() *= 1.0 + tuning::kCovarianceRidge;
   normal.diagonal().array() += std::numeric_limits<double>::min();
   return normal;
 }
@@ -136,9 +131,9 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
     if (index < plan.searched.size()) {
       const SearchedParameter& searched = plan.searched[index];
       const double place = places[static_cast<Eigen::Index>(index)];
-      const double per_place =
-          (searched.at(std::min(1.0, place + kSlopeStep)) - searched.at(std::max(0.0, place - kSlopeStep))) /
-          (2.0 * kSlopeStep);
+      const double per_place = (searched.at(std::min(1.0, place + tuning::kSlopeStep)) -
+                                searched.at(std::max(0.0, place - tuning::kSlopeStep))) /
+                               (2.0 * tuning::kSlopeStep);
       result[searched.effect][searched.parameter].standard_error = deviation * std::abs(per_place);
     } else if (index - plan.searched.size() < plan.linear.size()) {
       const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
@@ -147,7 +142,8 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
   }
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
     const double place = places[static_cast<Eigen::Index>(i)];
-    result[plan.searched[i].effect][plan.searched[i].parameter].at_bound = place < kAtBound || place > 1.0 - kAtBound;
+    result[plan.searched[i].effect][plan.searched[i].parameter].at_bound =
+        place < tuning::kAtBound || place > 1.0 - tuning::kAtBound;
   }
   for (std::size_t i = 0; i < plan.linear.size(); ++i) {
     result[plan.linear[i].effect][plan.linear[i].parameter].at_bound = solution.held[i];

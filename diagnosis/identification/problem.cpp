@@ -7,6 +7,49 @@
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
+
+namespace {
+
+double ratio_or_one(double numerator, double denominator) noexcept {
+  return numerator > 0.0 && denominator > 0.0 ? numerator / denominator : 1.0;
+}
+
+}  // namespace
+
+double SignalScales::of(ParameterScale scale) const noexcept {
+  switch (scale) {
+    case ParameterScale::displacement_m: return ratio_or_one(displacement_m, 1.0);
+    case ParameterScale::velocity_m_per_s: return ratio_or_one(velocity_m_per_s, 1.0);
+    case ParameterScale::force_n: return ratio_or_one(force_n, 1.0);
+    case ParameterScale::stiffness_n_per_m: return ratio_or_one(force_n, displacement_m);
+    case ParameterScale::damping_n_s_per_m: return ratio_or_one(force_n, velocity_m_per_s);
+    case ParameterScale::damping_n_s2_per_m2: return ratio_or_one(force_n, velocity_m_per_s * velocity_m_per_s);
+    case ParameterScale::stiffness_n_per_m3:
+      return ratio_or_one(force_n, displacement_m * displacement_m * displacement_m);
+    case ParameterScale::compliance_m_per_n: return ratio_or_one(displacement_m, force_n);
+    case ParameterScale::mass_kg: return ratio_or_one(force_n, acceleration_m_per_s2);
+    case ParameterScale::duration_s: return ratio_or_one(duration_s, 1.0);
+    case ParameterScale::one:
+    case ParameterScale::time_s: break;
+  }
+  return 1.0;
+}
+
+SignalScales scales_of(std::span<const Segment> segments) {
+  SignalScales scales;
+  for (const Segment& segment : segments) {
+    for (const Motion& motion : segment.input) {
+      scales.displacement_m = std::max(scales.displacement_m, std::abs(motion.displacement_m));
+      scales.velocity_m_per_s = std::max(scales.velocity_m_per_s, std::abs(motion.velocity_m_per_s));
+      scales.acceleration_m_per_s2 = std::max(scales.acceleration_m_per_s2, std::abs(motion.acceleration_m_per_s2));
+    }
+    scales.duration_s = std::max(scales.duration_s, segment.period_s * static_cast<double>(segment.input.size()));
+    if (segment.to != Channel::measured_force) continue;
+    for (const double force_n : segment.measured) scales.force_n = std::max(scales.force_n, std::abs(force_n));
+  }
+  return scales;
+}
+
 namespace {
 
 using enum EffectInterface;
@@ -26,7 +69,7 @@ double longest_cycle_s(const Segment& segment) {
 std::vector<Eigen::Index> blocks_of(const FitSegment& fit) {
   const double duration_s = fit.segment.period_s * static_cast<double>(fit.segment.input.size());
   const double blocks =
-      std::clamp(std::floor(duration_s / longest_cycle_s(fit.segment)), tuning::kFewestBlocks, tuning::kMostBlocks);
+      std::clamp(std::floor(duration_s / longest_cycle_s(fit.segment)), tuning::kBlocksMin, tuning::kBlocksMax);
   std::vector<Eigen::Index> begins;
   for (double block = 0.0; block <= blocks; ++block) {
     begins.push_back(static_cast<Eigen::Index>(std::round(static_cast<double>(fit.measured.size()) * block / blocks)));
@@ -49,7 +92,7 @@ void add_nuisance(FitSegment& fit, EffectInterface interface, ModelNumber number
 /// Change of the prediction per unit of a wrong stiffness: of a spring beside another, or of the ratio of a law's.
 Eigen::VectorXd stiffness_slope(const SiteModel& model, bool law_is_spring, const FitSegment& fit,
                                 const EffectType& stiffness) {
-  const double step = law_is_spring ? 1.0 : 1e-3;  // the former's change is proportional to it
+  const double step = law_is_spring ? 1.0 : tuning::kStiffnessStep;  // the former's change is proportional to it
   const EffectSetting setting{.type = &stiffness, .values = {law_is_spring ? 0.0 : step, law_is_spring ? step : 0.0}};
   return (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
 }
@@ -109,9 +152,8 @@ bool is_spring(const SiteModel& model, double largest_m) {
   if (!model.make_law) return true;
   const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
   const double whole_n = force_n(largest_m);
-  constexpr double kRounding = 1e-9;
-  return std::ranges::all_of(std::array{-1.0, -0.4, 0.3, 0.7}, [&](double share) {
-    return std::abs(force_n(share * largest_m) - share * whole_n) <= kRounding * std::abs(whole_n);
+  return std::ranges::all_of(tuning::kSpringProbes, [&](double share) {
+    return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kSpringRounding * std::abs(whole_n);
   });
 }
 

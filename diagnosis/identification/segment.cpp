@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "core/random.hpp"
-#include "diagnosis/signals/flat_smoother.hpp"
-#include "diagnosis/signals/local_polynomial.hpp"
-#include "diagnosis/traces/reading_steps.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/traces/traces.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
+
 namespace {
 
 using enum EffectInterface;
-
-/// Of the one draw of noise that floors are taken from.
-constexpr std::uint64_t kNoiseSeed = 1;
 
 constexpr std::array kDisplacementChain{Channel::sent_displacement, Channel::target_displacement,
                                         Channel::command_displacement, Channel::measured_displacement};
@@ -33,7 +32,7 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
 /// One draw of what is wrong in readings: white noise of that level or, with a coarse converter, its error along a
 /// motion half a step beside the one that was read.
 std::vector<double> drawn_error(std::span<const Motion> motion, double level, double step) {
-  Random random{kNoiseSeed};
+  Random random{tuning::kNoiseSeed};
   std::vector<double> error(motion.size());
   for (std::size_t i = 0; i < error.size(); ++i) {
     const double place = motion[i].displacement_m + 0.5 * step;
@@ -50,7 +49,7 @@ void smooth_input(Segment& segment, std::span<const double> displacement_m, std:
   segment.noise = polynomial.motion(error);
   segment.narrow_input.clear();
   segment.narrow_noise.clear();
-  if (half_width / 2 < LocalPolynomial::kSmallestHalfWidth) return;
+  if (half_width / 2 < LocalPolynomial::kHalfWidthMin) return;
   const LocalPolynomial narrow{half_width / 2, segment.period_s};
   segment.narrow_input = narrow.motion(displacement_m);
   segment.narrow_noise = narrow.motion(error);
@@ -119,7 +118,7 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
 
 Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation) {
   const FlatSmoother smoother{deviation};
-  const LocalPolynomial narrowest{LocalPolynomial::kSmallestHalfWidth, segment.period_s};
+  const LocalPolynomial narrowest{LocalPolynomial::kHalfWidthMin, segment.period_s};
   Segment result = segment;
   result.input = smooth_motion(smoother, narrowest.motion(dof.of(segment.from)));
   const std::vector<double> error = drawn_error(result.input, segment.input_noise, segment.input_step);
@@ -127,7 +126,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.narrow_input.clear();
   result.narrow_noise.clear();
   result.measured = smoother.smooth(dof.of(segment.to));
-  result.unjudged = std::min(smoother.reach() + LocalPolynomial::kSmallestHalfWidth, result.measured.size() / 2);
+  result.unjudged = std::min(smoother.reach() + LocalPolynomial::kHalfWidthMin, result.measured.size() / 2);
   result.is_smoothed = deviation > 0.0;
   result.noise_span = 1.0 / smoother.noise_share();
   result.measured_noise = segment.measured_noise * std::sqrt(smoother.noise_share());
@@ -176,6 +175,44 @@ bool is_modelled(const SiteModel& model, const Segment& segment) {
   if (segment.to != Channel::measured_force || model.make_law) return true;
   return std::ranges::any_of(
       model.effects, [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::specimen; });
+}
+
+namespace {
+
+/// Of inertia and damping, and of nothing else that a model has beside its law.
+bool follows_derivatives(const SiteModel& model) {
+  return std::ranges::any_of(model.effects, [](const EffectSetting& effect) {
+    return effect.type->interface == EffectInterface::specimen && effect.type->traits.follows_derivatives;
+  });
+}
+
+Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
+  double best = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double deviation : tuning::kSmoothingDeviations) {
+    const Segment tried = smoothed_alike(segment, dof, deviation);
+    const std::vector<double> predicted = predict(model, tried);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < predicted.size(); ++i) squares += std::pow(segment.measured[i] - predicted[i], 2);
+    if (squares < least) {
+      least = squares;
+      best = deviation;
+    }
+  }
+  return smoothed_alike(segment, dof, tuning::kSmoothingNextStep * best);
+}
+
+}  // namespace
+
+std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
+                                       std::size_t position) {
+  std::vector<Segment> segments;
+  for (Segment& segment : segments_of(recording, dof, position)) {
+    if (!is_modelled(model, segment)) continue;
+    const bool is_smoothed = segment.to == Channel::measured_force && follows_derivatives(model);
+    segments.push_back(is_smoothed ? best_smoothed(model, segment, recording.dofs[dof]) : std::move(segment));
+  }
+  return segments;
 }
 
 }  // namespace hybridtest

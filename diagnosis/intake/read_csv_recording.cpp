@@ -7,15 +7,13 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/intake/column_header.hpp"
 #include "diagnosis/intake/intake.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
 
 constexpr std::size_t kHeaderRow = 1;
-/// Columns beyond this are no recording but something else.
-constexpr std::size_t kMostColumns = 200;
 
 std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -76,8 +74,9 @@ class CsvReader {
       return findings_.add(kHeaderRow, {}, {}, "columns are separated by commas, and decimals by points");
     }
     const std::vector<std::string_view> names = cells_of(line);
-    if (names.size() > kMostColumns) {
-      return findings_.add(kHeaderRow, {}, {}, fmt::format("{} columns; at most {}", names.size(), kMostColumns));
+    if (names.size() > tuning::kColumnsMax) {
+      return findings_.add(kHeaderRow, {}, {},
+                           fmt::format("{} columns; at most {}", names.size(), tuning::kColumnsMax));
     }
     for (const std::string_view name : names) place(std::string{name}, names);
     if (std::ranges::find(target_, kTime) == target_.end()) {

@@ -1,17 +1,23 @@
 #include "diagnosis/intake/units.hpp"
 
 #include <fmt/format.h>
-
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <string_view>
 
-#include "diagnosis/intake/column_header.hpp"
-#include "diagnosis/signals/local_polynomial.hpp"
+#include "core/config_error.hpp"
+#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/intake/intake.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
+
 namespace {
 
 struct OtherUnit {
@@ -19,11 +25,6 @@ struct OtherUnit {
   std::string_view name;
 };
 constexpr std::array<OtherUnit, 3> kOtherUnits{{{1000.0, "millimetres"}, {100.0, "centimetres"}, {39.3701, "inches"}}};
-/// How far the ratio of two spans may be from a unit's: channels differ by gain, lag and noise.
-constexpr double kRatioTolerance = 0.25;
-/// A channel that rests, or does not take part in the motion, has no ratio to it.
-constexpr double kLeastCorrelation = 0.5;
-constexpr double kSpeedWindow_s = 0.02;
 
 bool is_displacement(Channel channel) {
   return channel != Channel::measured_acceleration && channel != Channel::measured_force;
@@ -56,7 +57,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 double fastest(const std::vector<double>& values, double period_s) {
-  const auto window = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kSpeedWindow_s / period_s)));
+  const auto window =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(tuning::kSpeedWindow_s / period_s)));
   double largest = 0.0;
   for (std::size_t i = window; i < values.size(); ++i)
     largest = std::max(largest, std::abs(values[i] - values[i - window]));
@@ -74,11 +76,11 @@ bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, Fin
   const Span own = span_of(column.values);
   for (const RawColumn& other : raw.columns) {
     if (other.dof != column.dof || !is_displacement(other.channel) || &other == &column) continue;
-    if (correlation(column.values, other.values) < kLeastCorrelation) continue;
+    if (correlation(column.values, other.values) < tuning::kUnitCorrelationMin) continue;
     const double other_width = span_of(other.values).width;
     for (const OtherUnit& unit : kOtherUnits) {
       const double ratio = own.width / other_width / unit.per_metre;
-      if (ratio < 1.0 - kRatioTolerance || ratio > 1.0 + kRatioTolerance) continue;
+      if (ratio < 1.0 - tuning::kUnitRatioTolerance || ratio > 1.0 + tuning::kUnitRatioTolerance) continue;
       suspect(raw, column, own.farthest,
               fmt::format("seems to be in {}: it spans {:.4g}, {:.0f} times what '{}' spans ({:.4g})", unit.name,
                           own.width, own.width / other_width, other.name, other_width),
@@ -100,9 +102,6 @@ constexpr std::array<AccelerationRatio, 5> kAccelerationRatios{{{1.0 / 9.80665, 
                                                                 {100.0, "seems to be in cm/s2", false},
                                                                 {1e6, "seems to be in milliseconds", true},
                                                                 {1e12, "seems to be in microseconds", true}}};
-/// Of an acceleration with the one that the displacement went through. Noise of the latter takes from both by as much
-/// as the tolerance of the ratio.
-constexpr double kSameAcceleration = 0.8;
 
 /// Second derivative of the displacement, as quiet as the motion allows.
 std::vector<double> acceleration_of(const std::vector<double>& displacement_m, double period_s) {
@@ -127,10 +126,10 @@ void check_acceleration(const RawRecording& raw, const RawColumn& column, double
   });
   if (displacement == raw.columns.end()) return;
   const std::vector<double> expected = acceleration_of(displacement->values, period_s);
-  if (!(correlation(column.values, expected) >= kSameAcceleration)) return;
+  if (!(correlation(column.values, expected) >= tuning::kAccelerationCorrelationMin)) return;
   const double ratio = deviation(column.values) / deviation(expected);
   for (const AccelerationRatio& known : kAccelerationRatios) {
-    if (!(std::abs(ratio / known.ratio - 1.0) <= kRatioTolerance)) continue;
+    if (!(std::abs(ratio / known.ratio - 1.0) <= tuning::kUnitRatioTolerance)) continue;
     const std::size_t sample = known.is_of_time ? 1 : span_of(column.values).farthest;
     const double value = known.is_of_time ? raw.time_s[sample] : column.values[sample];
     findings.add(raw.first_row + sample, known.is_of_time ? std::string{kTimeColumn} : column.name,
@@ -149,9 +148,9 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
     if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
     const double speed = fastest(column.values, period_s);
-    if (std::abs(column.values[farthest]) > kLargestPlausibleDisplacement_m) {
+    if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {
       suspect(raw, column, farthest, "seems to be in millimetres: no site moves by more than 10 m", findings);
-    } else if (speed > kLargestPlausibleSpeed_m_per_s) {
+    } else if (speed > tuning::kSpeedMax_m_per_s) {
       suspect(raw, column, farthest,
               fmt::format("seems to be in millimetres: in metres it would move at {:.3g} m/s, and no site is faster "
                           "than 10 m/s",
@@ -159,6 +158,124 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
               findings);
     }
   }
+}
+
+namespace {
+
+struct ForceUnit {
+  double newtons;
+  std::string_view name;
+  double factor;         // by which the ratio may be off
+  double largest_nrmse;  // once converted
+};
+constexpr double kAnyFit = std::numeric_limits<double>::infinity();
+constexpr std::array<ForceUnit, 6> kForceUnits{
+    {{1e3, "kilonewtons", tuning::kForceFactor, kAnyFit},
+     {1e6, "meganewtons", tuning::kForceFactor, kAnyFit},
+     {4448.22, "kips", tuning::kKipsFactor, kAnyFit},
+     {1e-3, "millinewtons", tuning::kForceFactor, kAnyFit},
+     {9.80665, "kilograms of force", tuning::kForceOfMassFactor, tuning::kForceOfMassLeaves},
+     {4.44822, "pounds of force", tuning::kForceOfMassFactor, tuning::kForceOfMassLeaves}}};
+
+struct TimeUnit {
+  double per_second;
+  std::string_view name;
+};
+constexpr std::array<TimeUnit, 2> kTimeUnits{{{1e3, "milliseconds"}, {1e6, "microseconds"}}};
+
+/// Around its mean.
+Eigen::VectorXd swing(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::VectorXd> all{values.data(), std::ssize(values)};
+  return all.array() - all.mean();
+}
+
+/// Samples are numbered as lines of the file are.
+IntakeFinding finding_at(const Recording& recording, const std::string& column, const std::vector<double>& values,
+                         std::string what) {
+  const auto farthest = std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
+  const auto sample = static_cast<std::size_t>(farthest - values.begin());
+  return {.row = recording.first_row + sample,
+          .column = column,
+          .value = fmt::format("{}", *farthest),
+          .what = std::move(what)};
+}
+
+std::string column_of(const Recording& recording, Channel channel, std::size_t dof) {
+  const std::string name{column_name(channel)};
+  return recording.dofs.size() > 1 ? name + "_" + std::to_string(dof + 1) : name;
+}
+
+/// How far off the ratio is, as a factor of at least 1.
+double off_by(double ratio) { return std::exp(std::abs(std::log(ratio))); }
+
+void check_force(const Segment& segment, const SiteModel& model, const Recording& recording, std::size_t dof,
+                 std::vector<IntakeFinding>& findings) {
+  const Eigen::VectorXd measured = swing(segment.measured);
+  const Eigen::VectorXd predicted = swing(predict(model, segment));
+  const double product = measured.norm() * predicted.norm();
+  if (!(product > 0.0 && measured.dot(predicted) >= tuning::kForceCorrelationMin * product)) return;
+  const double newtons = predicted.norm() / measured.norm();
+  const auto nearest =
+      std::ranges::min_element(kForceUnits, {}, [&](const ForceUnit& unit) { return off_by(newtons / unit.newtons); });
+  const double left = (nearest->newtons * measured - predicted).norm() / predicted.norm();
+  if (off_by(newtons / nearest->newtons) > nearest->factor || left > nearest->largest_nrmse) return;
+  findings.push_back(
+      finding_at(recording, column_of(recording, segment.to, dof), segment.measured,
+                 fmt::format("seems to be in {}: the model predicts {:.4g} times as much; newtons were expected",
+                             nearest->name, newtons)));
+}
+
+/// Root mean square of the segments' gaps over those of their outputs, at another sample period; beyond all where
+/// a part of the model refuses that period.
+double gap_at(const SiteModel& model, const Recording& recording, std::size_t dof, double period_s) try {
+  Recording tried = recording;
+  tried.sample_period_s = period_s;
+  double squares = 0.0;
+  double count = 0.0;
+  for (const Segment& segment : segments_of(tried, dof, 0)) {
+    if (!is_modelled(model, segment)) continue;
+    const Eigen::VectorXd measured = swing(segment.measured);
+    if (measured.norm() <= 0.0) continue;
+    const Eigen::VectorXd gap = measured - swing(predict(model, segment));
+    squares += gap.squaredNorm() / measured.squaredNorm();
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+} catch (const ConfigError&) {
+  return std::numeric_limits<double>::infinity();
+}
+
+void check_time(const SiteModel& model, const Recording& recording, std::size_t dof,
+                std::vector<IntakeFinding>& findings) {
+  if (recording.sample_period_s < tuning::kControlPeriodMax_s) return;
+  const double as_written = gap_at(model, recording, dof, recording.sample_period_s);
+  for (const TimeUnit& unit : kTimeUnits) {
+    const double period_s = recording.sample_period_s / unit.per_second;
+    if (period_s >= tuning::kControlPeriodMax_s) continue;
+    const double converted = gap_at(model, recording, dof, period_s);
+    if (converted > tuning::kTimeUnitNear || as_written < tuning::kTimeUnitNearer * converted) continue;
+    findings.push_back(
+        {.row = recording.first_row + 1,
+         .column = "time_s",
+         .value = fmt::format("{}", recording.sample_period_s),
+         .what = fmt::format("seems to be in {}: with samples so far apart the model is off by {:.3g} of "
+                             "what was measured, with {} s by {:.3g}; seconds were expected",
+                             unit.name, as_written, period_s, converted)});
+    return;
+  }
+}
+
+}  // namespace
+
+std::vector<IntakeFinding> check_units_against(const SiteModel& model, const Recording& recording, std::size_t dof) {
+  std::vector<IntakeFinding> findings;
+  check_time(model, recording, dof, findings);
+  if (!findings.empty()) return findings;  // a force that follows velocity says nothing at a wrong rate
+  for (const Segment& segment : segments_of(recording, dof, 0)) {
+    if (segment.to != Channel::measured_force || !is_modelled(model, segment)) continue;
+    check_force(segment, model, recording, dof, findings);
+  }
+  return findings;
 }
 
 }  // namespace hybridtest

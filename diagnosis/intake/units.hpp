@@ -1,12 +1,13 @@
 #pragma once
 
-#include "diagnosis/intake/raw_recording.hpp"
+#include <cstddef>
+#include <vector>
+
+#include "diagnosis/intake/intake.hpp"
+#include "diagnosis/recording.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
-
-/// No site moves further or faster; a column of metres that does is in another unit.
-inline constexpr double kLargestPlausibleDisplacement_m = 10.0;
-inline constexpr double kLargestPlausibleSpeed_m_per_s = 10.0;
 
 /// Suspects columns of another unit than their header says.
 ///
@@ -18,5 +19,16 @@ inline constexpr double kLargestPlausibleSpeed_m_per_s = 10.0;
 /// the time that is in milli- or microseconds. Force, and time without an acceleration: check_units_against().
 /// @param raw   values finite. @param period_s   positive.
 void check_units(const RawRecording& raw, double period_s, FindingList& findings);
+
+/// Suspects force and time columns of another unit than their header says, by what the model predicts.
+///
+/// A force that goes with the predicted one (correlation at least 0.3) and is within a factor of three of a thousandth
+/// or a millionth of it, or of what kips would read, is in that unit: no specimen is so much softer than its model. In
+/// kilograms or pounds of force it has to be so within 3 %, and to fit the model within a tenth once it is
+/// converted: a wrong stiffness may be as large. Time is in milli- or microseconds where samples are a tenth of a
+/// second apart or more and the model comes at least three times nearer with a period so much shorter.
+/// @param dof   0-based; the recording has it.
+[[nodiscard]] std::vector<IntakeFinding> check_units_against(const SiteModel& model, const Recording& recording,
+                                                             std::size_t dof);
 
 }  // namespace hybridtest

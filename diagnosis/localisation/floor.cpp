@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/localisation/rest_stretches.hpp"
-#include "diagnosis/localisation/reversals.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {
-
-constexpr double kSameInput = 0.01;
-constexpr double kSameCycle = 0.02;
 
 /// Variance of the difference of two stretches of one signal, `lag` apart.
 double difference_variance(std::span<const double> values, std::size_t lag) {
@@ -35,12 +32,12 @@ std::vector<std::size_t> repeated(std::span<const double> input_m, std::size_t l
 
 /// The lag of whole cycles at which the input comes back best; 0 when there are no cycles.
 std::size_t best_lag(std::span<const double> input_m) {
-  const std::vector<Reversal> turns = reversals_of(input_m, 10.0 * reversal_threshold_m(input_m));
-  if (turns.size() < 5) return 0;
+  const std::vector<Reversal> turns = reversals_of(input_m, tuning::kCycleThreshold * reversal_threshold_m(input_m));
+  if (turns.size() < tuning::kCycleReversalsMin) return 0;
   const double cycles = 0.5 * static_cast<double>(turns.size() - 1);
   const auto rough = static_cast<double>(turns.back().sample - turns.front().sample) / cycles;
-  const auto from = static_cast<std::size_t>(std::max(2.0, 0.97 * rough));
-  const auto to = static_cast<std::size_t>(1.03 * rough) + 1;
+  const auto from = static_cast<std::size_t>(std::max(2.0, (1.0 - tuning::kCycleSpread) * rough));
+  const auto to = static_cast<std::size_t>((1.0 + tuning::kCycleSpread) * rough) + 1;
   std::size_t best = 0;
   double least = 0.0;
   for (std::size_t lag = from; lag <= to && 2 * lag < input_m.size(); ++lag) {
@@ -75,14 +72,14 @@ std::optional<RepeatabilityFloor> floor_of_repetition(const GapSignals& first, c
     residuals[i] = first.residual[i] - second.residual[i];
   }
   const double span = variance(first.input_m.first(size));
-  if (!(span > 0.0) || variance(inputs) > kSameInput * kSameInput * span) return {};
+  if (!(span > 0.0) || variance(inputs) > tuning::kSameInput * tuning::kSameInput * span) return {};
   return RepeatabilityFloor{std::sqrt(0.5 * mean_square(residuals)), FloorSource::repeated_recordings};
 }
 
 std::optional<RepeatabilityFloor> floor_of_cycles(const GapSignals& signals) {
   const std::size_t lag = best_lag(signals.input_m);
   if (lag == 0) return {};
-  const auto same = repeated(signals.input_m, lag, kSameCycle * 0.5 * span_of(signals.input_m));
+  const auto same = repeated(signals.input_m, lag, tuning::kSameCycle * 0.5 * span_of(signals.input_m));
   if (2 * same.size() < signals.size()) return {};
   double sum = 0.0;
   for (const std::size_t i : same) {

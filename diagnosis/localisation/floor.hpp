@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnosis/localisation/gap_signals.hpp"
+#include "diagnosis/signals/signals.hpp"
 
 namespace hybridtest {
 

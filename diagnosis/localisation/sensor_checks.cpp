@@ -1,18 +1,16 @@
 #include "diagnosis/localisation/sensor_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
-#include "diagnosis/localisation/gap_signals.hpp"
-#include "diagnosis/localisation/rest_stretches.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
-namespace {
 
-constexpr std::size_t kClippedRun = 3;
-constexpr double kLargestLag_s = 0.05;
-constexpr double kLeastCorrelation = 0.5;
+namespace {
 
 double mean(std::span<const double> values) {
   double sum = 0.0;
@@ -28,7 +26,7 @@ std::size_t clipped(std::span<const double> values, double extreme) {
       ++run;
       continue;
     }
-    if (run >= kClippedRun) count += run;
+    if (run >= tuning::kClippedRun) count += run;
     run = 0;
   }
   return count;
@@ -89,17 +87,48 @@ std::optional<RestReading> read_at_rest(std::span<const double> values, std::spa
 
 std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
                                   double period_s) {
-  const auto most = static_cast<std::ptrdiff_t>(std::lround(kLargestLag_s / period_s));
-  if (most < 1 || displacement_m.size() < 4 * static_cast<std::size_t>(most)) return {};
+  const auto most = static_cast<std::ptrdiff_t>(std::lround(tuning::kForceLagMax_s / period_s));
+  if (most < 1 || displacement_m.size() < tuning::kForceLagRecordings * static_cast<std::size_t>(most)) return {};
   std::vector<double> found;
   for (std::ptrdiff_t lag = -most; lag <= most; ++lag) {
     found.push_back(std::abs(change_correlation(displacement_m, force_n, lag)));
   }
   const auto best = std::ranges::max_element(found);
-  if (*best < kLeastCorrelation || best == found.begin() || best + 1 == found.end()) return {};
+  if (*best < tuning::kForceLagCorrelationMin || best == found.begin() || best + 1 == found.end()) return {};
   const double curvature = *(best - 1) - 2.0 * *best + *(best + 1);
   const double shift = curvature < 0.0 ? 0.5 * (*(best - 1) - *(best + 1)) / curvature : 0.0;
   return (static_cast<double>((best - found.begin()) - most) + shift) * period_s;
+}
+
+void add_sensor_facts(const Recording& recording, std::size_t dof, report::DiagnosisReport& report) {
+  struct Sensor {
+    Channel channel;
+    std::string_view unit;
+  };
+  constexpr std::array kSensors{Sensor{Channel::measured_displacement, "m"},
+                                Sensor{Channel::measured_acceleration, "m/s2"}, Sensor{Channel::measured_force, "N"}};
+  const DofRecording& channels = recording.dofs[dof];
+  const std::vector<double>& motion_m = channels.has(Channel::command_displacement)
+                                            ? channels.of(Channel::command_displacement)
+                                            : channels.of(Channel::measured_displacement);
+  for (const Sensor& sensor : kSensors) {
+    if (!channels.has(sensor.channel)) continue;
+    const std::vector<double>& values = channels.of(sensor.channel);
+    const ChannelCheck check = check_channel(values);
+    report::SensorFacts facts{.recording = recording.file,
+                              .column = std::string{column_name(sensor.channel)},
+                              .unit = std::string{sensor.unit},
+                              .quantum = check.quantum,
+                              .repeated_share = check.repeated_share,
+                              .clipped_share = check.clipped_share};
+    if (const auto rest = read_at_rest(values, motion_m, recording.sample_period_s)) {
+      facts.at_rest = report::RestFacts{rest->first, rest->last, rest->drift_per_s, rest->rms};
+    }
+    if (sensor.channel == Channel::measured_force && channels.has(Channel::measured_displacement)) {
+      facts.lag_s = force_lag_s(channels.of(Channel::measured_displacement), values, recording.sample_period_s);
+    }
+    report.sensors.push_back(std::move(facts));
+  }
 }
 
 }  // namespace hybridtest

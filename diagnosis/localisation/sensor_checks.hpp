@@ -2,6 +2,10 @@
 
 #include <optional>
 #include <span>
+#include <vector>
+
+#include "diagnosis/recording.hpp"
+#include "diagnosis/result/diagnosis_report.hpp"
 
 namespace hybridtest {
 
@@ -31,5 +35,8 @@ struct RestReading {
 /// @return [s]; nothing when the best correlation is under 0.5 or lies at the end of the search of ± 50 ms.
 [[nodiscard]] std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
                                                 double period_s);
+
+/// What the measured channels of one degree of freedom tell of their sensors by themselves.
+void add_sensor_facts(const Recording& recording, std::size_t dof, report::DiagnosisReport& report);
 
 }  // namespace hybridtest

@@ -6,15 +6,10 @@
 
 #include "core/assert.hpp"
 #include "core/signal/frequency_evaluation.hpp"
-#include "diagnosis/localisation/gap_signals.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
-namespace {
-
-constexpr double kLeastElasticShare = 0.5;
-
-}  // namespace
-
 std::vector<double> tracking_indicator_m2(std::span<const double> command_m, std::span<const double> measured_m) {
   HYBRIDTEST_ASSERT(command_m.size() == measured_m.size());
   std::vector<double> indicator(command_m.size(), 0.0);
@@ -63,7 +58,7 @@ std::optional<DelayConsequence> delay_consequence(std::span<const double> comman
   const double stiffness_n_per_m = secant_stiffness_n_per_m(measured_m, force_n);
   if (!tracking || !(stiffness_n_per_m > 0.0)) return {};
   const double elastic = stiffness_n_per_m * stiffness_n_per_m * variance(measured_m);
-  if (elastic < kLeastElasticShare * variance(force_n)) return {};
+  if (elastic < tuning::kElasticShareMin * variance(force_n)) return {};
   return DelayConsequence{.delay_s = tracking->delay_s,
                           .stiffness_n_per_m = stiffness_n_per_m,
                           .equivalent_damping_n_s_per_m = -stiffness_n_per_m * tracking->delay_s};

@@ -1,12 +1,271 @@
 #include "diagnosis/page/diagnosis_page.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "diagnosis/page/page_parts.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "report/plotting/svg_canvas.hpp"
 
 namespace hybridtest::report {
+
+namespace {
+
+using plot::escaped;
+
+/// In the order in which a signal passes them.
+constexpr std::array<std::string_view, 7> kChain{"numerical_substructure", "network",  "compensator", "transfer_system",
+                                                 "displacement_sensor",    "specimen", "force_sensor"};
+
+std::string judged_link(const InterfaceGap& gap, bool is_main) {
+  const std::string_view state = !gap.is_at_fault ? "clean" : is_main ? "fault main" : "fault";
+  return fmt::format(
+      "<li class=\"{}\"><b>{}</b><small>{}</small><strong>{}</strong><small>of the gap, {}</small>"
+      "<span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span><em>{}</em></li>\n",
+      state, escaped(plain(gap.interface)), sees(gap.interface), percent(gap.share), between_percent(gap.share_ci95),
+      100.0 * std::clamp(gap.share, 0.0, 1.0),
+      is_main           ? "✗ the gap is here"
+      : gap.is_at_fault ? "above its floor"
+                        : "✓ within its floor");
+}
+
+std::string unjudged_link(std::string_view interface, const std::string& why) {
+  return fmt::format(
+      "<li class=\"unjudged\"><b>{}</b><small>{}</small><strong>?</strong><em>not judged</em><small>{}</small></li>\n",
+      plain(interface), sees(interface), escaped(why));
+}
+
+}  // namespace
+
+std::string chain_part(const DiagnosisReport& report) {
+  std::string html = "<ol class=\"chain\">\n";
+  for (const std::string_view interface : kChain) {
+    const auto gap = std::ranges::find(report.where, interface, &InterfaceGap::interface);
+    if (gap == report.where.end()) {
+      html += unjudged_link(interface, "nothing in the recordings tells");
+    } else if (!gap->is_judged) {
+      html += unjudged_link(interface, gap->why_not);
+    } else {
+      html += judged_link(*gap, &*gap == main_fault(report));
+    }
+  }
+  return html + "</ol>\n";
+}
+
+namespace {
+
+using plot::escaped;
+
+constexpr std::size_t kRowsMax = 12;
+
+std::string parameter_text(const ReportedParameter& parameter) {
+  std::string text =
+      fmt::format("<span class=\"par\">{} <b>{}</b>", escaped(plain_parameter(parameter.name, parameter.unit)),
+                  escaped(quantity(parameter.value, parameter.unit)));
+  if (parameter.ci95) text += fmt::format(" <small>({})</small>", escaped(between(*parameter.ci95, parameter.unit)));
+  if (parameter.is_at_bound) text += " <small class=\"warn\">at the bound of the search</small>";
+  return text + "</span>";
+}
+
+std::string row(const RankedCause& cause) {
+  std::string parameters;
+  for (const ReportedParameter& parameter : cause.parameters) parameters += parameter_text(parameter);
+  const std::string_view standing = cause.is_cause ? "cause" : cause.is_indistinguishable ? "not told apart" : "";
+  return fmt::format(
+      "<tr class=\"{}\"><td><b>{}</b><small>{}</small><small class=\"eq\">{}</small></td>"
+      "<td class=\"prob\">{}<span class=\"bar\"><i "
+      "style=\"width:{:.1f}%\"></i></span></td><td>{}</td><td>{}</td></tr>\n",
+      cause.is_cause ? "cause" : "", escaped(plain(cause.effect)), escaped("at the " + plain(cause.interface)),
+      escaped(cause.equation), percent(cause.probability), 100.0 * std::clamp(cause.probability, 0.0, 1.0), parameters,
+      standing);
+}
+
+/// The causes with what cannot be told from them; empty when the causes stand alone.
+std::string alike_text(const DiagnosisReport& report) {
+  std::vector<std::string> alike;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_cause || cause.is_indistinguishable) alike.push_back(plain(cause.effect));
+  }
+  const bool is_open =
+      report.verdict == Verdict::set || std::ranges::any_of(report.ranking, &RankedCause::is_indistinguishable);
+  if (!is_open || alike.size() < 2) return "";
+  return fmt::format("<p>These recordings cannot tell apart {}.</p>\n", escaped(joined(alike)));
+}
+
+}  // namespace
+
+std::string causes_part(const DiagnosisReport& report) {
+  std::string html;
+  if (!report.ranking.empty()) {
+    html +=
+        "<h2>Which effect</h2>\n<table class=\"causes\"><tr><th>effect</th><th>probability</th><th>parameters (95 "
+        "%)</th>"
+        "<th></th></tr>\n";
+    for (std::size_t i = 0; i < std::min(kRowsMax, report.ranking.size()); ++i) html += row(report.ranking[i]);
+    html += "</table>\n";
+    if (report.ranking.size() > kRowsMax) {
+      html += fmt::format("<p class=\"fine\">{} more are in diagnosis.json.</p>\n", report.ranking.size() - kRowsMax);
+    }
+  }
+  html += alike_text(report);
+  if (!report.next_experiment.empty()) {
+    html += fmt::format("<p class=\"next\"><b>Next experiment:</b> {}</p>\n", escaped(report.next_experiment));
+  }
+  return html;
+}
+
+namespace {
+
+using plot::escaped;
+
+std::string interface_rows(const DiagnosisReport& report) {
+  std::string rows;
+  for (const InterfaceGap& gap : report.where) {
+    if (!gap.is_judged) continue;
+    rows += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        escaped(plain(gap.interface)), percent(gap.nrmse), percent(gap.floor_nrmse),
+                        gap.repeatability ? percent(gap.repeatability->nrmse) + " (" + gap.repeatability->source + ")"
+                                          : "nothing repeats",
+                        percent(gap.share), between_percent(gap.share_ci95));
+  }
+  return rows;
+}
+
+std::string recording_rows(const DiagnosisReport& report) {
+  std::string rows;
+  for (const ReportedRecording& recording : report.recordings) {
+    rows += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
+                        escaped(recording.file), recording.role == RecordingRole::fit ? "fit" : "held out",
+                        quantity(recording.duration_s, "s"), quantity(recording.sample_period_s, "s"),
+                        escaped(recording.sha256));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string facts_part(const DiagnosisReport& report) {
+  const std::string interfaces = interface_rows(report);
+  std::string html = interfaces.empty() && report.notes.empty() ? "" : "<h2>In figures</h2>\n";
+  if (!interfaces.empty()) {
+    html +=
+        "<table><tr><th>interface</th><th>error</th><th>floor of noise</th><th>what differs when it is "
+        "repeated</th><th>share of the gap</th><th>95 %</th></tr>\n" +
+        interfaces + "</table>\n";
+  }
+  for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
+  html += "<h2>What went in</h2>\n<p>Model: " + escaped(report.model_file) + "</p>\n<div class=\"scroll\"><table>";
+  html += "<tr><th>recording</th><th>used for</th><th>length</th><th>sample</th><th>SHA-256</th></tr>\n";
+  return html + recording_rows(report) + "</table></div>\n";
+}
+
+namespace {
+
+using plot::escaped;
+
+/// More of a recording at the very extremes is no chance.
+constexpr double kClipped = 0.001;
+
+std::string rest_text(const SensorFacts& facts) {
+  if (!facts.at_rest) return "no rest";
+  const RestFacts& rest = *facts.at_rest;
+  return fmt::format("{} first, {} last; noise {}", quantity(rest.first, facts.unit), quantity(rest.last, facts.unit),
+                     quantity(rest.rms, facts.unit));
+}
+
+std::string row(const SensorFacts& facts) {
+  const bool is_clipped = facts.clipped_share > kClipped;
+  return fmt::format("<tr><td>{}<small>{}</small></td><td>{}</td><td>{}</td><td{}>{}</td><td>{}</td><td>{}</td></tr>\n",
+                     escaped(facts.column), escaped(facts.recording),
+                     facts.quantum > 0.0 ? quantity(facts.quantum, facts.unit) : "never changes",
+                     percent(facts.repeated_share), is_clipped ? " class=\"warn\"" : "", percent(facts.clipped_share),
+                     rest_text(facts), facts.lag_s ? quantity(*facts.lag_s, "s") : "");
+}
+
+}  // namespace
+
+std::string sensors_part(const DiagnosisReport& report) {
+  if (report.sensors.empty()) return "";
+  std::string html =
+      "<h2>What the sensors tell of themselves</h2>\n<div class=\"scroll\"><table><tr><th>channel</th><th>smallest "
+      "step</th><th>unchanged samples</th><th>at an end of its range</th><th>at rest</th><th>behind the "
+      "displacement</th></tr>\n";
+  for (const SensorFacts& facts : report.sensors) html += row(facts);
+  return html +
+         "</table></div>\n<p class=\"fine\">At an end: samples that sit, three or more in a row, at the very extremes. "
+         "Behind the displacement: the lag at which the changes of force and displacement go together best; a "
+         "specimen that resists with velocity or mass leads or lags by itself.</p>\n";
+}
+
+namespace {
+
+using plot::escaped;
+
+/// A stack over the whole gap's energy: removed, left and unknown, floor.
+std::string energy_bar(const Shrink& shrink) {
+  const double before = shrink.nrmse_before * shrink.nrmse_before;
+  const double floor = before > 0.0 ? std::min(1.0, shrink.floor_nrmse * shrink.floor_nrmse / before) : 0.0;
+  const double removed = std::clamp(shrink.variance_removed, 0.0, 1.0 - floor);
+  const double unknown = std::clamp(shrink.unknown_share, 0.0, 1.0 - floor - removed);
+  const double other = 1.0 - floor - removed - unknown;
+  std::string html = "<div class=\"stack\">";
+  std::string legend = "<p class=\"key\">";
+  const auto piece = [&](double share, std::string_view name, std::string_view text) {
+    if (share < 0.0005) return;
+    html += fmt::format("<i class=\"{}\" style=\"width:{:.2f}%\"></i>", name, 100.0 * share);
+    legend += fmt::format("<span><i class=\"{}\"></i>{} {}</span>", name, percent(share), text);
+  };
+  piece(removed, "removed", "removed by the cause");
+  piece(unknown, "unknown", "repeatable, unexplained");
+  piece(other, "other", "not explained, not known to be repeatable");
+  piece(floor, "floor", "floor: no model could remove it");
+  return html + "</div>" + legend + "</p>\n";
+}
+
+std::string before_after(std::string_view what, double before, double after) {
+  const double widest = std::max({before, after, 1e-12});
+  return fmt::format(
+      "<tr><th>{}</th><td>{}</td><td class=\"wide\"><span class=\"bar before\"><i style=\"width:{:.1f}%\"></i></span>"
+      "<span class=\"bar after\"><i style=\"width:{:.1f}%\"></i></span></td><td>{}</td></tr>\n",
+      what, percent(before), 100.0 * before / widest, 100.0 * after / widest, percent(after));
+}
+
+std::string response_rows(const ResponseShrink& response) {
+  std::string rows = before_after("response of the whole test, error", response.nrmse_before, response.nrmse_after) +
+                     before_after("response, peak error", response.peak_error_before, response.peak_error_after);
+  if (response.energy_error_before && response.energy_error_after) {
+    rows += before_after("response, energy error", *response.energy_error_before, *response.energy_error_after);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string shrink_part(const DiagnosisReport& report) {
+  if (!report.interface_shrink) return "";
+  const Shrink& shrink = *report.interface_shrink;
+  const bool is_held_out = std::ranges::any_of(
+      report.recordings, [](const ReportedRecording& recording) { return recording.role == RecordingRole::held_out; });
+  std::string html = "<h2>How far the gap shrinks</h2>\n<p>Energy of the gap ";
+  html += is_held_out ? "on recordings that were not used to find the cause: "
+                      : "on the recordings of the fit themselves, since none was held out: ";
+  html += fmt::format("<b>{}</b> removed", percent(shrink.variance_removed));
+  if (shrink.ci95) html += fmt::format(" (95 %: {})", between_percent(*shrink.ci95));
+  if (shrink.explainable_fraction)
+    html += fmt::format(", {} of what any model could remove", percent(*shrink.explainable_fraction));
+  html += ".</p>\n" + energy_bar(shrink);
+  html += "<table class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
+  html += before_after("at the interface, error", shrink.nrmse_before, shrink.nrmse_after);
+  if (report.response_shrink) html += response_rows(*report.response_shrink);
+  html += "</table>\n<p class=\"fine\">Errors are root mean squares over that of the measured signal.";
+  if (!report.response_shrink && !report.why_no_response.empty()) {
+    html += " Response of the whole test: " + escaped(report.why_no_response) + ".";
+  }
+  return html + "</p>\n";
+}
+
 namespace {
 
 /// Figures are drawn on white; where the reader's system is dark they are turned over as a whole.

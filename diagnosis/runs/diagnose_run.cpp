@@ -9,8 +9,8 @@
 #include "core/config_error.hpp"
 #include "core/text/shown.hpp"
 #include "diagnosis/runs/diagnose_site.hpp"
-#include "diagnosis/runs/read_recording.hpp"
 #include "diagnosis/runs/rerun.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "runtime/run_directory.hpp"
 #include "scenario/site_model_file.hpp"
 

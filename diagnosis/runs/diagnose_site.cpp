@@ -8,10 +8,10 @@
 
 #include "core/config_error.hpp"
 #include "core/text/scalar.hpp"
-#include "diagnosis/intake/units_against_model.hpp"
+#include "diagnosis/intake/units.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
 #include "diagnosis/page/diagnosis_page.hpp"
-#include "diagnosis/runs/structure_record.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
 #include "recording/error.hpp"
 

@@ -9,9 +9,8 @@
 
 #include "core/config/section.hpp"
 #include "core/config_error.hpp"
-#include "diagnosis/response/test_response.hpp"
-#include "diagnosis/runs/coordinator_record.hpp"
-#include "diagnosis/runs/run_recording.hpp"
+#include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/test_response.hpp"
 #include "recording/error.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/simulation.hpp"
@@ -58,7 +57,7 @@ SimulatedTest simulated_test(const Scenario& scenario, const std::function<void(
   };
   // The network of `hybridtest simulate`: a lockstep test does not depend on it.
   SimulationSettings settings;
-  settings.network.latency = std::chrono::microseconds{50};
+  settings.network.latency = std::chrono::microseconds{tuning::kRerunLatency_us};
   const SimulationResult result = simulate(scenario, settings, observer);
   return {response_of_steps(scenario, [&](const std::string& name) { return steps.column(name); }),
           result.coordinator.reason};

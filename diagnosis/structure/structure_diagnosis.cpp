@@ -1,16 +1,142 @@
 #include "diagnosis/structure/structure_diagnosis.hpp"
 
 #include <fmt/format.h>
-
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/assert.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/tuning.hpp"
-#include "diagnosis/verdict/ranked_cause.hpp"
+#include "diagnosis/verdict/causes.hpp"
 
 namespace hybridtest {
+
+Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const StructureRecording& recording,
+                                          const StructureErrors& errors) {
+  HYBRIDTEST_ASSERT(recording.displacement_m.rows() == model.structure.size() &&
+                    recording.restoring_force_n.cols() == recording.steps() &&
+                    recording.ground_m_per_s2.size() == recording.steps());
+  LinearStructure structure = model.structure;
+  structure.mass_kg *= 1.0 + errors.mass;
+  structure.damping_n_s_per_m *= 1.0 + errors.damping;
+  const auto integrator = model.make_integrator(structure, model.step_s * (1.0 + errors.step));
+  const Eigen::VectorXd load_kg = structure.load_per_ground_acceleration_kg();
+  Eigen::MatrixXd displacement_m(recording.displacement_m.rows(), recording.steps());
+  Eigen::VectorXd force_n;
+  Eigen::VectorXd applied_n;
+  for (Eigen::Index i = 0; i < recording.steps(); ++i) {
+    displacement_m.col(i) = integrator->current().displacement_m;
+    force_n = recording.restoring_force_n.col(i);
+    // Where model and record agree this adds nothing at all.
+    if (recording.has_numerical_forces()) {
+      force_n +=
+          (1.0 + errors.stiffness) * recording.modelled_numerical_force_n.col(i) - recording.numerical_force_n.col(i);
+    }
+    applied_n = load_kg * recording.ground_m_per_s2[i];
+    integrator->advance(force_n, applied_n);
+  }
+  return displacement_m;
+}
+
+namespace {
+
+const SearchRange& range_of(const FittedRatio& ratio) {
+  const EffectType& type = ratio.effect->type();
+  HYBRIDTEST_ASSERT(type.parameters.size() == 1);
+  const SearchRange* const range = search_range(type, type.parameters.front());
+  HYBRIDTEST_ASSERT(range != nullptr);
+  return *range;
+}
+
+/// The record and what the ratios make of it.
+class RatioProblem {
+ public:
+  RatioProblem(const ComputedStructure& model, const StructureRecording& recording)
+      : model_{model}, recording_{recording} {}
+
+  [[nodiscard]] Eigen::VectorXd residual(const StructureFit& at) const {
+    return (recomputed_displacement_m(model_, recording_, at.errors()) - recording_.displacement_m).reshaped();
+  }
+  [[nodiscard]] Eigen::MatrixXd slopes(const StructureFit& at, const Eigen::VectorXd& residual_m) const {
+    Eigen::MatrixXd slopes(residual_m.size(), std::ssize(at.ratios));
+    for (std::size_t i = 0; i < at.ratios.size(); ++i) {
+      StructureFit beside = at;
+      beside.ratios[i].value += tuning::kRatioDifference;
+      slopes.col(static_cast<Eigen::Index>(i)) = (residual(beside) - residual_m) / tuning::kRatioDifference;
+    }
+    return slopes;
+  }
+  [[nodiscard]] double nrmse_of(const Eigen::VectorXd& residual_m) const {
+    const double whole = recording_.displacement_m.norm();
+    return whole > 0.0 ? residual_m.norm() / whole : 0.0;
+  }
+  /// Of the samples of a remainder, how many are worth one: it does not change from step to step.
+  [[nodiscard]] double samples_per_independent(Eigen::Index samples) const {
+    const double duration_s = recording_.step_s * static_cast<double>(recording_.steps());
+    const double independent = tuning::kIndependentPerSecond * duration_s;
+    return std::max(1.0, static_cast<double>(samples) / std::max(1.0, independent));
+  }
+
+ private:
+  const ComputedStructure& model_;
+  const StructureRecording& recording_;
+};
+
+StructureFit moved(const StructureFit& from, const Eigen::VectorXd& change) {
+  StructureFit fit = from;
+  for (std::size_t i = 0; i < fit.ratios.size(); ++i) {
+    const SearchRange& range = range_of(fit.ratios[i]);
+    const double wanted = fit.ratios[i].value + change[static_cast<Eigen::Index>(i)];
+    fit.ratios[i].value = std::clamp(wanted, range.low, range.high);
+    fit.ratios[i].at_bound = fit.ratios[i].value != wanted;
+  }
+  return fit;
+}
+
+}  // namespace
+
+StructureErrors StructureFit::errors() const {
+  StructureErrors errors;
+  for (const FittedRatio& ratio : ratios) errors.*(ratio.effect->ratio) = ratio.value;
+  return errors;
+}
+
+StructureFit fit_structure(const ComputedStructure& model, const StructureRecording& recording,
+                           std::vector<FittedRatio> start) {
+  const RatioProblem problem{model, recording};
+  StructureFit fit{std::move(start), 0.0};
+  Eigen::VectorXd residual_m = problem.residual(fit);
+  Eigen::MatrixXd slopes;
+  for (int i = 0; i < tuning::kRatioIterations && !fit.ratios.empty(); ++i) {
+    slopes = problem.slopes(fit, residual_m);
+    Eigen::VectorXd change = -slopes.colPivHouseholderQr().solve(residual_m);
+    bool descends = false;
+    for (int halving = 0; halving < tuning::kRatioHalvings && !descends; ++halving, change *= 0.5) {
+      const StructureFit next = moved(fit, change);
+      const Eigen::VectorXd left_m = problem.residual(next);
+      descends = left_m.squaredNorm() < residual_m.squaredNorm();
+      if (!descends) continue;
+      fit = next;
+      residual_m = left_m;
+    }
+    if (!descends || change.cwiseAbs().maxCoeff() < tuning::kRatioSettled) break;
+  }
+  fit.nrmse = problem.nrmse_of(residual_m);
+  if (fit.ratios.empty()) return fit;
+  const Eigen::MatrixXd normal = slopes.transpose() * slopes;
+  const double variance = residual_m.squaredNorm() / static_cast<double>(residual_m.size()) *
+                          problem.samples_per_independent(residual_m.size());
+  const Eigen::MatrixXd covariance = variance * normal.completeOrthogonalDecomposition().pseudoInverse();
+  for (std::size_t i = 0; i < fit.ratios.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    fit.ratios[i].standard_error = std::sqrt(std::max(0.0, covariance(at, at)));
+  }
+  return fit;
+}
+
 namespace {
 
 using report::Verdict;

@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "diagnosis/traces/network_lags.hpp"
+#include "diagnosis/traces/traces.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
-namespace {
 
-constexpr std::size_t kBlocks = 12;  // per segment
-constexpr std::size_t kResamples = 200;
+namespace {
 
 /// Energies of one block, relative to the output's mean energy per sample of its segment.
 struct BlockEnergy {
@@ -59,9 +58,9 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
   double output = 0.0;
   for (const double value : segment.measured) output += value * value / static_cast<double>(n);
   if (output <= 0.0) return;
-  for (std::size_t b = 0; b < kBlocks; ++b) {
+  for (std::size_t b = 0; b < tuning::kShrinkBlocks; ++b) {
     BlockEnergy block;
-    for (std::size_t i = n * b / kBlocks; i < n * (b + 1) / kBlocks; ++i) {
+    for (std::size_t i = n * b / tuning::kShrinkBlocks; i < n * (b + 1) / tuning::kShrinkBlocks; ++i) {
       block.before += std::pow(segment.measured[i] - before[i], 2) / output;
       block.after += std::pow(segment.measured[i] - after[i], 2) / output;
       block.changed += std::pow(after[i] - before[i], 2) / output;
@@ -77,13 +76,13 @@ double removed(const BlockEnergy& sum) { return sum.before > 0.0 ? 1.0 - sum.aft
 report::Interval interval_of(const std::vector<BlockEnergy>& blocks, std::uint64_t seed) {
   Random random{seed};
   std::vector<double> drawn;
-  for (std::size_t i = 0; i < kResamples; ++i) {
+  for (std::size_t i = 0; i < tuning::kResamples; ++i) {
     BlockEnergy sum;
     for (std::size_t b = 0; b < blocks.size(); ++b) sum += blocks[random.below(blocks.size())];
     drawn.push_back(removed(sum));
   }
   std::ranges::sort(drawn);
-  return {drawn[kResamples / 40], drawn[kResamples - 1 - kResamples / 40]};
+  return {drawn[tuning::kResamplesBeyond], drawn[tuning::kResamples - 1 - tuning::kResamplesBeyond]};
 }
 
 }  // namespace
@@ -109,6 +108,29 @@ report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> 
   if (sum.before > sum.floor) shrink.explainable_fraction = (sum.before - sum.after) / (sum.before - sum.floor);
   if (sum.before > 0.0) shrink.unknown_share = std::max(0.0, sum.after - sum.floor) / sum.before;
   return shrink;
+}
+
+using report::Shrink;
+using report::Verdict;
+
+namespace {
+
+/// It acts, and surely leaves most of what there is, or more of what could be explained than a cause in part may.
+bool contradicts(const Shrink& held_out) {
+  if (!held_out.ci95 || !(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return false;
+  const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);
+  return held_out.ci95->high < std::max(tuning::kCarriesOver, (1.0 - tuning::kPartialLeaves) * explainable);
+}
+
+}  // namespace
+
+Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out) {
+  if (!report::names_a_cause(verdict) || held_out.empty() || !std::ranges::all_of(held_out, contradicts)) {
+    return verdict;
+  }
+  const bool is_clear = std::ranges::any_of(
+      held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kUnknownOverFloor * one.floor_nrmse; });
+  return is_clear ? Verdict::unknown : Verdict::none;
 }
 
 }  // namespace hybridtest

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/random.hpp"
+#include "diagnosis/localisation/floor.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "diagnosis/tuning.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
+
 namespace {
 
-constexpr std::size_t kInterfaces = 7;
-constexpr int kShareResamples = 200;
+constexpr std::size_t kInterfaces = static_cast<std::size_t>(EffectInterface::numerical_substructure) + 1;
 using Shares = std::array<double, kInterfaces>;
 
 /// The interface that a segment's gap is put down to.
@@ -56,7 +60,7 @@ std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem&
                                                     const FitOutcome& chosen, std::uint64_t seed) {
   Random random{seed};
   std::array<std::vector<double>, kInterfaces> drawn;
-  for (int i = 0; i < kShareResamples; ++i) {
+  for (std::size_t i = 0; i < tuning::kResamples; ++i) {
     const Shares shares =
         shares_of(problem, baseline, chosen, [&](std::size_t, std::size_t blocks) { return random.below(blocks); });
     for (std::size_t k = 0; k < kInterfaces; ++k) drawn[k].push_back(shares[k]);
@@ -64,7 +68,7 @@ std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem&
   std::array<report::Interval, kInterfaces> result;
   for (std::size_t k = 0; k < kInterfaces; ++k) {
     std::ranges::sort(drawn[k]);
-    result[k] = {drawn[k][kShareResamples / 40], drawn[k][kShareResamples - 1 - kShareResamples / 40]};
+    result[k] = {drawn[k][tuning::kResamplesBeyond], drawn[k][tuning::kResamples - 1 - tuning::kResamplesBeyond]};
   }
   return result;
 }
@@ -112,6 +116,112 @@ std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, c
   }
   std::ranges::stable_sort(where, std::greater{}, &report::InterfaceGap::share);
   return where;
+}
+
+namespace {
+
+using enum EffectInterface;
+
+/// The channels in front of and behind an interface.
+struct Ends {
+  Channel in;
+  Channel out;
+};
+
+Ends ends_of(EffectInterface interface) {
+  switch (interface) {
+    case network: return {Channel::sent_displacement, Channel::target_displacement};
+    case compensator: return {Channel::target_displacement, Channel::command_displacement};
+    case specimen: return {Channel::measured_displacement, Channel::measured_force};
+    default: return {Channel::command_displacement, Channel::measured_displacement};
+  }
+}
+
+std::string missing_columns(std::span<const Recording> recordings, std::size_t dof, const Ends& ends) {
+  std::vector<std::string> missing;
+  for (const Channel channel : {ends.in, ends.out}) {
+    const bool is_there = std::ranges::any_of(recordings, [&](const Recording& recording) {
+      return recording.role == RecordingRole::fit && recording.dofs.size() > dof && recording.dofs[dof].has(channel);
+    });
+    if (!is_there) missing.emplace_back(column_name(channel));
+  }
+  if (missing.empty()) return {};
+  return report::joined(missing) + (missing.size() > 1 ? " were" : " was") + " not recorded";
+}
+
+std::string why_not(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof,
+                    EffectInterface interface) {
+  switch (interface) {
+    case numerical_substructure: return "a run directory holds what it received; these recordings are of the site";
+    case displacement_sensor: return "no second displacement: it shows where actuator and specimen agree against it";
+    case force_sensor: return "no second force: it shows as a cause, where the specimen does not explain the gap";
+    default: break;
+  }
+  std::string missing = missing_columns(recordings, dof, ends_of(interface));
+  if (!missing.empty()) return missing;
+  return interface == specimen && !model.make_law ? "the model says nothing of the specimen's force"
+                                                  : "its columns are not in one recording together";
+}
+
+}  // namespace
+
+void add_unjudged(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof,
+                  std::vector<report::InterfaceGap>& where) {
+  constexpr std::array kChain{numerical_substructure, network,  compensator, transfer_system,
+                              displacement_sensor,    specimen, force_sensor};
+  for (const EffectInterface interface : kChain) {
+    if (std::ranges::find(where, name_of(interface), &report::InterfaceGap::interface) != where.end()) continue;
+    report::InterfaceGap gap;
+    gap.interface = name_of(interface);
+    gap.why_not = why_not(model, recordings, dof, interface);
+    where.push_back(std::move(gap));
+  }
+}
+
+namespace {
+
+/// A segment's signals with the model's residual.
+struct Residual {
+  const Segment* segment = nullptr;
+  std::vector<double> input_m;
+  std::vector<double> residual;
+
+  [[nodiscard]] GapSignals signals() const { return {segment->period_s, input_m, segment->measured, residual}; }
+};
+
+Residual residual_of(const SiteModel& model, const Segment& segment) {
+  Residual result{&segment, std::vector<double>(segment.input.size()), predict(model, segment)};
+  std::ranges::transform(segment.input, result.input_m.begin(), &Motion::displacement_m);
+  std::ranges::transform(segment.measured, result.residual, result.residual.begin(), std::minus{});
+  return result;
+}
+
+std::optional<RepeatabilityFloor> floor_of(const Residual& residual, const std::vector<Residual>& all) {
+  for (const Residual& other : all) {
+    const bool is_again = &other != &residual && other.segment->from == residual.segment->from &&
+                          other.segment->to == residual.segment->to;
+    if (!is_again) continue;
+    if (const auto floor = floor_of_repetition(residual.signals(), other.signals())) return floor;
+  }
+  return floor_of_cycles(residual.signals());
+}
+
+}  // namespace
+
+void add_repeatability(const SiteModel& model, std::span<const Segment> segments,
+                       std::vector<report::InterfaceGap>& where) {
+  std::vector<Residual> residuals;
+  for (const Segment& segment : segments) residuals.push_back(residual_of(model, segment));
+  for (const Residual& residual : residuals) {
+    const auto gap = std::ranges::find(where, name_of(residual.segment->interface), &report::InterfaceGap::interface);
+    const double output = mean_square(residual.segment->measured);
+    if (gap == where.end() || !gap->is_judged || output <= 0.0) continue;
+    const std::optional<RepeatabilityFloor> floor = floor_of(residual, residuals);
+    if (!floor) continue;
+    const double nrmse = floor->rms / std::sqrt(output);
+    if (gap->repeatability && gap->repeatability->nrmse >= nrmse) continue;
+    gap->repeatability = report::Repeatability{nrmse, std::string{name_of(floor->source)}};
+  }
 }
 
 }  // namespace hybridtest

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/recording.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 
@@ -17,5 +21,16 @@ namespace hybridtest {
 /// @param seed     of the block bootstrap behind the intervals.
 [[nodiscard]] std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, const FitOutcome& baseline,
                                                        const FitOutcome& chosen, std::uint64_t seed);
+
+/// An entry, with what is missing, for every interface of the chain that `where` does not have.
+/// @param dof   0-based; of recordings of the role fit.
+void add_unjudged(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof,
+                  std::vector<report::InterfaceGap>& where);
+
+/// How closely the residual of each judged interface comes back, where the test repeats itself: recordings with the
+/// same input, else cycles (floor_of_repetition(), floor_of_cycles()); the largest of an interface. It holds what noise
+/// alone does not: what the specimen and the actuator do differently from one time to the next.
+void add_repeatability(const SiteModel& model, std::span<const Segment> segments,
+                       std::vector<report::InterfaceGap>& where);
 
 }  // namespace hybridtest

@@ -44,7 +44,7 @@ std::string csv_of(const Recording& recording) {
 
 void check(const Recording& recording) {
   HYBRIDTEST_ASSERT(std::isfinite(recording.sample_period_s) && recording.sample_period_s > 0.0);
-  HYBRIDTEST_ASSERT(recording.samples >= kLeastSamples && !recording.dofs.empty());
+  HYBRIDTEST_ASSERT(recording.samples >= tuning::kSamplesMin && !recording.dofs.empty());
   for (const DofRecording& dof : recording.dofs) {
     for (const std::vector<double>& values : dof.samples) {
       HYBRIDTEST_ASSERT(values.empty() || values.size() == recording.samples);

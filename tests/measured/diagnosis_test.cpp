@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "diagnosis/identification/modelled_segments.hpp"
+#include "diagnosis/identification/segment.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "mechanics/laws/elastic.hpp"

@@ -11,7 +11,7 @@
 
 #include "diagnosis/runs/diagnose_run.hpp"
 #include "diagnosis/runs/rerun.hpp"
-#include "diagnosis/runs/structure_record.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "recording/run_file_reader.hpp"
 #include "tests/simulation/kept_simulation.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/config_error.hpp"
-#include "diagnosis/runs/read_recording.hpp"
+#include "diagnosis/runs/run_records.hpp"
 #include "recording/csv_export.hpp"
 #include "recording/run_file_reader.hpp"
 #include "scenario/scenario_digest.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "validation/blind_batches/plant/site.hpp"
+#include "validation/blind_batches/plant/plant.hpp"
 
 namespace hybridtest::blind {
 

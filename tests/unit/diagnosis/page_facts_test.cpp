@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "diagnosis/identification/segment.hpp"
-#include "diagnosis/verdict/repeatability.hpp"
-#include "diagnosis/verdict/sensor_facts.hpp"
-#include "diagnosis/verdict/unjudged.hpp"
+#include "diagnosis/localisation/sensor_checks.hpp"
+#include "diagnosis/verdict/where.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// What is told of a recording beside its gap.

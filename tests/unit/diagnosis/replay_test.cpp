@@ -1,4 +1,4 @@
-#include "diagnosis/replay/replay.hpp"
+#include "diagnosis/replay.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

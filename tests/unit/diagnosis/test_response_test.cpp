@@ -1,4 +1,4 @@
-#include "diagnosis/response/test_response.hpp"
+#include "diagnosis/test_response.hpp"
 
 #include <gtest/gtest.h>
 

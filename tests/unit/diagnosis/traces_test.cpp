@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "diagnosis/traces/network_lags.hpp"
-#include "diagnosis/traces/reading_steps.hpp"
+#include "diagnosis/traces/traces.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Effects that show in the digits of a recording.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "diagnosis/intake/intake.hpp"
-#include "diagnosis/intake/units_against_model.hpp"
 #include "plant/transfer_systems/delay.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 

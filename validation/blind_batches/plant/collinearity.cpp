@@ -1,4 +1,4 @@
-#include "validation/blind_batches/plant/collinearity.hpp"
+#include "validation/blind_batches/plant/blind_case.hpp"
 
 #include <algorithm>
 #include <array>

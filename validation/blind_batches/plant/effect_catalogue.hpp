@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/blind_batches/plant/case_setting.hpp"
+#include "validation/blind_batches/plant/blind_case.hpp"
 
 namespace hybridtest::blind {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "validation/blind_batches/plant/random_stream.hpp"
+#include "validation/blind_batches/plant/plant.hpp"
 
 namespace hybridtest::blind {
 namespace {

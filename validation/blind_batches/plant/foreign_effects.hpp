@@ -1,7 +1,6 @@
 #pragma once
 
-#include "validation/blind_batches/plant/history.hpp"
-#include "validation/blind_batches/plant/site.hpp"
+#include "validation/blind_batches/plant/plant.hpp"
 
 /// Effects that are in no library: what a diagnosis must answer with `unknown`. On the fine grid;
 /// an effect of another stage changes nothing.

@@ -1,10 +1,138 @@
 #pragma once
 
-#include "validation/blind_batches/plant/history.hpp"
-#include "validation/blind_batches/plant/random_stream.hpp"
-#include "validation/blind_batches/plant/site.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace hybridtest::blind {
+
+/// Random numbers of the blind plant: std::mt19937_64, whose output the standard fixes, under
+/// distributions of its own, so that a seed repeats a batch to the last byte anywhere.
+class RandomStream {
+ public:
+  /// @param purpose   "site", "excitation" …: streams of one seed and different purposes are unrelated, so that
+  ///                  what is drawn for one purpose cannot show in another.
+  RandomStream(std::uint64_t seed, std::uint64_t index, std::string_view purpose);
+
+  [[nodiscard]] double uniform(double low, double high);
+  /// Uniform in the logarithm; both ends positive.
+  [[nodiscard]] double log_uniform(double low, double high);
+  /// Standard normal (Box and Muller, Ann. Math. Stat. 29, 1958).
+  [[nodiscard]] double normal();
+  /// 0 to count - 1.
+  [[nodiscard]] std::size_t index(std::size_t count);
+  /// 0 to weights.size() - 1, each as often as its weight says.
+  [[nodiscard]] std::size_t weighted(const std::vector<double>& weights);
+  [[nodiscard]] bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
+  [[nodiscard]] double sign() { return chance(0.5) ? 1.0 : -1.0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Whole signals in equal intervals, and what is done to them. The plant works on histories, not
+/// sample by sample: what follows what is the order of the calls.
+
+using History = std::vector<double>;
+
+/// Fine steps of the plant per sample of a recording: 8 to 16 kHz.
+inline constexpr std::size_t kFineSteps = 16;
+
+/// On the fine grid.
+struct MotionHistory {
+  double period_s = 0.0;
+  History displacement_m;
+  History velocity_m_per_s;
+  History acceleration_m_per_s2;
+
+  [[nodiscard]] std::size_t size() const noexcept { return displacement_m.size(); }
+};
+
+/// Straight lines between the samples, kFineSteps to an interval.
+[[nodiscard]] History straight_lines(const History& samples);
+/// Natural cubic spline through the samples, kFineSteps to an interval.
+[[nodiscard]] History spline(const History& samples);
+/// Every kFineSteps-th value.
+[[nodiscard]] History sampled(const History& fine);
+
+/// Central differences; one-sided at the ends.
+[[nodiscard]] History derivative(const History& values, double period_s);
+[[nodiscard]] MotionHistory motion_of(History displacement_m, double period_s);
+/// Butterworth, second order, run forward and backward: no phase. @param cutoff_hz   below half the rate.
+[[nodiscard]] History smoothed(const History& values, double period_s, double cutoff_hz);
+
+/// The signal at a broken index, straight between samples, the first value before the first.
+[[nodiscard]] double value_at(const History& values, double index) noexcept;
+[[nodiscard]] History delayed(const History& values, double samples);
+
+[[nodiscard]] double peak(const History& values) noexcept;
+[[nodiscard]] double rms(const History& values) noexcept;
+[[nodiscard]] History difference(const History& a, const History& b);
+void add(History& values, const History& more, double factor = 1.0);
+
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+enum class TransferKind { ideal, delay, first_order, second_order };
+enum class LawKind { none, elastic, bilinear, giuffre_menegotto_pinto, bouc_wen };
+
+struct TransferModel {
+  TransferKind kind = TransferKind::ideal;
+  double delay_s = 0.0;               // delay and second_order
+  double bandwidth_hz = 0.0;          // first_order, gain down by 3 dB
+  double natural_frequency_hz = 0.0;  // second_order
+  double damping_ratio = 0.0;
+};
+
+/// Keys and meaning as in docs/scenario.md.
+struct LawModel {
+  LawKind kind = LawKind::elastic;
+  double stiffness_n_per_m = 0.0;
+  double yield_force_n = 0.0;
+  double hardening_ratio = 0.0;
+  double r0 = 20.0;
+  double cr1 = 0.925;
+  double cr2 = 0.15;
+  double alpha = 0.0;
+  double gamma_per_m = 0.0;  // n = 1
+  double beta_per_m = 0.0;
+};
+
+/// Delay 0: none. The points of the polynomial are spaced by the delay.
+struct CompensatorModel {
+  int order = 3;
+  double delay_s = 0.0;
+};
+
+/// What the user believes of the site.
+struct Site {
+  TransferModel transfer_system;
+  LawModel specimen;
+  CompensatorModel compensator;
+  double known_mass_kg = 0.0;  // effects that the user's model lists
+  double known_damping_n_s_per_m = 0.0;
+  double displacement_noise_m = 0.0;
+  double force_noise_n = 0.0;
+  double rate_hz = 0.0;  // of control and recording
+};
+
+using Parameters = std::map<std::string, double>;
+
+/// Something that the real site has and the user's model has not. Units are part of the names of
+/// its parameters, which docs/blind_batches.md describes.
+struct PlantEffect {
+  std::string interface;
+  std::string name;
+  Parameters parameters;
+
+  [[nodiscard]] double of(const char* parameter) const { return parameters.at(parameter); }
+};
+
+using PlantEffects = std::vector<PlantEffect>;
 
 /// What happened at the real site, without sensor noise.
 struct TrueSignals {

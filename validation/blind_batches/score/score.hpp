@@ -1,13 +1,15 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "validation/blind_batches/score/marked_case.hpp"
-#include "validation/blind_batches/score/statistics.hpp"
+#include "validation/blind_batches/batch.hpp"
+#include "validation/blind_batches/score/answers.hpp"
 
 namespace hybridtest::blind {
 
@@ -36,5 +38,22 @@ struct Score {
 };
 
 [[nodiscard]] Score score_of(const std::vector<MarkedCase>& cases);
+
+/// Tables for a terminal: confusion, figures with intervals, targets met or missed, the wrong cases.
+[[nodiscard]] std::string score_text(const Score& score);
+
+/// Everything of it, schema hybridtest/blind_score/1.
+[[nodiscard]] nlohmann::ordered_json score_json(const Score& score);
+
+struct BatchScore {
+  std::string text;  // for a person
+  std::string json;  // hybridtest/blind_score/1
+};
+
+/// Opens the key of a batch and scores the answers to it.
+/// @throws std::runtime_error for a key or sealed answers that have changed, and for an answer that is
+///         no diagnosis.json, by the name of its case.
+[[nodiscard]] BatchScore score_batch(const std::filesystem::path& batch, const std::filesystem::path& answers,
+                                     const std::filesystem::path& key, const Digest& digest);
 
 }  // namespace hybridtest::blind

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "validation/blind_batches/batch_files.hpp"
+#include "validation/blind_batches/batch.hpp"
 #include "validation/blind_batches/plant/blind_case.hpp"
 #include "validation/blind_batches/plant/effect_catalogue.hpp"
 

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "validation/blind_batches/plant/base_law.hpp"
-#include "validation/blind_batches/plant/hysteresis.hpp"
 #include "validation/blind_batches/plant/plant.hpp"
-#include "validation/blind_batches/plant/signal_path.hpp"
+#include "validation/blind_batches/plant/signal_chain.hpp"
+#include "validation/blind_batches/plant/specimen.hpp"
 
 // The plant's physics against closed forms.
 namespace hybridtest::blind {

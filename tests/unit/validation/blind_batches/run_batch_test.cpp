@@ -1,4 +1,4 @@
-#include "validation/blind_batches/run_batch.hpp"
+#include "validation/blind_batches/batch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "validation/blind_batches/score/score_batch.hpp"
+#include "validation/blind_batches/score/score.hpp"
 
 namespace hybridtest::blind {
 namespace {

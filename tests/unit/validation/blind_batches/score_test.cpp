@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "validation/blind_batches/score/score_report.hpp"
-
 // Answers of which the score is known beforehand.
 namespace hybridtest::blind {
 namespace {

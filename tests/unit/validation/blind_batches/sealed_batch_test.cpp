@@ -1,4 +1,4 @@
-#include "validation/blind_batches/sealed_batch.hpp"
+#include "validation/blind_batches/batch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "validation/blind_batches/make_batch.hpp"
-#include "validation/blind_batches/score/sealed_key.hpp"
+#include "validation/blind_batches/score/answers.hpp"
 
 namespace hybridtest::blind {
 namespace {

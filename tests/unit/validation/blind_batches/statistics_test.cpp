@@ -1,4 +1,4 @@
-#include "validation/blind_batches/score/statistics.hpp"
+#include "validation/blind_batches/score/answers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,417 @@
+#include "diagnosis/identification/search.hpp"
+
+#include <ceres/ceres.h>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/config_error.hpp"
+#include "diagnosis/identification/search_table.hpp"
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+bool touches_several(const IdentificationProblem& problem, const EffectType& effect) {
+  bool displacement = false;
+  bool force = false;
+  for (const FitSegment& fit : problem.segments) {
+    if (!fit.segment.touched_by(effect)) continue;
+    (fit.segment.to == Channel::measured_force ? force : displacement) = true;
+  }
+  return force && effect.interface == EffectInterface::displacement_sensor;
+}
+
+/// Damping of a specimen's law at rest in the middle, which an effect may take off.
+double damping_of_law(const IdentificationProblem& problem) {
+  if (!problem.model.make_law) return 0.0;
+  const double velocity_m_per_s = problem.scales.of(ParameterScale::velocity_m_per_s);
+  return problem.model.make_law()->trial(0.0, velocity_m_per_s) / velocity_m_per_s;
+}
+
+/// The least that real sites have of a linear parameter: what is searched for above zero only, none; of an amount, none
+/// together with what the model has.
+double least_of(const IdentificationProblem& problem, const EffectType& effect, std::size_t index,
+                const SearchRange& range) {
+  const EffectParameter& parameter = effect.parameters[index];
+  if (range.low >= 0.0) return std::max(0.0, parameter.low);
+  if (!range.restriction.is_amount) return parameter.low;
+  double has = range.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
+  for (const EffectSetting& known : problem.model.effects) {
+    if (known.type == &effect) has += known.values[index];
+  }
+  return std::max(parameter.low, -std::max(0.0, has));
+}
+
+SearchedParameter searched(const IdentificationProblem& problem, const EffectType& effect, std::size_t position,
+                           std::size_t index, const SearchRange& range) {
+  const EffectParameter& parameter = effect.parameters[index];
+  const double scale = problem.scales.of(range.scale);
+  SearchedParameter result{.effect = position, .parameter = index};
+  result.low = std::clamp(range.low * scale, parameter.low, parameter.high);
+  result.high = std::clamp(range.high * scale, parameter.low, parameter.high);
+  const DelaySetting& setting = problem.model.compensator_delay;
+  switch (range.restriction.limit) {
+    case SearchLimit::none: break;
+    case SearchLimit::removable_delay: result.low = std::max(result.low, -problem.model.removable_delay_s); break;
+    case SearchLimit::compensator_setting:
+      if (setting.most_s <= 0.0) break;
+      result.low = std::max(result.low, -setting.set_s);
+      result.high = std::min(result.high, setting.most_s - setting.set_s);
+      break;
+  }
+  result.is_instant = range.scale == ParameterScale::duration_s;
+  result.logarithmic = result.low > 0.0 && result.high > tuning::kLogarithmicFactor * result.low;
+  return result;
+}
+
+}  // namespace
+
+bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
+  const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
+  const SearchRange* const range = search_range(effect, parameter);
+  return range == nullptr || range->restriction.beside == other;
+}
+
+double SearchedParameter::at(double place) const noexcept {
+  return logarithmic ? low * std::pow(high / low, place) : low + (high - low) * place;
+}
+
+double SearchedParameter::place_of(double value) const noexcept {
+  const double inside = std::clamp(value, low, high);
+  return logarithmic ? std::log(inside / low) / std::log(high / low) : (inside - low) / (high - low);
+}
+
+SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects) {
+  SearchPlan plan;
+  plan.linear_ones_remove_all = true;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const EffectType& effect = *effects[i];
+    const bool all_searched = touches_several(problem, effect);
+    EffectSetting neutral{.type = &effect, .values = {}};
+    bool removed_by_linear = false;
+    for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+      const EffectParameter& parameter = effect.parameters[j];
+      if (is_fixed(problem, effect, parameter)) {
+        neutral.values.push_back(parameter.fallback);
+        continue;
+      }
+      const SearchRange& range = *search_range(effect, parameter);
+      if (parameter.is_linear && !all_searched) {
+        neutral.values.push_back(parameter.neutral);
+        const double unit = 0.5 * range.high * problem.scales.of(range.scale);
+        const double low = least_of(problem, effect, j, range);
+        plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
+        removed_by_linear = true;
+      } else {
+        plan.searched.push_back(searched(problem, effect, i, j, range));
+        neutral.values.push_back(plan.searched.back().at(0.5));
+      }
+    }
+    plan.linear_ones_remove_all = plan.linear_ones_remove_all && removed_by_linear;
+    plan.neutral.push_back(std::move(neutral));
+  }
+  return plan;
+}
+
+namespace {
+
+using Bounds = VariableProjection::Bounds;
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
+                              const std::vector<bool>& held, const Eigen::VectorXd& fixed) {
+  Eigen::MatrixXd matrix = normal;
+  Eigen::VectorXd vector = right;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (held[static_cast<std::size_t>(i)]) {
+      matrix.row(i).setZero();
+      matrix(i, i) = 1.0;
+      vector[i] = fixed[i];
+    } else {
+      matrix(i, i) = matrix(i, i) * (1.0 + tuning::kProjectionRidge) + std::numeric_limits<double>::min();
+    }
+  }
+  return matrix.partialPivLu().solve(vector);
+}
+
+/// Least squares within bounds: what leaves its bounds is held there, one after the other.
+Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& right,
+                                      const std::vector<Bounds>& bounds, std::vector<bool>& held) {
+  Eigen::VectorXd scale = columns.colwise().norm().transpose();
+  for (double& value : scale) value = value > 0.0 ? value : 1.0;
+  const Eigen::MatrixXd scaled = columns * scale.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd normal = scaled.transpose() * scaled;
+  const Eigen::VectorXd projected = scaled.transpose() * right;
+  Eigen::VectorXd fixed = Eigen::VectorXd::Zero(scale.size());
+  Eigen::VectorXd solution(scale.size());
+  held.assign(bounds.size(), false);
+  for (std::size_t pass = 0; pass <= bounds.size(); ++pass) {
+    solution = least_squares(normal, projected, held, fixed);
+    bool inside = true;
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double value = solution[row] / scale[row];
+      if (held[i] || (value >= bounds[i].low && value <= bounds[i].high)) continue;
+      held[i] = true;
+      fixed[row] = std::clamp(value, bounds[i].low, bounds[i].high) * scale[row];
+      inside = false;
+    }
+    if (inside) break;
+  }
+  return solution.cwiseQuotient(scale);
+}
+
+}  // namespace
+
+VariableProjection::VariableProjection(const IdentificationProblem& problem, SearchPlan plan, bool with_nuisance)
+    : problem_{problem}, plan_{std::move(plan)}, first_rows_{0} {
+  Eigen::Index nuisances = 0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    const bool touches = plan_.neutral.empty() || std::ranges::any_of(plan_.neutral, [&](const EffectSetting& effect) {
+                           return fit.segment.touched_by(*effect.type);
+                         });
+    if (!touches) continue;
+    touched_.push_back(i);
+    first_rows_.push_back(first_rows_.back() + fit.measured.size());
+    nuisances += fit.nuisance.cols();
+  }
+  measured_.resize(rows());
+  baseline_.resize(rows());
+  nuisance_ = Eigen::MatrixXd::Zero(rows(), with_nuisance ? nuisances : 0);
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    const FitSegment& fit = problem.segments[touched_[i]];
+    const Eigen::Index first = first_rows_[i];
+    measured_.segment(first, fit.measured.size()) = fit.weight * fit.measured;
+    baseline_.segment(first, fit.measured.size()) = fit.weight * fit.baseline;
+    if (!with_nuisance) continue;
+    nuisance_.block(first, column, fit.measured.size(), fit.nuisance.cols()) = fit.weight * fit.nuisance;
+    column += fit.nuisance.cols();
+  }
+}
+
+std::vector<EffectSetting> VariableProjection::searched_at(const Eigen::VectorXd& places) const {
+  std::vector<EffectSetting> effects = plan_.neutral;
+  for (std::size_t i = 0; i < plan_.searched.size(); ++i) {
+    const SearchedParameter& searched = plan_.searched[i];
+    effects[searched.effect].values[searched.parameter] = searched.at(places[static_cast<Eigen::Index>(i)]);
+  }
+  return effects;
+}
+
+Eigen::VectorXd VariableProjection::stacked(const std::vector<EffectSetting>& effects) const {
+  Eigen::VectorXd values(rows());
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    const FitSegment& fit = problem_.segments[touched_[i]];
+    values.segment(first_rows_[i], fit.measured.size()) = fit.weight * predict(problem_, fit, effects);
+  }
+  return values;
+}
+
+Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
+  const std::vector<EffectSetting> absent = searched_at(places);
+  const Eigen::VectorXd base = plan_.linear_ones_remove_all ? baseline_ : stacked(absent);
+  Projected result;
+  const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
+  result.columns.resize(rows(), linear + nuisance_.cols());
+  std::vector<Bounds> bounds;
+  for (Eigen::Index i = 0; i < linear; ++i) {
+    const LinearParameter& parameter = plan_.linear[static_cast<std::size_t>(i)];
+    std::vector<EffectSetting> present = absent;
+    present[parameter.effect].values[parameter.parameter] += parameter.unit;
+    result.columns.col(i) = stacked(present) - base;
+    bounds.push_back({parameter.low / parameter.unit, parameter.high / parameter.unit});
+  }
+  result.columns.rightCols(nuisance_.cols()) = nuisance_;
+  bounds.resize(static_cast<std::size_t>(result.columns.cols()));
+  const Eigen::VectorXd right = measured_ - base;
+  result.coefficients = bounded_least_squares(result.columns, right, bounds, result.held);
+  result.residual = right - result.columns * result.coefficients;
+  // An effect by itself is linear in what it says it is; several may not be together.
+  return linear > 0 && plan_.neutral.size() > 1 ? relinearised(places, std::move(result), bounds) : result;
+}
+
+Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projected solution,
+                                           const std::vector<Bounds>& bounds) const {
+  const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
+  Eigen::VectorXd here = predicted(places, solution);
+  const Eigen::VectorXd off = measured_ - here - solution.residual;
+  if (off.norm() <= tuning::kAsGoodAsLinear * solution.residual.norm()) return solution;
+  solution.residual = measured_ - here;
+  Projected best = solution;
+  for (int pass = 0; pass < tuning::kRelinearisations; ++pass) {
+    for (Eigen::Index i = 0; i < linear; ++i) {
+      Projected moved = solution;
+      const double step = moved.coefficients[i] > 0.0 ? -tuning::kCoefficientStep : tuning::kCoefficientStep;
+      moved.coefficients[i] += step;
+      solution.columns.col(i) = (predicted(places, moved) - here) / step;
+    }
+    solution.coefficients = bounded_least_squares(
+        solution.columns, solution.residual + solution.columns * solution.coefficients, bounds, solution.held);
+    here = predicted(places, solution);
+    solution.residual = measured_ - here;
+    const double before = best.residual.squaredNorm();
+    const double after = solution.residual.squaredNorm();
+    if (after < before) best = solution;
+    if (after > (1.0 - tuning::kAsGoodAsLinear) * before) break;
+  }
+  return best;
+}
+
+Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places, const Projected& solution) const {
+  return stacked(settings(places, solution)) + nuisance_ * solution.coefficients.tail(nuisance_.cols());
+}
+
+std::vector<EffectSetting> VariableProjection::settings(const Eigen::VectorXd& places,
+                                                        const Projected& solution) const {
+  std::vector<EffectSetting> effects = searched_at(places);
+  for (std::size_t i = 0; i < plan_.linear.size(); ++i) {
+    const LinearParameter& linear = plan_.linear[i];
+    const EffectParameter& parameter = effects[linear.effect].type->parameters[linear.parameter];
+    double& value = effects[linear.effect].values[linear.parameter];
+    value += linear.unit * solution.coefficients[static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, parameter.low, parameter.high);
+  }
+  return effects;
+}
+
+namespace {
+
+class ProjectedResidual final : public ceres::CostFunction {
+ public:
+  ProjectedResidual(const VariableProjection& projection, Eigen::Index searched) : projection_{projection} {
+    set_num_residuals(static_cast<int>(projection.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(searched));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override try {
+    const Eigen::Index searched = parameter_block_sizes()[0];
+    const Eigen::VectorXd places = Eigen::Map<const Eigen::VectorXd>{parameters[0], searched};
+    const Eigen::VectorXd residual = projection_.solve(places).residual;
+    if (!residual.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd>{residuals, residual.size()} = residual;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian{
+        jacobians[0], residual.size(), searched};
+    if (searched == 1) {
+      jacobian.col(0) = slope(places, 0, residual);
+    } else {
+      for (Eigen::Index i = 0; i < searched; ++i) jacobian.col(i) = slope(places, i, residual);
+    }
+    return jacobian.allFinite();
+  } catch (const ConfigError&) {
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& places, Eigen::Index i,
+                                      const Eigen::VectorXd& residual) const {
+    Eigen::VectorXd moved = places;
+    const double step = places[i] < 0.5 ? tuning::kDifferenceStep : -tuning::kDifferenceStep;
+    moved[i] += step;
+    return (projection_.solve(moved).residual - residual) / step;
+  }
+
+  const VariableProjection& projection_;
+};
+
+struct Start {
+  Eigen::VectorXd places;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+double cost_at(const VariableProjection& projection, const Eigen::VectorXd& places) try {
+  const double cost = projection.solve(places).residual.squaredNorm();
+  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+} catch (const ConfigError&) {
+  return std::numeric_limits<double>::infinity();
+}
+
+Eigen::VectorXd halton(int index, Eigen::Index dimensions) {
+  constexpr std::array<int, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
+  Eigen::VectorXd point(dimensions);
+  for (Eigen::Index i = 0; i < dimensions; ++i) {
+    const int base = kPrimes[static_cast<std::size_t>(i) % kPrimes.size()];
+    double value = 0.0;
+    double share = 1.0;
+    for (int rest = index + 1; rest > 0; rest /= base) {
+      share /= base;
+      value += share * (rest % base);
+    }
+    point[i] = value;
+  }
+  return point;
+}
+
+Start refine(const VariableProjection& projection, const Start& start) {
+  Eigen::VectorXd places = start.places;
+  ceres::Problem problem;
+  problem.AddResidualBlock(new ProjectedResidual{projection, places.size()}, nullptr, places.data());  // NOLINT: owned
+  for (int i = 0; i < static_cast<int>(places.size()); ++i) {
+    problem.SetParameterLowerBound(places.data(), i, 0.0);
+    problem.SetParameterUpperBound(places.data(), i, 1.0);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = tuning::kSearchIterations;
+  options.function_tolerance = tuning::kSearchTolerance;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  const double cost = cost_at(projection, places);
+  return cost < start.cost ? Start{places, cost} : start;
+}
+
+/// The nearer an instant is to the right one, the less of the record it gets wrong.
+Start settle_instants(const VariableProjection& projection, Start best) {
+  const std::vector<SearchedParameter>& searched = projection.plan().searched;
+  const auto improves = [&](Eigen::Index i, double step) {
+    Start moved = best;
+    moved.places[i] = std::clamp(moved.places[i] + step, 0.0, 1.0);
+    moved.cost = cost_at(projection, moved.places);
+    if (!(moved.cost < best.cost)) return false;
+    best = std::move(moved);
+    return true;
+  };
+  for (Eigen::Index i = 0; i < best.places.size(); ++i) {
+    if (!searched[static_cast<std::size_t>(i)].is_instant) continue;
+    for (double step = tuning::kInstantStepMax; step > tuning::kInstantStepMin; step *= 0.5) {
+      if (!improves(i, step)) improves(i, -step);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+int starts_for(Eigen::Index searched) noexcept {
+  return tuning::kStarts[static_cast<std::size_t>(std::min<Eigen::Index>(searched, 3))];
+}
+
+Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first, int starts) {
+  const auto searched = static_cast<Eigen::Index>(projection.plan().searched.size());
+  if (searched == 0) return Eigen::VectorXd{};
+  const bool has_instant = std::ranges::any_of(projection.plan().searched, &SearchedParameter::is_instant);
+  if (has_instant) starts *= tuning::kInstantStarts;
+  std::vector<Start> tried;
+  if (first.size() == searched) tried.push_back({first, cost_at(projection, first)});
+  for (int i = 0; i < starts; ++i) {
+    const Eigen::VectorXd places = halton(i, searched);
+    tried.push_back({places, cost_at(projection, places)});
+  }
+  std::ranges::stable_sort(tried, {}, &Start::cost);
+  Start best = tried.front();
+  const std::size_t refined = std::min<std::size_t>(tried.size(), tuning::kRefinedStarts);
+  for (std::size_t i = 0; i < refined; ++i) {
+    const Start found = settle_instants(projection, refine(projection, settle_instants(projection, tried[i])));
+    if (found.cost < best.cost) best = found;
+  }
+  return best.places;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "diagnosis/identification/problem.hpp"
+
+namespace hybridtest {
+
+/// A parameter that a search varies between 0 and 1, spread over its range; evenly in its logarithm
+/// where the range spans more than a decade of positive values.
+struct SearchedParameter {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  double low = 0.0;
+  double high = 0.0;
+  bool logarithmic = false;
+  // A time in the record: it is felt in one place only, which derivatives do not see from afar.
+  bool is_instant = false;
+
+  [[nodiscard]] double at(double place) const noexcept;
+  [[nodiscard]] double place_of(double value) const noexcept;
+};
+
+/// A parameter that the prediction is linear in.
+struct LinearParameter {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  double unit = 1.0;  // a change that the recording would show
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Which parameters of a list of effects are searched, which are linear and which stay as they are.
+struct SearchPlan {
+  std::vector<EffectSetting> neutral;  // linear parameters absent, searched ones anywhere, the others at their fallback
+  std::vector<SearchedParameter> searched;
+  std::vector<LinearParameter> linear;
+  bool linear_ones_remove_all = false;  // without them every effect is absent
+};
+
+[[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
+                                     const std::vector<const EffectType*>& effects);
+
+/// Nothing to search for in a parameter: its fallback is used.
+[[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,
+                            const EffectParameter& parameter);
+
+/// Residual of effects at given places of their searched parameters, what is linear solved for.
+/// Rows: the averaged samples of the touched segments, one segment behind the other, weighted.
+struct Projected {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd columns;       // of the linear parameters, then of the nuisances
+  Eigen::VectorXd coefficients;  // likewise; linear ones in their `unit`
+  std::vector<bool> held;        // likewise: at the end of what the parameter may be
+};
+
+class VariableProjection {
+ public:
+  /// Of a coefficient.
+  struct Bounds {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+  };
+
+  VariableProjection(const IdentificationProblem& problem, SearchPlan plan, bool with_nuisance);
+
+  /// @param places   of the searched parameters, 0 to 1.
+  /// @throws ConfigError for parameters that an effect refuses.
+  [[nodiscard]] Projected solve(const Eigen::VectorXd& places) const;
+  /// The weighted prediction with the linear parameters fixed.
+  [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Projected& solution) const;
+  /// The effects at a solution, in their own units.
+  [[nodiscard]] std::vector<EffectSetting> settings(const Eigen::VectorXd& places, const Projected& solution) const;
+
+  [[nodiscard]] const SearchPlan& plan() const noexcept { return plan_; }
+  /// Positions in the problem of the segments that the rows stand for, and where each one's rows begin.
+  [[nodiscard]] const std::vector<std::size_t>& touched() const noexcept { return touched_; }
+  [[nodiscard]] Eigen::Index first_row(std::size_t touched) const noexcept { return first_rows_[touched]; }
+  [[nodiscard]] Eigen::Index rows() const noexcept { return first_rows_.back(); }
+
+ private:
+  /// For effects that are not linear together, as a force gain behind a friction or a play that the force opens:
+  /// Gauss-Newton steps from a solution that took them to be, the residual that of their prediction.
+  [[nodiscard]] Projected relinearised(const Eigen::VectorXd& places, Projected solution,
+                                       const std::vector<Bounds>& bounds) const;
+  [[nodiscard]] std::vector<EffectSetting> searched_at(const Eigen::VectorXd& places) const;
+  [[nodiscard]] Eigen::VectorXd stacked(const std::vector<EffectSetting>& effects) const;
+
+  const IdentificationProblem& problem_;
+  SearchPlan plan_;
+  std::vector<std::size_t> touched_;
+  std::vector<Eigen::Index> first_rows_;  // one more than touched segments
+  Eigen::VectorXd measured_;
+  Eigen::VectorXd baseline_;
+  Eigen::MatrixXd nuisance_;
+};
+
+/// Places of the searched parameters with the least squared residual: from the best few of several
+/// starts spread evenly over the range (Halton, 1960), by Ceres' trust region between 0 and 1.
+/// @param first   where to look first; empty: nowhere in particular.
+/// @param starts  how many of the spread ones to try besides.
+[[nodiscard]] Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first,
+                                          int starts);
+
+/// Starts that fill a range of so many parameters; none for none.
+[[nodiscard]] int starts_for(Eigen::Index searched) noexcept;
+
+}  // namespace hybridtest

@@ -1,0 +1,220 @@
+#include "diagnosis/intake/intake.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "core/text/shown.hpp"
+#include "diagnosis/intake/units.hpp"
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+
+std::string IntakeFinding::text(const std::string& file) const {
+  std::string text = file;
+  if (row > 0) text += ":" + std::to_string(row);
+  text += ": ";
+  if (!column.empty()) text += "column '" + shown(column) + "': ";
+  if (!value.empty()) text += "'" + shown(value) + "': ";
+  text += what;
+  if (more == 1) text += " (and in row " + std::to_string(last_row) + ")";
+  if (more > 1) text += " (and in " + std::to_string(more) + " more rows, the last " + std::to_string(last_row) + ")";
+  return text;
+}
+
+void FindingList::add(std::size_t row, const std::string& column, const std::string& value, const std::string& what) {
+  const auto same = std::ranges::find_if(findings_, [&](const IntakeFinding& finding) {
+    return row > 0 && finding.row > 0 && finding.column == column && finding.what == what;
+  });
+  if (same != findings_.end()) {
+    ++same->more;
+    same->last_row = row;
+    return;
+  }
+  if (findings_.size() == tuning::kFindingsMax) {
+    ++left_out_;
+    return;
+  }
+  findings_.push_back({.row = row, .column = column, .value = value, .what = what, .more = 0, .last_row = row});
+}
+
+std::vector<IntakeFinding> FindingList::sorted() const {
+  std::vector<IntakeFinding> findings = findings_;
+  std::ranges::stable_sort(findings, {}, &IntakeFinding::row);
+  if (left_out_ > 0) {
+    findings.emplace_back();
+    findings.back().what = "and " + std::to_string(left_out_) + " more findings";
+  }
+  return findings;
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 6> kLeftAside{"sample",         "model_time_s",      "compensated_force_n",
+                                                     "energy_error_j", "tracking_lag_sine", "faults"};
+constexpr std::string_view kPredicted = "predicted_";
+
+Channel channel_at(std::size_t index) { return static_cast<Channel>(index); }
+
+/// `_2` as 1; nothing for what is no such suffix.
+std::optional<std::size_t> dof_of_suffix(std::string_view suffix) {
+  if (suffix.empty()) return 0;
+  if (suffix.size() < 2 || suffix.front() != '_' || suffix[1] == '0') return {};
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(suffix.data() + 1, suffix.data() + suffix.size(), number);
+  if (error != std::errc{} || end != suffix.data() + suffix.size() || number > tuning::kDofsMax) return {};
+  return number - 1;
+}
+
+}  // namespace
+
+std::optional<ChannelColumn> channel_of_header(std::string_view header) {
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const std::string_view name = column_name(channel_at(i));
+    if (!header.starts_with(name)) continue;
+    if (const auto dof = dof_of_suffix(header.substr(name.size()))) return ChannelColumn{channel_at(i), *dof};
+  }
+  return {};
+}
+
+bool is_left_aside(std::string_view header) {
+  if (header.starts_with(kPredicted)) return true;
+  return std::ranges::any_of(kLeftAside, [&](std::string_view name) {
+    return header.starts_with(name) && dof_of_suffix(header.substr(name.size())).has_value();
+  });
+}
+
+std::string unknown_column_advice(std::string_view header) {
+  std::vector<std::string> known{std::string{kTimeColumn}};
+  for (std::size_t i = 0; i < kChannels; ++i) known.emplace_back(column_name(channel_at(i)));
+  return "unknown column" + name_advice(header, known, "known here") + "; _1, _2 ... for several degrees of freedom";
+}
+
+namespace {
+
+double median_interval(const std::vector<double>& time_s) {
+  std::vector<double> intervals(time_s.size() - 1);
+  for (std::size_t i = 1; i < time_s.size(); ++i) intervals[i - 1] = time_s[i] - time_s[i - 1];
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+/// What is wrong with one interval; empty when nothing is.
+std::string judged(double interval_s, double period_s, double tolerance_s) {
+  if (interval_s == 0.0) return "time stamp repeated; it must increase from row to row";
+  if (interval_s < 0.0) return "time stamp goes back; it must increase from row to row";
+  if (std::abs(interval_s - period_s) <= tolerance_s) return {};
+  const double periods = interval_s / period_s;
+  if (periods > tuning::kGapPeriods) {
+    return fmt::format("gap before this row: about {:.0f} samples are missing at {:.6g} s per sample",
+                       std::max(1.0, std::round(periods) - 1.0), period_s);
+  }
+  return fmt::format("uneven sampling: not the usual {:.6g} s after the row before", period_s);
+}
+
+/// Every interval may be even and the period still change on the way.
+void check_drift(const RawRecording& raw, double period_s, FindingList& findings) {
+  std::size_t worst = 0;
+  double worst_s = 0.0;
+  for (std::size_t i = 0; i < raw.time_s.size(); ++i) {
+    const double off_s = std::abs(raw.time_s[i] - raw.time_s.front() - static_cast<double>(i) * period_s);
+    if (off_s > worst_s) {
+      worst_s = off_s;
+      worst = i;
+    }
+  }
+  if (worst_s <= 0.5 * period_s + raw.time_resolution_s) return;
+  findings.add(raw.first_row + worst, std::string{kTimeColumn}, fmt::format("{}", raw.time_s[worst]),
+               fmt::format("uneven sampling: the period changes on the way; here {:.3g} s away from an even grid of "
+                           "{:.6g} s",
+                           worst_s, period_s));
+}
+
+}  // namespace
+
+double check_sampling(const RawRecording& raw, FindingList& findings) {
+  const std::vector<double>& time_s = raw.time_s;
+  const double usual_s = median_interval(time_s);
+  if (!(usual_s > 0.0)) {
+    findings.add(0, std::string{kTimeColumn}, {}, "time does not advance: half of the time stamps repeat or go back");
+    return 0.0;
+  }
+  const double digits_s = raw.time_resolution_s <= tuning::kLastDigitOfPeriodMax * usual_s
+                              ? tuning::kLastDigits * raw.time_resolution_s
+                              : 0.0;
+  // Time stamps far from zero have few digits left behind the point.
+  const double rounding_s = tuning::kTimeRounding * std::max(std::abs(time_s.front()), std::abs(time_s.back()));
+  const double tolerance_s = std::max({tuning::kEvenSpacing * usual_s, digits_s, rounding_s});
+  bool is_even = true;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    const std::string wrong = judged(time_s[i] - time_s[i - 1], usual_s, tolerance_s);
+    if (wrong.empty()) continue;
+    is_even = false;
+    findings.add(raw.first_row + i, std::string{kTimeColumn}, fmt::format("{}", time_s[i]), wrong);
+  }
+  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  if (is_even) check_drift(raw, period_s, findings);
+  return period_s;
+}
+
+namespace {
+
+void check_finite(const RawRecording& raw, const std::string& name, const std::vector<double>& values,
+                  FindingList& findings) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      findings.add(raw.first_row + i, name, fmt::format("{}", values[i]), "no finite number");
+    }
+  }
+}
+
+std::size_t dof_count(const RawRecording& raw) {
+  std::size_t count = 0;
+  for (const RawColumn& column : raw.columns) count = std::max(count, column.dof + 1);
+  return count;
+}
+
+void check_columns(const RawRecording& raw, FindingList& findings) {
+  if (raw.columns.empty()) findings.add(0, {}, {}, "no channel: a recording has at least one column besides time_s");
+  for (std::size_t dof = 0; dof < dof_count(raw); ++dof) {
+    if (std::ranges::count(raw.columns, dof, &RawColumn::dof) > 0) continue;
+    findings.add(0, {}, {},
+                 fmt::format("columns of degree of freedom {} are missing; they are counted from 1", dof + 1));
+  }
+}
+
+Recording taken(RawRecording raw, double period_s) {
+  Recording recording;
+  recording.file = raw.file;
+  recording.sample_period_s = period_s;
+  recording.samples = raw.time_s.size();
+  recording.first_row = raw.first_row;
+  recording.dofs.resize(dof_count(raw));
+  for (RawColumn& column : raw.columns) recording.dofs[column.dof].of(column.channel) = std::move(column.values);
+  return recording;
+}
+
+}  // namespace
+
+Intake check_recording(RawRecording raw) {
+  FindingList findings;
+  check_columns(raw, findings);
+  check_finite(raw, std::string{kTimeColumn}, raw.time_s, findings);
+  for (const RawColumn& column : raw.columns) check_finite(raw, column.name, column.values, findings);
+  if (raw.time_s.size() < tuning::kSamplesMin) {
+    findings.add(0, {}, {},
+                 fmt::format("{} rows of data; at least {} are needed", raw.time_s.size(), tuning::kSamplesMin));
+  }
+  double period_s = 0.0;
+  // What follows looks at differences and extremes.
+  if (findings.empty()) period_s = check_sampling(raw, findings);
+  if (period_s > 0.0) check_units(raw, period_s, findings);
+  if (!findings.empty()) return {{}, findings.sorted()};
+  return {taken(std::move(raw), period_s), {}};
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,371 @@
+#include "diagnosis/runs/run_records.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/config_error.hpp"
+#include "core/text/shown.hpp"
+#include "diagnosis/intake/intake.hpp"
+#include "diagnosis/tuning.hpp"
+#include "recording/error.hpp"
+#include "recording/run_file.hpp"
+#include "recording/run_file_reader.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/run_directory.hpp"
+#include "scenario/catalogue/integrators.hpp"
+#include "scenario/scenario.hpp"
+#include "scenario/scenario_digest.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+Scenario scenario_of(const std::filesystem::path& run) { return read_scenario(run / "scenario.yaml", {}); }
+
+const SubstructureScenario& site_of(const Scenario& scenario, const std::filesystem::path& run, std::string_view id) {
+  std::vector<std::string> sites;
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role == Role::experimental_site) sites.push_back(substructure.id);
+  }
+  const std::string known = "; sites of " + run.string() + ": " + listed(sites);
+  if (sites.empty()) throw ConfigError{run.string() + ": this run has no experimental site"};
+  if (id.empty() && sites.size() > 1) throw ConfigError{"--site: which site?" + known};
+  const SubstructureScenario* site = scenario.find(id.empty() ? std::string_view{sites.front()} : id);
+  if (site == nullptr || site->role != Role::experimental_site) {
+    throw ConfigError{"--site " + std::string{id} + ": no such site" + known};
+  }
+  return *site;
+}
+
+/// Displacement and velocity of one interface degree of freedom at the coordinator's steps.
+struct SentMotion {
+  std::vector<double> model_time_s;
+  std::vector<double> displacement_m;
+  std::vector<double> velocity_m_per_s;  // per second of model time
+
+  /// Cubic through both ends of the step; held before the first and after the last.
+  [[nodiscard]] double at(double time_s) const {
+    const auto after = std::ranges::upper_bound(model_time_s, time_s);
+    if (after == model_time_s.begin()) return displacement_m.front();
+    if (after == model_time_s.end()) return displacement_m.back();
+    const auto i = static_cast<std::size_t>(after - model_time_s.begin()) - 1;
+    const double step_s = model_time_s[i + 1] - model_time_s[i];
+    const double u = (time_s - model_time_s[i]) / step_s;
+    const double from = (1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u) * displacement_m[i] +
+                        u * (1.0 - u) * (1.0 - u) * step_s * velocity_m_per_s[i];
+    const double to =
+        u * u * (3.0 - 2.0 * u) * displacement_m[i + 1] - u * u * (1.0 - u) * step_s * velocity_m_per_s[i + 1];
+    return from + to;
+  }
+};
+
+/// A recorded quantity of the structure at one interface: a row per interface degree of freedom, a
+/// column per step.
+Eigen::MatrixXd at_interface(const RunFileReader& coordinator, const Scenario& scenario, const InterfaceMap& interface,
+                             const std::string& quantity, const std::string& unit) {
+  Eigen::MatrixXd structure =
+      Eigen::MatrixXd::Zero(interface.structure_size(), static_cast<Eigen::Index>(coordinator.row_count("steps")));
+  for (Eigen::Index dof = 0; dof < structure.rows(); ++dof) {
+    if (!interface.uses(dof)) continue;
+    const std::vector<double> values =
+        coordinator.column("steps", quantity + scenario.dofs[static_cast<std::size_t>(dof)] + unit);
+    structure.row(dof) = Eigen::Map<const Eigen::RowVectorXd>{values.data(), structure.cols()};
+  }
+  Eigen::MatrixXd at_interface{interface.size(), structure.cols()};
+  InterfaceVector values;
+  for (Eigen::Index step = 0; step < structure.cols(); ++step) {
+    interface.to_interface(structure.col(step), values);
+    at_interface.col(step) = values;
+  }
+  return at_interface;
+}
+
+/// One motion per interface degree of freedom.
+std::vector<SentMotion> sent_motions(const RunFileReader& coordinator, const Scenario& scenario,
+                                     const InterfaceMap& interface) {
+  const Eigen::MatrixXd displacement_m = at_interface(coordinator, scenario, interface, "displacement_", "_m");
+  const Eigen::MatrixXd velocity_m_per_s = at_interface(coordinator, scenario, interface, "velocity_", "_m_per_s");
+  std::vector<SentMotion> sent(static_cast<std::size_t>(interface.size()));
+  for (Eigen::Index k = 0; k < interface.size(); ++k) {
+    SentMotion& motion = sent[static_cast<std::size_t>(k)];
+    motion.model_time_s = coordinator.column("steps", "model_time_s");
+    motion.displacement_m.assign(displacement_m.row(k).begin(), displacement_m.row(k).end());
+    motion.velocity_m_per_s.assign(velocity_m_per_s.row(k).begin(), velocity_m_per_s.row(k).end());
+  }
+  return sent;
+}
+
+/// Model time of each control sample if every command came in time: site time over the scale,
+/// counted from the sample at which path time began to run.
+std::vector<double> planned_model_time_s(const RunFileReader& site, double time_scale) {
+  std::vector<double> time_s = site.column("control", std::string{kTimeColumn});
+  const std::vector<double> model_time_s = site.column("control", "model_time_s");
+  const auto running = std::ranges::find_if(model_time_s, [](double time) { return time > 0.0; });
+  if (running == model_time_s.end()) return std::vector<double>(time_s.size(), 0.0);
+  const auto first = static_cast<std::size_t>(running - model_time_s.begin());
+  const double begin_s = time_s[first] - *running * time_scale;
+  for (double& time : time_s) time = (time - begin_s) / time_scale;
+  return time_s;
+}
+
+void add_sent(RawRecording& raw, const RunFileReader& site, const Scenario& scenario,
+              const SubstructureScenario& substructure, const std::filesystem::path& coordinator_file) {
+  const RunFileReader coordinator{coordinator_file};
+  if (coordinator.row_count("steps") == 0) return;
+  const std::vector<double> model_time_s = planned_model_time_s(site, scenario.time.time_scale);
+  const std::vector<SentMotion> motions = sent_motions(coordinator, scenario, substructure.interface);
+  for (std::size_t dof = 0; dof < motions.size(); ++dof) {
+    RawColumn column{std::string{column_name(Channel::sent_displacement)}, Channel::sent_displacement, dof, {}};
+    for (const double time : model_time_s) column.values.push_back(motions[dof].at(time));
+    raw.columns.push_back(std::move(column));
+  }
+}
+
+void add_control_table(RawRecording& raw, const RunFileReader& site) {
+  for (const TableLayout& table : site.tables()) {
+    if (table.name != "control") continue;
+    for (const Column& column : table.columns) {
+      if (const auto place = channel_of_header(column.name)) {
+        raw.columns.push_back({column.name, place->channel, place->dof, site.column(table.name, column.name)});
+      }
+    }
+  }
+  raw.time_s = site.column("control", std::string{kTimeColumn});
+}
+
+/// Leaves out what comes after the last target: the site returning to rest, alone and without its
+/// compensator, is no part of the test.
+void cut_return(RawRecording& raw, const RunFileReader& site) {
+  const std::vector<double> model_time_s = site.column("control", "model_time_s");
+  const auto last = std::ranges::max_element(model_time_s);  // the first of equals: path time stands still from there
+  const auto samples = std::min(raw.time_s.size(), static_cast<std::size_t>(last - model_time_s.begin()) + 1);
+  raw.time_s.resize(samples);
+  for (RawColumn& column : raw.columns) column.values.resize(samples);
+}
+
+}  // namespace
+
+std::string site_of_run(const std::filesystem::path& run, std::string_view site) {
+  const Scenario scenario = scenario_of(run);
+  return site_of(scenario, run, site).id;
+}
+
+std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
+  return run_file(run, site_of_run(run, site));
+}
+
+RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_view site) try {
+  const Scenario scenario = scenario_of(run);
+  const SubstructureScenario& substructure = site_of(scenario, run, site);
+  const RunFileReader file{run_file(run, substructure.id)};
+  RawRecording raw;
+  raw.file = run.string();
+  add_control_table(raw, file);
+  const std::filesystem::path coordinator = run_file(run, kCoordinatorId);
+  if (std::filesystem::exists(coordinator)) add_sent(raw, file, scenario, substructure, coordinator);
+  cut_return(raw, file);
+  return raw;
+} catch (const RecordingError& error) {
+  throw ConfigError{error.what()};
+}
+
+namespace {
+
+std::string content_of(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw ConfigError{path.string() + ": cannot be read (" + error.message() + ")"};
+  if (size > tuning::kFileSizeMax_bytes) throw ConfigError{path.string() + ": larger than 2 GiB"};
+  std::ifstream stream{path, std::ios::binary};
+  std::string text{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
+  if (!stream || text.size() != size) throw ConfigError{path.string() + ": cannot be read"};
+  return text;
+}
+
+Recording accepted(Intake intake, const std::string& file) {
+  if (intake.recording) return std::move(*intake.recording);
+  std::vector<ConfigIssue> issues;
+  // Rows are shown as lines are; the text of a finding has its place already.
+  for (const IntakeFinding& finding : intake.findings) issues.push_back({.file = {}, .what = finding.text(file)});
+  throw ConfigError{std::move(issues)};
+}
+
+}  // namespace
+
+Recording read_recording(const std::filesystem::path& path, RecordingRole role, std::string_view site) {
+  const std::string file = path.string();
+  Recording recording;
+  if (std::filesystem::is_directory(path)) {
+    recording = accepted(check_recording(raw_recording_of_run(path, site)), file);
+    recording.sha256 = hex(sha256(content_of(site_run_file(path, site))));
+  } else {
+    const std::string text = content_of(path);
+    recording = accepted(read_csv_recording(text, file), file);
+    recording.sha256 = hex(sha256(text));
+  }
+  recording.role = role;
+  return recording;
+}
+
+TestResponse recorded_response(const std::filesystem::path& run, const Scenario& scenario) {
+  const RunFileReader coordinator{run_file(run, kCoordinatorId)};
+  return response_of_steps(scenario, [&](const std::string& name) { return coordinator.column("steps", name); });
+}
+
+TestResponse response_of_steps(const Scenario& scenario,
+                               const std::function<std::vector<double>(const std::string&)>& column) {
+  TestResponse response;
+  response.step_s = scenario.time.step_s;
+  const auto row_of = [&](const std::string& name) {
+    const std::vector<double> values = column(name);
+    return Eigen::RowVectorXd{Eigen::Map<const Eigen::RowVectorXd>{values.data(), std::ssize(values)}};
+  };
+  const Eigen::RowVectorXd ground_m_per_s2 = row_of("ground_acceleration_m_per_s2");
+  const auto dofs = std::ssize(scenario.dofs);
+  for (Eigen::MatrixXd* signal : {&response.displacement_m, &response.velocity_m_per_s, &response.restoring_force_n}) {
+    signal->resize(dofs, ground_m_per_s2.size());
+  }
+  for (Eigen::Index i = 0; i < dofs; ++i) {
+    const std::string& dof = scenario.dofs[static_cast<std::size_t>(i)];
+    response.displacement_m.row(i) = row_of("displacement_" + dof + "_m");
+    response.velocity_m_per_s.row(i) = row_of("velocity_" + dof + "_m_per_s");
+    response.restoring_force_n.row(i) = row_of("restoring_force_" + dof + "_n");
+  }
+  response.applied_force_n = scenario.structure.load_per_ground_acceleration_kg() * ground_m_per_s2;
+  return response;
+}
+
+namespace {
+
+void require_same_test(const Scenario& scenario, const Scenario& ran) {
+  const std::string what = scenario.file.string() + ": not the test that was recorded: ";
+  if (scenario.dofs != ran.dofs) throw ConfigError{what + "the degrees of freedom have other names or another order"};
+  const bool same = std::ranges::equal(scenario.substructures, ran.substructures, [](const auto& a, const auto& b) {
+    return a.id == b.id && a.role == b.role && a.interface_names == b.interface_names;
+  });
+  if (!same) throw ConfigError{what + "the substructures or their interfaces differ"};
+}
+
+/// Velocity that a command carries: from the step before, with its acceleration kept. One column per step.
+Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, const Scenario& scenario,
+                                           const TestResponse& response, double step_s) {
+  Eigen::MatrixXd velocity = Eigen::MatrixXd::Zero(response.displacement_m.rows(), response.steps());
+  for (Eigen::Index dof = 0; dof < velocity.rows(); ++dof) {
+    const std::vector<double> acceleration =
+        coordinator.column("steps", "acceleration_" + scenario.dofs[static_cast<std::size_t>(dof)] + "_m_per_s2");
+    for (Eigen::Index i = 1; i < velocity.cols(); ++i) {
+      velocity(dof, i) = response.velocity_m_per_s(dof, i - 1) + step_s * acceleration[static_cast<std::size_t>(i - 1)];
+    }
+  }
+  return velocity;
+}
+
+/// What a numerical substructure answered, one column per step; nothing where a step is missing.
+std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const SubstructureScenario& substructure,
+                                               Eigen::Index steps) {
+  Eigen::MatrixXd forces_n(substructure.interface.size(), steps);
+  const std::vector<double> numbers = file.column("steps", "step");
+  if (std::ssize(numbers) < steps) return {};
+  for (Eigen::Index i = 0; i < steps; ++i) {
+    if (numbers[static_cast<std::size_t>(i)] != static_cast<double>(i)) return {};
+  }
+  for (Eigen::Index k = 0; k < forces_n.rows(); ++k) {
+    const std::string& name = substructure.interface_names[static_cast<std::size_t>(k)];
+    const std::vector<double> values = file.column("steps", "force_" + name + "_n");
+    forces_n.row(k) = Eigen::Map<const Eigen::RowVectorXd>{values.data(), steps};
+  }
+  return forces_n;
+}
+
+/// Forces of the numerical substructures, recorded and modelled; left out where one has no record.
+void add_numerical_forces(const std::filesystem::path& run, const Scenario& scenario, const Eigen::MatrixXd& velocity,
+                          StructureRecord& record) {
+  StructureRecording& recording = record.recording;
+  Eigen::MatrixXd recorded_n = Eigen::MatrixXd::Zero(recording.displacement_m.rows(), recording.steps());
+  Eigen::MatrixXd modelled_n = recorded_n;
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::numerical_substructure) continue;
+    std::optional<Eigen::MatrixXd> forces_n;
+    if (std::filesystem::exists(run_file(run, substructure.id))) {
+      forces_n = recorded_forces(RunFileReader{run_file(run, substructure.id)}, substructure, recording.steps());
+    }
+    if (!forces_n) {
+      record.notes.push_back("The forces of " + substructure.id + " are not all in " + run.string() +
+                             ": the stiffness of numerical substructures is not judged.");
+      return;
+    }
+    const auto model = substructure.make_model();
+    model->reset();
+    const InterfaceMap& interface = substructure.interface;
+    InterfaceVector displacement_m;
+    InterfaceVector velocity_m_per_s;
+    InterfaceVector force_n = InterfaceVector::Zero(interface.size());
+    for (Eigen::Index i = 0; i < recording.steps(); ++i) {
+      interface.to_interface(recording.displacement_m.col(i), displacement_m);
+      interface.to_interface(velocity.col(i), velocity_m_per_s);
+      model->trial(displacement_m, velocity_m_per_s, force_n);
+      model->commit();
+      interface.add_to_structure(force_n, modelled_n.col(i));
+      interface.add_to_structure(forces_n->col(i), recorded_n.col(i));
+    }
+  }
+  recording.numerical_force_n = std::move(recorded_n);
+  recording.modelled_numerical_force_n = std::move(modelled_n);
+}
+
+/// What of the configuration differs that no effect stands for.
+void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen::RowVectorXd& ground_m_per_s2,
+                      std::vector<std::string>& notes) {
+  if (scenario.integrator_type != ran.integrator_type) {
+    notes.push_back(fmt::format("The scenario integrates by {}, the test was by {}.", scenario.integrator_type,
+                                ran.integrator_type));
+  }
+  if (scenario.time.step_s != ran.time.step_s) {
+    notes.push_back(
+        fmt::format("The scenario's step is {} s, that of the test {} s.", scenario.time.step_s, ran.time.step_s));
+    return;
+  }
+  const auto steps = std::min<Eigen::Index>(ground_m_per_s2.size(), std::ssize(scenario.ground_acceleration_m_per_s2));
+  const Eigen::Map<const Eigen::RowVectorXd> own{scenario.ground_acceleration_m_per_s2.data(), steps};
+  const double off = (own - ground_m_per_s2.head(steps)).norm();
+  if (off > tuning::kSameMotion * ground_m_per_s2.norm()) {
+    notes.push_back(
+        fmt::format("The scenario's ground motion is not the one of the test: they differ by {:.3g} of its root mean "
+                    "square. The one that was recorded is taken.",
+                    off / ground_m_per_s2.norm()));
+  }
+}
+
+}  // namespace
+
+StructureRecord structure_record(const std::filesystem::path& run, const Scenario& scenario) {
+  const Scenario ran = read_scenario(run / "scenario.yaml", {});
+  require_same_test(scenario, ran);
+  const RunFileReader coordinator{run_file(run, kCoordinatorId)};
+  const TestResponse response = recorded_response(run, ran);
+  if (response.steps() == 0) throw RecordingError{run.string() + ": the coordinator completed no step"};
+  StructureRecord record;
+  record.model.structure = scenario.structure;
+  record.model.step_s = scenario.integrator_step_s;
+  record.model.make_integrator = [type = scenario.integrator_type](const LinearStructure& structure, double step_s) {
+    return make_integrator(type, structure, step_s);
+  };
+  const std::vector<double> ground = coordinator.column("steps", "ground_acceleration_m_per_s2");
+  record.recording.step_s = ran.time.step_s;
+  record.recording.ground_m_per_s2 = Eigen::Map<const Eigen::RowVectorXd>{ground.data(), std::ssize(ground)};
+  record.recording.displacement_m = response.displacement_m;
+  record.recording.restoring_force_n = response.restoring_force_n;
+  note_differences(scenario, ran, record.recording.ground_m_per_s2, record.notes);
+  add_numerical_forces(run, scenario, commanded_velocity_m_per_s(coordinator, ran, response, ran.integrator_step_s),
+                       record);
+  return record;
+}
+
+}  // namespace hybridtest

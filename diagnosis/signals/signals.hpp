@@ -1,0 +1,114 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "diagnosis/tuning.hpp"
+#include "plant/effects/effect.hpp"
+
+namespace hybridtest {
+
+/// What is known of one interface at every sample: evenly spaced, all of one length, finite.
+struct GapSignals {
+  double period_s = 0.0;
+  std::span<const double> input_m;   // displacement that drove the interface
+  std::span<const double> measured;  // what came out [m] or [N]
+  std::span<const double> residual;  // measured less modelled, in the unit of `measured`
+
+  [[nodiscard]] std::size_t size() const noexcept { return residual.size(); }
+  [[nodiscard]] double duration_s() const noexcept { return static_cast<double>(size()) * period_s; }
+};
+
+/// Mean square; 0 for nothing.
+[[nodiscard]] double mean_square(std::span<const double> values) noexcept;
+/// Mean square about the mean.
+[[nodiscard]] double variance(std::span<const double> values) noexcept;
+
+/// A turn of the motion, found once it has come back by a threshold.
+struct Reversal {
+  std::size_t sample = 0;  // of the extreme
+  double displacement_m = 0.0;
+};
+
+/// Extremes between which the motion goes by more than `threshold_m`, in order; maxima and minima in turn.
+[[nodiscard]] std::vector<Reversal> reversals_of(std::span<const double> displacement_m, double threshold_m);
+
+/// A threshold above what noise does: a fiftieth of the whole span.
+[[nodiscard]] double reversal_threshold_m(std::span<const double> displacement_m);
+
+/// |displacement - displacement at the last reversal| at every sample; before the first, from the start.
+[[nodiscard]] std::vector<double> distance_since_reversal_m(std::span<const double> displacement_m,
+                                                            const std::vector<Reversal>& reversals);
+
+/// Whole cycles completed at every sample: two reversals each.
+[[nodiscard]] std::vector<double> cycles_completed(std::size_t samples, const std::vector<Reversal>& reversals);
+
+struct RestStretch {
+  std::size_t begin = 0;
+  std::size_t count = 0;
+};
+
+/// Stretches of 0.2 s, side by side, in which the motion stays within a thousandth of its whole span.
+[[nodiscard]] std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s);
+
+/// Largest minus smallest value; 0 of none.
+[[nodiscard]] double span_of(std::span<const double> values);
+
+/// Motion from sampled displacements: a polynomial of degree 4 through the 2 m + 1 samples around
+/// each one, by least squares (Savitzky and Golay, 1964). Zero phase; towards the ends, where no
+/// window fits around a sample, the outermost window's polynomial is evaluated off its centre.
+class LocalPolynomial {
+ public:
+  /// The narrowest window with more samples than coefficients.
+  static constexpr std::size_t kHalfWidthMin = tuning::kSmoothingDegree / 2 + 1;
+
+  /// @param half_width   m in samples, at least kHalfWidthMin.
+  LocalPolynomial(std::size_t half_width, double sample_period_s);
+
+  /// @param displacement_m   at least 2 m + 1 samples.
+  [[nodiscard]] std::vector<Motion> motion(std::span<const double> displacement_m) const;
+  /// The displacement alone.
+  [[nodiscard]] std::vector<double> smooth(std::span<const double> values) const;
+  /// Share of white noise variance that smoothing leaves.
+  [[nodiscard]] double noise_share() const noexcept;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d at(std::span<const double> window, std::size_t row) const;
+
+  std::size_t half_width_;
+  // Weights of value, first and second derivative at each place of the window, 3 rows per place.
+  Eigen::MatrixXd weights_;
+};
+
+/// Standard deviation of the white part of a signal: what a narrow local polynomial leaves. An
+/// upper limit for signals with content up to half the sampling rate.
+/// @param values   at least 7 samples.
+[[nodiscard]] double white_noise_level(std::span<const double> values);
+
+/// The widest window whose polynomials still leave no more than white noise of that level, so that
+/// derivatives are as quiet as the motion allows.
+[[nodiscard]] std::size_t widest_faithful_half_width(std::span<const double> values);
+
+/// Weighted mean of the samples around each one. The weights are those of a normal distribution of deviation s, applied
+/// again to what they leave, and once more (twicing: Tukey, Exploratory Data Analysis, 1977): the gain at a frequency
+/// f, 1 - (1 - g)^3 with g = exp(-(2 pi f s)^2 / 2), is flat to the sixth order at low ones and falls so steeply at
+/// high ones that the noise of a second derivative does not survive it. Zero phase; at the ends the weights of the
+/// samples that there are.
+class FlatSmoother {
+ public:
+  /// @param deviation   s in samples; 0 changes nothing.
+  explicit FlatSmoother(double deviation);
+
+  [[nodiscard]] std::vector<double> smooth(std::span<const double> values) const;
+  /// Samples on either side that take part.
+  [[nodiscard]] std::size_t reach() const noexcept { return weights_.size() - 1; }
+  /// Share of white noise variance that smoothing leaves.
+  [[nodiscard]] double noise_share() const noexcept;
+
+ private:
+  std::vector<double> weights_;  // of the sample itself and of those 1, 2, … beside it; their sum both ways is 1
+};
+
+}  // namespace hybridtest

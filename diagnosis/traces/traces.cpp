@@ -1,0 +1,260 @@
+#include "diagnosis/traces/traces.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <unsupported/Eigen/FFT>
+#include <vector>
+
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+int lag_at(std::span<const double> sent_m, double received_m, std::size_t i, std::size_t latest) {
+  for (std::size_t lag = 0; lag <= std::min(i, latest); ++lag) {
+    if (received_m == sent_m[i - lag]) return static_cast<int>(lag);
+  }
+  return -1;
+}
+
+/// Mean square of what was received less what was sent, over that of what was received.
+double gap_share(std::span<const double> sent_m, std::span<const double> received_m) {
+  double gap = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < received_m.size(); ++i) {
+    gap += std::pow(received_m[i] - sent_m[i], 2);
+    all += std::pow(received_m[i], 2);
+  }
+  return all > 0.0 ? gap / all : 0.0;
+}
+
+}  // namespace
+
+bool NetworkLags::fluctuate() const noexcept {
+  return found >= tuning::kLagsFoundMin && shrinking >= tuning::kLagsShrinkingMin;
+}
+
+NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m, double period_s) {
+  NetworkLags lags;
+  const auto latest = static_cast<std::size_t>(tuning::kArrivalLagMax_s / period_s);
+  lags.lag.assign(received_m.size(), -1);
+  std::map<int, double> fresh;
+  double moving = 0.0;
+  double found = 0.0;
+  double shrinking = 0.0;
+  double fresh_count = 0.0;
+  int before = -1;
+  for (std::size_t i = 1; i < received_m.size(); ++i) {
+    if (sent_m[i] == sent_m[i - 1]) {
+      before = -1;
+      continue;
+    }
+    const int lag = lags.lag[i] = lag_at(sent_m, received_m[i], i, latest);
+    moving += 1.0;
+    const bool is_held = received_m[i] == received_m[i - 1];
+    lags.held += is_held ? 1.0 : 0.0;
+    if (lag >= 0) {
+      found += 1.0;
+      lags.mean += lag;
+      if (before >= 0 && lag < before) shrinking += 1.0;
+      if (!is_held) {
+        fresh[lag] += 1.0;
+        fresh_count += 1.0;
+      }
+    }
+    before = lag;
+  }
+  if (moving == 0.0 || found == 0.0 || fresh_count == 0.0) return lags;
+  lags.found = found / moving;
+  lags.shrinking = shrinking / found;
+  lags.held /= moving;
+  lags.mean /= found;
+  for (const auto& [lag, count] : fresh) lags.fresh_at_usual = std::max(lags.fresh_at_usual, count / fresh_count);
+  return lags;
+}
+
+std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<const double> received_m,
+                                      double period_s) {
+  const NetworkLags lags = lags_between(sent_m, received_m, period_s);
+  if (!lags.fluctuate()) return {};
+  const bool is_loss = lags.fresh_at_usual > tuning::kEquallyLateMin;
+  const EffectType* const type =
+      find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
+  if (type == nullptr) return {};
+  // Even lateness up to J is J / 2 on average.
+  const double value = is_loss ? lags.held : 2.0 * lags.mean * period_s;
+  Trace trace{.effect = {.type = type, .values = {}}, .in = Channel::target_displacement};
+  for (const EffectParameter& parameter : type->parameters) {
+    trace.effect.values.push_back(std::isnan(parameter.fallback) ? value : parameter.fallback);
+  }
+  trace.gap_share = gap_share(sent_m, received_m);
+  return trace;
+}
+
+namespace {
+
+constexpr Eigen::Index kPadded = tuning::kStepPadding * tuning::kStepBins;
+
+/// The way between neighbouring samples, smoothed: how much each reading counts.
+std::vector<double> ways_of(std::span<const double> values, double period) {
+  const LocalPolynomial polynomial{widest_faithful_half_width(values), period};
+  std::vector<double> ways;
+  ways.reserve(values.size());
+  for (const Motion& motion : polynomial.motion(values)) ways.push_back(std::abs(motion.velocity_m_per_s) * period);
+  return ways;
+}
+
+struct Readings {
+  std::span<const double> values;
+  std::vector<double> ways;
+  double first = 0.0;  // the least value
+  double span = 0.0;
+  double way = 0.0;  // all of them
+
+  /// As many as would make up the way in equal parts.
+  [[nodiscard]] double samples_that_count() const {
+    double squares = 0.0;
+    for (const double part : ways) squares += part * part;
+    return way * way / squares;
+  }
+  [[nodiscard]] double coherence(double steps_in_span) const {
+    std::complex<double> sum;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      sum += std::polar(ways[i], 2.0 * std::numbers::pi * steps_in_span * (values[i] - first) / span);
+    }
+    return std::abs(sum) / way;
+  }
+};
+
+/// Coherence by quarters of a step in the span.
+std::vector<double> coherences(const Readings& readings) {
+  Eigen::VectorXd density = Eigen::VectorXd::Zero(kPadded);
+  for (std::size_t i = 0; i < readings.values.size(); ++i) {
+    const double place =
+        (readings.values[i] - readings.first) / readings.span * static_cast<double>(tuning::kStepBins - 1);
+    density[static_cast<Eigen::Index>(std::lround(place))] += readings.ways[i] / readings.way;
+  }
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::VectorXcd spectrum;
+  transform.fwd(spectrum, density);
+  std::vector<double> result(static_cast<std::size_t>(spectrum.size()));
+  for (Eigen::Index i = 0; i < spectrum.size(); ++i) result[static_cast<std::size_t>(i)] = std::abs(spectrum[i]);
+  return result;
+}
+
+/// The number of steps in the span, near `rough`, with the largest coherence (golden section).
+double refined(const Readings& readings, double rough) {
+  constexpr double kGolden = std::numbers::phi - 1.0;
+  double low = rough - tuning::kStepReach;
+  double high = rough + tuning::kStepReach;
+  for (int i = 0; i < tuning::kStepSections; ++i) {
+    const double left = high - kGolden * (high - low);
+    const double right = low + kGolden * (high - low);
+    if (readings.coherence(left) > readings.coherence(right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+ReadingSteps steps_of_readings(std::span<const double> values) {
+  if (values.size() < tuning::kStepSamplesMin) return {};
+  const auto [low, high] = std::ranges::minmax_element(values);
+  Readings readings{.values = values, .ways = ways_of(values, 1.0), .first = *low, .span = *high - *low};
+  for (const double way : readings.ways) readings.way += way;
+  if (!(readings.span > 0.0) || !(readings.way > 0.0)) return {};
+  const double noise = white_noise_level(values);
+  const double finest = std::min(
+      tuning::kStepsPerBinMax * static_cast<double>(tuning::kStepBins),
+      noise > 0.0 ? readings.span / (tuning::kStepOverNoise * noise) : std::numeric_limits<double>::infinity());
+  const std::vector<double> found = coherences(readings);
+  constexpr double kPerStep = static_cast<double>(kPadded) / static_cast<double>(tuning::kStepBins - 1);
+  const auto place = [&](double steps) { return static_cast<std::size_t>(std::lround(steps * kPerStep)); };
+  if (finest <= tuning::kStepsInSpanMin) return {};
+  const auto begin = found.begin() + static_cast<std::ptrdiff_t>(place(tuning::kStepsInSpanMin));
+  const auto end = found.begin() + static_cast<std::ptrdiff_t>(place(finest));
+  if (begin >= end) return {};
+  const auto best = std::max_element(begin, end);
+  const auto coarsest =
+      std::find_if(begin, end, [best](double coherence) { return coherence >= tuning::kStepAsCoherent * *best; });
+  const auto peak = std::max_element(coarsest, std::min(end, coarsest + tuning::kStepPadding));
+  const double rough = static_cast<double>(peak - found.begin()) / kPerStep;
+  // A way from one reversal to the next leaves at most q / pi.
+  const double reversals = 1.0 + static_cast<double>(reversals_of(values, reversal_threshold_m(values)).size());
+  const double by_chance = reversals * readings.span / (std::numbers::pi * rough * readings.way);
+  // A way that few samples make up, as of a spike, keeps to some step or other: the largest of so many random sums.
+  const double tried = static_cast<double>(end - begin);
+  const double by_few = std::sqrt(std::log(tried + 2.0) / readings.samples_that_count());
+  if (*peak < std::max(tuning::kStepCoherenceMin, tuning::kStepOverChance * std::max(by_chance, by_few))) return {};
+  const double steps = refined(readings, rough);
+  ReadingSteps result{.step = readings.span / steps, .coherence = readings.coherence(steps)};
+  return result.coherence < tuning::kStepCoherenceMin ? ReadingSteps{} : result;
+}
+
+namespace {
+
+bool has(const SiteModel& model, const EffectType* type) {
+  return std::ranges::any_of(model.effects, [type](const EffectSetting& effect) { return effect.type == type; });
+}
+
+/// Coarse steps of one sensor, unless they are finer than what no model is expected to reproduce.
+std::optional<Trace> trace_of_sensor(EffectInterface sensor, Channel channel, const std::vector<double>& values) {
+  const double step = steps_of_readings(values).step;
+  const EffectType* const type = find_effect(sensor, DigitTrace::rounding);
+  const double variance =
+      step * step / 12.0;  // Widrow and Kollar (2008): of an even error between half a step each way
+  const double all = mean_square(values);
+  if (type == nullptr || !(variance > tuning::kModelAllowance * tuning::kModelAllowance * all)) return {};
+  return Trace{.effect = {.type = type, .values = {step}}, .in = channel, .gap_share = variance / all};
+}
+
+std::vector<Trace> traces_of(const DofRecording& dof, double period_s) {
+  std::vector<Trace> traces;
+  const auto add = [&](std::optional<Trace> trace) {
+    if (trace) traces.push_back(std::move(*trace));
+  };
+  if (dof.has(Channel::sent_displacement) && dof.has(Channel::target_displacement)) {
+    add(trace_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement), period_s));
+  }
+  add(trace_of_sensor(EffectInterface::displacement_sensor, Channel::measured_displacement,
+                      dof.of(Channel::measured_displacement)));
+  add(trace_of_sensor(EffectInterface::force_sensor, Channel::measured_force, dof.of(Channel::measured_force)));
+  return traces;
+}
+
+}  // namespace
+
+bool shows_in_digits(const EffectType& effect) noexcept { return effect.traits.digits != DigitTrace::none; }
+
+std::vector<Trace> find_traces(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof) {
+  std::vector<Trace> found;
+  for (const Recording& recording : recordings) {
+    if (recording.role != RecordingRole::fit || recording.dofs.size() <= dof) continue;
+    for (Trace& trace : traces_of(recording.dofs[dof], recording.sample_period_s)) {
+      if (has(model, trace.effect.type)) continue;
+      const auto known =
+          std::ranges::find_if(found, [&](const Trace& other) { return other.effect.type == trace.effect.type; });
+      if (known == found.end()) {
+        found.push_back(std::move(trace));
+      } else {
+        known->gap_share += trace.gap_share;
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,110 @@
+#include "diagnosis/identification/segment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr double kMass_kg = 2.0e4;
+
+/// The motion of made recordings, which begins without a jump of any derivative that is looked at.
+double motion_m(double t) { return made_motion_m(t + 1.0) * std::pow(std::tanh(t), 4); }
+
+double acceleration_m_per_s2(double t) {
+  constexpr double kStep_s = 1e-3;
+  return (motion_m(t + kStep_s) - 2.0 * motion_m(t) + motion_m(t - kStep_s)) / (kStep_s * kStep_s);
+}
+
+SiteModel mass_only() {
+  SiteModel model = made_model();
+  model.make_law = nullptr;
+  model.effects.push_back({find_effect(EffectInterface::specimen, "inertia"), {kMass_kg}});
+  return model;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+double residual_n(const SiteModel& model, const Segment& segment) {
+  std::vector<double> residual = predict(model, segment);
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= segment.measured[i];
+  return root_mean_square(residual);
+}
+
+const Segment& of_force(const std::vector<Segment>& segments) {
+  return *std::ranges::find(segments, Channel::measured_force, &Segment::to);
+}
+
+TEST(ModelledSegments, MassIsCorrectWithinAccelerationNoise) {
+  const Recording recording = made_recording(motion_m, [](double t) { return kMass_kg * acceleration_m_per_s2(t); });
+  const SiteModel model = mass_only();
+  const auto segments = modelled_segments(model, recording, 0, 0);
+  const Segment& smooth = of_force(segments);
+  const double floor_n = noise_floor(model, smooth);
+  // One draw of noise against another one over 6000 samples of some tens of independent ones each.
+  EXPECT_NEAR(residual_n(model, smooth), floor_n, 0.15 * floor_n);
+  // Windows as wide as the displacement alone bears leave more.
+  const auto plain = segments_of(recording, 0, 0);
+  EXPECT_GT(residual_n(model, of_force(plain)), residual_n(model, smooth));
+  EXPECT_LT(residual_n(model, smooth), 0.01 * root_mean_square(smooth.measured));
+}
+
+TEST(ModelledSegments, WrongMassIsDetected) {
+  const Recording recording =
+      made_recording(motion_m, [](double t) { return 1.1 * kMass_kg * acceleration_m_per_s2(t); });
+  const auto segments = modelled_segments(mass_only(), recording, 0, 0);
+  const Segment& smooth = of_force(segments);
+  // Where it is judged.
+  const auto judged = [&](const std::vector<double>& values) {
+    const auto end = static_cast<std::ptrdiff_t>(smooth.unjudged);
+    return std::vector<double>(values.begin() + end, values.end() - end);
+  };
+  const double part =
+      residual_n(mass_only(), smooth) * std::sqrt(6000.0 / (6000.0 - 2.0 * static_cast<double>(smooth.unjudged)));
+  // Noise of half a hundredth of the force, against the motion in some hundred independent stretches.
+  EXPECT_NEAR(part / root_mean_square(judged(smooth.measured)), 0.1 / 1.1, 5e-4);
+}
+
+TEST(ModelledSegments, UnjudgedEndsEqualTheMeasurement) {
+  const Recording recording = made_recording(motion_m, [](double t) { return kMass_kg * acceleration_m_per_s2(t); });
+  const auto segments = modelled_segments(mass_only(), recording, 0, 0);
+  const Segment& smooth = of_force(segments);
+  ASSERT_GT(smooth.unjudged, 3U);
+  const std::vector<double> predicted = predict(mass_only(), smooth);
+  EXPECT_EQ(predicted.front(), smooth.measured.front());
+  EXPECT_EQ(predicted.back(), smooth.measured.back());
+  EXPECT_EQ(predicted[smooth.unjudged - 1], smooth.measured[smooth.unjudged - 1]);
+  EXPECT_NE(predicted[smooth.unjudged], smooth.measured[smooth.unjudged]);
+}
+
+TEST(ModelledSegments, ConverterStepsAreSmoothed) {
+  SiteModel coarse = mass_only();
+  coarse.effects.push_back({find_effect(EffectInterface::force_sensor, "quantization"), {200.0}});
+  const Recording recording = made_recording(
+      motion_m, [](double t) { return 200.0 * std::round(kMass_kg * acceleration_m_per_s2(t) / 200.0); }, 0.0);
+  const auto segments = modelled_segments(coarse, recording, 0, 0);
+  const Segment& smooth = of_force(segments);
+  ASSERT_TRUE(smooth.is_smoothed);
+  EXPECT_EQ(predict(coarse, smooth), predict(mass_only(), smooth));
+  // Of an even error between half a step each way less than half is left.
+  EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
+}
+
+TEST(ModelledSegments, SpringIsJudgedByTheRecordedForce) {
+  const Recording recording = made_recording(motion_m, [](double t) { return 2e6 * motion_m(t); });
+  for (const Segment& segment : modelled_segments(made_model(), recording, 0, 0)) {
+    EXPECT_EQ(segment.measured, recording.dofs[0].of(segment.to));
+    EXPECT_EQ(segment.unjudged, 0U);
+  }
+  EXPECT_EQ(modelled_segments(mass_only(), recording, 0, 0).size(), 2U);
+}
+
+}  // namespace
+}  // namespace hybridtest

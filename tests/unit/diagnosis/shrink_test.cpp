@@ -1,0 +1,48 @@
+#include "diagnosis/verdict/shrink.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace hybridtest {
+namespace {
+
+using report::Interval;
+using report::Shrink;
+using report::Verdict;
+
+Shrink removing(Interval removed, double before = 0.1, double changed = 0.08) {
+  Shrink shrink;
+  shrink.nrmse_before = before;
+  shrink.floor_nrmse = 0.01;
+  shrink.changed_nrmse = changed;
+  shrink.ci95 = removed;
+  return shrink;
+}
+
+Verdict carried_over(Verdict verdict, const Shrink& one) { return verdict_carried_over(verdict, std::array{one}); }
+
+TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
+  for (const Verdict verdict : {Verdict::named, Verdict::set, Verdict::partial}) {
+    EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2})), Verdict::unknown);
+    EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2}, 0.015)), Verdict::none) << "there is hardly a gap";
+    EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.72})), verdict) << "it may well carry over";
+    EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65})), Verdict::unknown) << "of a gap ten times its floor";
+    EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65}, 0.018)), verdict) << "no more can be explained";
+    EXPECT_EQ(carried_over(verdict, removing({0.97, 0.99})), verdict);
+    EXPECT_EQ(carried_over(verdict, removing({-0.01, 0.01}, 0.1, 0.0005)), verdict)
+        << "a stroke limit that is not reached there";
+  }
+  EXPECT_EQ(carried_over(Verdict::unknown, removing({-0.4, 0.2}, 0.015)), Verdict::unknown);
+}
+
+TEST(CarryingOver, KeepsCauseOfOneChannelDespiteOtherChannel) {
+  const Shrink explained = removing({0.98, 0.99});
+  const Shrink not_explained = removing({0.1, 0.2});
+  EXPECT_EQ(verdict_carried_over(Verdict::named, std::array{explained, not_explained}), Verdict::named);
+  EXPECT_EQ(verdict_carried_over(Verdict::named, std::array{not_explained, not_explained}), Verdict::unknown);
+  EXPECT_EQ(verdict_carried_over(Verdict::named, {}), Verdict::named);
+}
+
+}  // namespace
+}  // namespace hybridtest

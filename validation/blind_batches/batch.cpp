@@ -1,0 +1,357 @@
+#include "validation/blind_batches/batch.hpp"
+
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "validation/blind_batches/library_terms.hpp"
+
+namespace hybridtest::blind {
+
+namespace {
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.10g", value);
+  return text.data();
+}
+
+std::string transfer_yaml(const TransferModel& model) {
+  switch (model.kind) {
+    case TransferKind::ideal: return "{type: ideal}";
+    case TransferKind::delay: return "{type: delay, delay_s: " + number(model.delay_s) + "}";
+    case TransferKind::first_order: return "{type: first_order, bandwidth_hz: " + number(model.bandwidth_hz) + "}";
+    case TransferKind::second_order:
+      return "{type: second_order, natural_frequency_hz: " + number(model.natural_frequency_hz) +
+             ", damping_ratio: " + number(model.damping_ratio) + ", delay_s: " + number(model.delay_s) + "}";
+  }
+  return {};
+}
+
+std::string law_yaml(const LawModel& law) {
+  const std::string stiffness = ", stiffness_n_per_m: " + number(law.stiffness_n_per_m);
+  const std::string yielding =
+      ", yield_force_n: " + number(law.yield_force_n) + ", hardening_ratio: " + number(law.hardening_ratio);
+  switch (law.kind) {
+    case LawKind::none: return "{type: none}";
+    case LawKind::elastic: return "{type: elastic" + stiffness + "}";
+    case LawKind::bilinear: return "{type: bilinear" + stiffness + yielding + "}";
+    case LawKind::giuffre_menegotto_pinto: return "{type: giuffre_menegotto_pinto" + stiffness + yielding + "}";
+    case LawKind::bouc_wen:
+      return "{type: bouc_wen" + stiffness + ", alpha: " + number(law.alpha) +
+             ", gamma_per_m: " + number(law.gamma_per_m) + ", beta_per_m: " + number(law.beta_per_m) + "}";
+  }
+  return {};
+}
+
+/// Fixed width: 15 characters and the comma, whatever the value.
+void append_value(std::string& text, double value) {
+  std::array<char, 32> digits{};
+  const int length = std::snprintf(digits.data(), digits.size(), ",%+.7e", value);
+  text.append(digits.data(), static_cast<std::size_t>(length));
+}
+
+nlohmann::ordered_json cause_json(const Cause& cause) {
+  return {{"interface", cause.interface}, {"effect", cause.effect}};
+}
+
+}  // namespace
+
+std::string case_name(std::size_t index) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "case_%04zu", index + 1);
+  return text.data();
+}
+
+std::string site_yaml(const Site& site) {
+  std::string text;
+  text += "transfer_system: " + transfer_yaml(site.transfer_system) + "\n";
+  text += "specimen: " + law_yaml(site.specimen) + "\n";
+  text += "sensors: {displacement_noise_m: " + number(site.displacement_noise_m) +
+          ", force_noise_n: " + number(site.force_noise_n) + "}\n";
+  text += site.compensator.delay_s > 0.0
+              ? "compensator: {type: polynomial_displacement, order: " + std::to_string(site.compensator.order) +
+                    ", delay_s: " + number(site.compensator.delay_s) + "}\n"
+              : "compensator: {type: none}\n";
+  text += "control_rate_hz: " + number(site.rate_hz) + "\n";
+  if (site.known_mass_kg > 0.0 || site.known_damping_n_s_per_m > 0.0) text += "effects:\n";
+  if (site.known_mass_kg > 0.0) {
+    text += "  - {interface: specimen, effect: inertia, mass_kg: " + number(site.known_mass_kg) + "}\n";
+  }
+  if (site.known_damping_n_s_per_m > 0.0) {
+    text += "  - {interface: specimen, effect: viscous_damping, damping_n_s_per_m: " +
+            number(site.known_damping_n_s_per_m) + "}\n";
+  }
+  return text;
+}
+
+std::string recording_csv(const PlantRecording& recording, const RecordedColumns& columns, double rate_hz) {
+  std::vector<std::pair<const char*, const History*>> channels;
+  if (columns.sent) channels.emplace_back("sent_displacement_m", &recording.sent_m);
+  if (columns.target) channels.emplace_back("target_displacement_m", &recording.target_m);
+  if (columns.command) channels.emplace_back("command_displacement_m", &recording.command_m);
+  channels.emplace_back("measured_displacement_m", &recording.measured_m);
+  channels.emplace_back("measured_force_n", &recording.measured_n);
+  std::string text = "time_s";
+  for (const auto& [name, values] : channels) text += std::string{","} + name;
+  text += '\n';
+  for (std::size_t i = 0; i < recording.measured_m.size(); ++i) {
+    std::array<char, 32> time{};
+    std::snprintf(time.data(), time.size(), "%.7f", static_cast<double>(i) / rate_hz);
+    text += time.data();
+    for (const auto& [name, values] : channels) append_value(text, (*values)[i]);
+    text += '\n';
+  }
+  return text;
+}
+
+nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blind_case) {
+  static constexpr std::array<const char*, 4> kResiduals{"network", "compensator", "transfer_system", "specimen"};
+  const Truth& truth = blind_case.truth;
+  nlohmann::ordered_json json;
+  json["case"] = name;
+  json["truth"] = name_of(truth.kind);
+  json["effects"] = nlohmann::ordered_json::array();
+  for (const PlantEffect& effect : truth.effects) {
+    nlohmann::ordered_json entry{{"interface", effect.interface}, {"effect", effect.name}};
+    entry["parameters"] = in_library_terms(blind_case.setting.site, effect);
+    entry["plant_parameters"] = effect.parameters;
+    json["effects"].push_back(std::move(entry));
+  }
+  json["acceptable"] = nlohmann::ordered_json::array();
+  for (const Cause& cause : truth.acceptable) json["acceptable"].push_back(cause_json(cause));
+  json["gap_at"] = kResiduals[static_cast<std::size_t>(truth.residual)];
+  json["gap_to_floor"] = truth.gap_to_floor;
+  json["held_out_gap_to_floor"] = truth.held_out_gap_to_floor;
+  json["variance_removed_by_true_model"] = truth.variance_removed;
+  return json;
+}
+
+std::string_view name_of(TruthClass kind) noexcept {
+  switch (kind) {
+    case TruthClass::none: return "none";
+    case TruthClass::named: return "named";
+    case TruthClass::unknown: return "unknown";
+    case TruthClass::pair: return "pair";
+  }
+  return "";
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw std::runtime_error{path.string() + ": " + why};
+}
+
+/// Reads and takes apart; what is missing in it is found by `take`.
+template <class Take>
+auto from_json(const fs::path& path, Take take) {
+  const std::string text = read_whole_file(path);
+  try {
+    return take(Json::parse(text));
+  } catch (const Json::exception& error) {
+    refuse(path, std::string{"is not what was written there: "} + error.what());
+  }
+}
+
+fs::path answer_file(const fs::path& answers, const std::string& name) { return answers / name / "diagnosis.json"; }
+
+std::string digest_of(const fs::path& path, const Digest& digest) { return digest(read_whole_file(path)); }
+
+}  // namespace
+
+std::string read_whole_file(const fs::path& path) {
+  std::ifstream file{path, std::ios::binary};
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) refuse(path, "cannot be read");
+  return std::move(text).str();
+}
+
+std::vector<CaseFiles> open_batch(const fs::path& batch, const Digest& digest) {
+  return from_json(batch / "batch.json", [&](const Json& json) {
+    std::vector<CaseFiles> cases;
+    for (const Json& entry : json.at("cases")) {
+      CaseFiles files;
+      files.name = entry.at("case").get<std::string>();
+      for (const auto& [name, hash] : entry.at("files").items()) {
+        const fs::path path = batch / files.name / name;
+        if (digest_of(path, digest) != hash.get<std::string>()) refuse(path, "has changed since the batch was made");
+        if (name == "site.yaml") files.site = path;
+        if (name == "held_out.csv") files.held_out = path;
+        if (name.starts_with("fit_")) files.fit.push_back(path);
+      }
+      cases.push_back(std::move(files));
+    }
+    return cases;
+  });
+}
+
+std::size_t seal_answers(const fs::path& batch, const fs::path& answers, const Digest& digest) {
+  const std::vector<std::string> names = from_json(batch / "batch.json", [](const Json& json) {
+    std::vector<std::string> found;
+    for (const Json& entry : json.at("cases")) found.push_back(entry.at("case").get<std::string>());
+    return found;
+  });
+  Json seal{{"schema", "hybridtest/blind_answers/1"}, {"batch_sha256", digest_of(batch / "batch.json", digest)}};
+  seal["answers"] = Json::object();
+  for (const std::string& name : names) {
+    const fs::path file = answer_file(answers, name);
+    if (fs::exists(file)) seal["answers"][name] = digest_of(file, digest);
+  }
+  std::ofstream file{answers / "answers.json", std::ios::binary};
+  file << seal.dump(1) << '\n';
+  file.close();
+  if (!file) refuse(answers / "answers.json", "could not be written");
+  return seal["answers"].size();
+}
+
+std::string open_key(const fs::path& batch, const fs::path& key, const Digest& digest) {
+  std::string text = read_whole_file(key);
+  const auto named =
+      from_json(batch / "batch.json", [](const Json& json) { return json.at("key_sha256").get<std::string>(); });
+  if (digest(text) != named) refuse(key, "is not the key of " + batch.string() + ", or was changed");
+  return text;
+}
+
+GivenAnswers open_answers(const fs::path& batch, const fs::path& answers, const std::vector<std::string>& names,
+                          const Digest& digest) {
+  GivenAnswers given;
+  for (const std::string& name : names) {
+    const fs::path file = answer_file(answers, name);
+    given.texts.push_back(fs::exists(file) ? std::optional{read_whole_file(file)} : std::nullopt);
+  }
+  const fs::path seal = answers / "answers.json";
+  if (!fs::exists(seal)) return given;
+  from_json(seal, [&](const Json& json) {
+    if (json.at("batch_sha256") != digest_of(batch / "batch.json", digest)) {
+      refuse(seal, "seals answers to another batch than " + batch.string());
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto hash = json.at("answers").find(names[i]);
+      const bool was_sealed = hash != json.at("answers").end();
+      const bool is_same = was_sealed == given.texts[i].has_value() &&
+                           (!was_sealed || hash->get<std::string>() == digest(*given.texts[i]));
+      if (!is_same) refuse(answer_file(answers, names[i]), "has changed since the answers were sealed");
+    }
+    return true;
+  });
+  given.are_sealed = true;
+  return given;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file{path, std::ios::binary};
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error{path.string() + ": could not be written"};
+}
+
+struct CaseEntries {
+  Json batch;
+  Json key;
+};
+
+CaseEntries write_case(const MakeSettings& settings, std::size_t index, const Digest& digest) {
+  const BlindCase blind_case = draw_case(settings.seed, index);
+  const Site& site = blind_case.setting.site;
+  const std::filesystem::path directory = settings.directory / case_name(index);
+  std::filesystem::create_directories(directory);
+  CaseEntries entries;
+  entries.batch["case"] = case_name(index);
+  const auto write = [&](const std::string& name, const std::string& text) {
+    write_file(directory / name, text);
+    entries.batch["files"][name] = digest(text);
+  };
+  write("site.yaml", site_yaml(site));
+  for (std::size_t i = 0; i < blind_case.fit.size(); ++i) {
+    write("fit_" + std::to_string(i + 1) + ".csv",
+          recording_csv(blind_case.fit[i], blind_case.setting.columns, site.rate_hz));
+  }
+  write("held_out.csv", recording_csv(blind_case.held_out, blind_case.setting.columns, site.rate_hz));
+  entries.key = truth_json(case_name(index), blind_case);
+  return entries;
+}
+
+}  // namespace
+
+void make_batch(const MakeSettings& settings, const Digest& digest, const ForEach& for_each) {
+  if (std::filesystem::exists(settings.directory) && !std::filesystem::is_empty(settings.directory)) {
+    throw std::runtime_error{settings.directory.string() + ": is not empty; a batch gets a directory of its own"};
+  }
+  if (std::filesystem::exists(settings.key)) {
+    throw std::runtime_error{settings.key.string() + ": is there already; keys are not written over"};
+  }
+  std::filesystem::create_directories(settings.directory);
+  Json batch{{"schema", "hybridtest/blind_batch/1"}};
+  Json key{{"schema", "hybridtest/blind_key/1"}, {"seed", settings.seed}};
+  std::vector<CaseEntries> entries(settings.cases);
+  for_each(settings.cases, [&](std::size_t i) { entries[i] = write_case(settings, i, digest); });
+  for (CaseEntries& entry : entries) {
+    batch["cases"].push_back(std::move(entry.batch));
+    key["cases"].push_back(std::move(entry.key));
+  }
+  const std::string key_text = key.dump(1) + "\n";
+  write_file(settings.key, key_text);
+  batch["key_sha256"] = digest(key_text);
+  write_file(settings.directory / "batch.json", batch.dump(1) + "\n");
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The answer appears under its name when it is whole: what an interrupted run left is done again.
+void answer_case(const CaseFiles& files, const fs::path& answers, const DiagnoseCase& diagnose) {
+  const fs::path unfinished = answers / (files.name + ".unfinished");
+  fs::remove_all(unfinished);
+  fs::create_directories(unfinished);
+  diagnose(files, unfinished);
+  fs::rename(unfinished, answers / files.name);
+}
+
+}  // namespace
+
+RunOutcome run_batch(const fs::path& batch, const fs::path& answers, const DiagnoseCase& diagnose, const Digest& digest,
+                     const ForEach& for_each) {
+  const std::vector<CaseFiles> cases = open_batch(batch, digest);
+  fs::create_directories(answers);
+  std::vector<std::string> names;
+  for (const CaseFiles& files : cases) names.push_back(files.name);
+  // Answers that a run sealed are not added to unless they are still what was sealed.
+  static_cast<void>(open_answers(batch, answers, names, digest));
+  std::vector<std::string> failures(cases.size());
+  for_each(cases.size(), [&](std::size_t i) {
+    if (fs::exists(answers / cases[i].name)) return;
+    try {
+      answer_case(cases[i], answers, diagnose);
+    } catch (const std::exception& error) {
+      failures[i] = cases[i].name + ": " + error.what();
+      std::error_code ignored;
+      fs::remove_all(answers / (cases[i].name + ".unfinished"), ignored);
+    }
+  });
+  RunOutcome outcome;
+  outcome.answered = seal_answers(batch, answers, digest);
+  for (std::string& failure : failures) {
+    if (!failure.empty()) outcome.failures.push_back(std::move(failure));
+  }
+  return outcome;
+}
+
+}  // namespace hybridtest::blind

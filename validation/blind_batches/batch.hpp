@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validation/blind_batches/plant/blind_case.hpp"
+
+/// What a batch looks like in files: docs/blind_batches.md.
+namespace hybridtest::blind {
+
+/// SHA-256 of a text, hexadecimal.
+using Digest = std::function<std::string(std::string_view)>;
+
+/// `case_0001` for 0.
+[[nodiscard]] std::string case_name(std::size_t index);
+
+/// The user's model; depends on the site alone.
+[[nodiscard]] std::string site_yaml(const Site& site);
+
+/// Header of names and units, one row per sample, every number equally wide, so that a file's size tells
+/// nothing but its length.
+[[nodiscard]] std::string recording_csv(const PlantRecording& recording, const RecordedColumns& columns,
+                                        double rate_hz);
+
+/// A case's entry in the key.
+[[nodiscard]] nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blind_case);
+
+[[nodiscard]] std::string_view name_of(TruthClass kind) noexcept;
+
+/// A case as whoever diagnoses it gets it.
+struct CaseFiles {
+  std::string name;
+  std::filesystem::path site;
+  std::vector<std::filesystem::path> fit;
+  std::filesystem::path held_out;
+};
+
+/// The whole of a file. @throws std::runtime_error where it cannot be read.
+[[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
+
+/// The cases of a batch, after its files were found to be those that batch.json names. The key is not needed.
+/// @throws std::runtime_error for a batch that is incomplete or changed.
+[[nodiscard]] std::vector<CaseFiles> open_batch(const std::filesystem::path& batch, const Digest& digest);
+
+/// Writes ANSWERS/answers.json: the SHA-256 of each answer that is there, and of the batch.
+/// @returns how many there are.
+std::size_t seal_answers(const std::filesystem::path& batch, const std::filesystem::path& answers,
+                         const Digest& digest);
+
+/// The text of a batch's key. @throws std::runtime_error when it is not the one whose hash the batch names.
+[[nodiscard]] std::string open_key(const std::filesystem::path& batch, const std::filesystem::path& key,
+                                   const Digest& digest);
+
+struct GivenAnswers {
+  bool are_sealed = false;                        // there is an answers.json, and it fits
+  std::vector<std::optional<std::string>> texts;  // of diagnosis.json, one per name
+};
+
+/// The answers to the named cases, ANSWERS/<case>/diagnosis.json.
+/// @throws std::runtime_error when they were sealed and have changed since, or are sealed for another batch.
+[[nodiscard]] GivenAnswers open_answers(const std::filesystem::path& batch, const std::filesystem::path& answers,
+                                        const std::vector<std::string>& names, const Digest& digest);
+
+struct MakeSettings {
+  std::size_t cases = 0;
+  std::uint64_t seed = 0;
+  std::filesystem::path directory;
+  std::filesystem::path key;  // file, outside of the directory
+};
+
+/// Calls one(0) … one(count - 1), each once, in any order, on any threads; throws what one of them throws.
+using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& one)>;
+
+/// Writes a batch and, apart from it, its key. The batch names the SHA-256 of each of its files
+/// and of the key; the seed is in the key alone.
+/// @throws std::runtime_error when the directory holds something already or cannot be written.
+void make_batch(const MakeSettings& settings, const Digest& digest, const ForEach& for_each);
+
+/// Diagnoses a case into a directory: diagnosis.json and whatever else. Throws where it cannot.
+using DiagnoseCase = std::function<void(const CaseFiles& files, const std::filesystem::path& out)>;
+
+struct RunOutcome {
+  std::size_t answered = 0;
+  std::vector<std::string> failures;  // "case_0007: …"
+};
+
+/// Diagnoses every case of a batch that ANSWERS does not answer yet, then seals the answers. A
+/// case that fails stays without an answer, which is scored as a wrong one; the others go on. No key is needed.
+/// @throws std::runtime_error for a changed batch, and for answers that were sealed and changed.
+[[nodiscard]] RunOutcome run_batch(const std::filesystem::path& batch, const std::filesystem::path& answers,
+                                   const DiagnoseCase& diagnose, const Digest& digest, const ForEach& for_each);
+
+}  // namespace hybridtest::blind

@@ -1,0 +1,316 @@
+#include "validation/blind_batches/score/answers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+
+#include "core/random.hpp"
+#include "validation/blind_batches/batch.hpp"
+
+namespace hybridtest::blind {
+
+namespace {
+
+constexpr double kNormal95 = 1.959963984540054;
+constexpr std::size_t kDraws = 2000;
+constexpr std::uint64_t kSeed = 1;
+constexpr std::size_t kBins = 10;
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+}  // namespace
+
+std::optional<Estimate> proportion(std::size_t successes, std::size_t trials) {
+  if (trials == 0) return {};
+  const auto n = static_cast<double>(trials);
+  const double share = static_cast<double>(successes) / n;
+  const double z2 = kNormal95 * kNormal95;
+  const double centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
+  const double half = kNormal95 / (1.0 + z2 / n) * std::sqrt(share * (1.0 - share) / n + z2 / (4.0 * n * n));
+  return Estimate{share, std::max(0.0, centre - half), std::min(1.0, centre + half), trials};
+}
+
+std::optional<Estimate> bootstrap(std::size_t count, const Statistic& statistic) {
+  if (count == 0) return {};
+  std::vector<std::size_t> drawn(count);
+  std::iota(drawn.begin(), drawn.end(), 0U);
+  const double value = statistic(drawn);
+  Random random{kSeed};
+  std::vector<double> values(kDraws);
+  for (double& of_draw : values) {
+    for (std::size_t& index : drawn) index = random.below(count);
+    of_draw = statistic(drawn);
+  }
+  std::ranges::sort(values);
+  return Estimate{value, values[kDraws / 40], values[kDraws - 1 - kDraws / 40], count};
+}
+
+std::optional<Estimate> mean(const std::vector<double>& values) {
+  return bootstrap(values.size(), [&](const std::vector<std::size_t>& drawn) {
+    double sum = 0.0;
+    for (const std::size_t i : drawn) sum += values[i];
+    return sum / static_cast<double>(drawn.size());
+  });
+}
+
+std::optional<Estimate> median(const std::vector<double>& values) {
+  return bootstrap(values.size(), [&](const std::vector<std::size_t>& drawn) {
+    std::vector<double> chosen;
+    chosen.reserve(drawn.size());
+    for (const std::size_t i : drawn) chosen.push_back(values[i]);
+    return median_of(std::move(chosen));
+  });
+}
+
+std::optional<Estimate> calibration_error(const std::vector<Forecast>& forecasts) {
+  return bootstrap(forecasts.size(), [&](const std::vector<std::size_t>& drawn) {
+    std::array<double, kBins> excess{};  // probabilities less what came true, per bin
+    for (const std::size_t i : drawn) {
+      const auto bin = static_cast<std::size_t>(forecasts[i].probability * static_cast<double>(kBins));
+      excess[std::min(bin, kBins - 1)] += forecasts[i].probability - (forecasts[i].came_true ? 1.0 : 0.0);
+    }
+    double sum = 0.0;
+    for (const double of_bin : excess) sum += std::abs(of_bin);
+    return sum / static_cast<double>(drawn.size());
+  });
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A number, or nothing where a diagnosis wrote null for one that is not finite.
+std::optional<double> number_in(const Json& json, const char* name) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_number()) return {};
+  return found->get<double>();
+}
+
+AnsweredCause read_cause(const Json& json) {
+  AnsweredCause cause;
+  cause.interface = json.at("interface").get<std::string>();
+  cause.effect = json.at("effect").get<std::string>();
+  cause.probability = number_in(json, "probability").value_or(0.0);
+  const Json parameters = json.value("parameters", Json::object());
+  for (const auto& [name, parameter] : parameters.items()) {
+    const std::optional<double> value = number_in(parameter, "value");
+    if (!value) continue;
+    AnsweredParameter& answered = cause.parameters[name];
+    answered.value = *value;
+    const auto interval = parameter.find("ci95");
+    if (interval == parameter.end() || !interval->is_array() || interval->size() != 2) continue;
+    if (!(*interval)[0].is_number() || !(*interval)[1].is_number()) continue;
+    answered.ci95.emplace((*interval)[0].get<double>(), (*interval)[1].get<double>());
+  }
+  return cause;
+}
+
+}  // namespace
+
+Answer read_answer(std::string_view text) {
+  try {
+    const Json json = Json::parse(text);
+    Answer answer;
+    answer.verdict = json.at("verdict").get<std::string>();
+    if (std::ranges::find(known_verdicts(), answer.verdict) == known_verdicts().end() || answer.verdict == "missing") {
+      throw std::runtime_error{"verdict: '" + answer.verdict + "' is none of those that a diagnosis has"};
+    }
+    for (const Json& cause : json.at("causes")) answer.causes.push_back(read_cause(cause));
+    std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
+    double largest = 0.0;
+    const Json places = json.value("where", Json::array());
+    for (const Json& place : places) {
+      const double share = number_in(place, "share").value_or(0.0);
+      if (share <= largest) continue;
+      largest = share;
+      answer.faulty_interface = place.at("interface").get<std::string>();
+    }
+    const Json shrink = json.value("shrink", Json::object());
+    if (const auto at = shrink.find("interface"); at != shrink.end() && at->is_object()) {
+      answer.variance_removed = number_in(*at, "variance_removed");
+    }
+    return answer;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error{error.what()};
+  }
+}
+
+const std::vector<std::string>& known_verdicts() {
+  static const std::vector<std::string> verdicts{"none",    "named",       "set",    "partial",
+                                                 "unknown", "not_excited", "missing"};
+  return verdicts;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TruthClass class_named(const std::string& name) {
+  for (const TruthClass kind : {TruthClass::none, TruthClass::named, TruthClass::unknown, TruthClass::pair}) {
+    if (name_of(kind) == name) return kind;
+  }
+  throw std::runtime_error{"the key has a truth of no class: '" + name + "'"};
+}
+
+KeyCase read_case(const Json& json) {
+  KeyCase result;
+  result.name = json.at("case").get<std::string>();
+  result.truth = class_named(json.at("truth").get<std::string>());
+  for (const Json& effect : json.at("effects")) {
+    result.effects.push_back({effect.at("interface").get<std::string>(), effect.at("effect").get<std::string>(),
+                              effect.at("parameters").get<Parameters>()});
+  }
+  for (const Json& cause : json.at("acceptable")) {
+    result.acceptable.push_back({cause.at("interface").get<std::string>(), cause.at("effect").get<std::string>()});
+  }
+  result.gap_at = json.at("gap_at").get<std::string>();
+  result.gap_to_floor = json.at("gap_to_floor").get<double>();
+  result.held_out_gap_to_floor = json.at("held_out_gap_to_floor").get<double>();
+  result.variance_removed = json.at("variance_removed_by_true_model").get<double>();
+  return result;
+}
+
+}  // namespace
+
+std::vector<KeyCase> read_key(std::string_view text) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("schema") != "hybridtest/blind_key/1") throw std::runtime_error{"no key of hybridtest/blind_key/1"};
+    std::vector<KeyCase> cases;
+    for (const Json& of_case : json.at("cases")) cases.push_back(read_case(of_case));
+    return cases;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error{std::string{"the key cannot be read: "} + error.what()};
+  }
+}
+
+namespace {
+
+constexpr double kClearGapToFloor = 2.0;
+/// An effect that noise hides is rightly not seen.
+constexpr double kHiddenGapToFloor = 1.0;
+
+bool is_acceptable(const KeyCase& key, const AnsweredCause& cause) {
+  return std::ranges::find(key.acceptable, Cause{cause.interface, cause.effect}) != key.acceptable.end();
+}
+
+bool is(const PlantEffect& effect, const AnsweredCause& cause) {
+  return effect.interface == cause.interface && effect.name == cause.effect;
+}
+
+std::set<std::string> right_interfaces(const KeyCase& key) {
+  std::set<std::string> interfaces;
+  for (const PlantEffect& effect : key.effects) interfaces.insert(effect.interface);
+  for (const Cause& cause : key.acceptable) interfaces.insert(cause.interface);
+  // Where nothing of the library acts, the place of the residual is as much as can be said.
+  if (key.truth == TruthClass::unknown) interfaces.insert(key.gap_at);
+  return interfaces;
+}
+
+bool is_rightly_silent(const KeyCase& key, const Answer& answer) {
+  return key.gap_to_floor < kHiddenGapToFloor && (answer.verdict == "none" || answer.verdict == "not_excited");
+}
+
+bool interface_is_right(const KeyCase& key, const Answer& answer) {
+  if (is_rightly_silent(key, answer)) return true;
+  const std::set<std::string> right = right_interfaces(key);
+  if (!answer.names_a_cause() || answer.causes.empty()) {
+    return answer.verdict == "unknown" && right.contains(answer.faulty_interface);
+  }
+  if (answer.is_set()) {
+    return std::ranges::any_of(answer.causes, [&](const AnsweredCause& c) { return right.contains(c.interface); });
+  }
+  return right.contains(answer.causes.front().interface);
+}
+
+bool cause_is_right(const KeyCase& key, const Answer& answer) {
+  if (!answer.names_a_cause() || answer.causes.empty()) return false;
+  if (!answer.is_set()) return is_acceptable(key, answer.causes.front());
+  return std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is_acceptable(key, cause); });
+}
+
+/// The probability that what is named holds: of a set, that one of its members does.
+Forecast forecast_of(const KeyCase& key, const Answer& answer) {
+  double probability = answer.causes.front().probability;
+  if (answer.is_set()) {
+    probability = 0.0;
+    for (const AnsweredCause& cause : answer.causes) probability += cause.probability;
+  }
+  return {std::clamp(probability, 0.0, 1.0), cause_is_right(key, answer)};
+}
+
+std::vector<ParameterError> errors_of(const PlantEffect& effect, const AnsweredCause& cause) {
+  std::vector<ParameterError> errors;
+  for (const auto& [name, truth] : effect.parameters) {
+    const auto found = cause.parameters.find(name);
+    if (found == cause.parameters.end() || truth == 0.0) continue;
+    ParameterError error{effect.name + "." + name, std::abs(found->second.value / truth - 1.0), {}};
+    if (const auto& interval = found->second.ci95) {
+      error.is_in_interval = interval->first <= truth && truth <= interval->second;
+    }
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+void mark_named(const KeyCase& key, const Answer& answer, MarkedCase& marked) {
+  const PlantEffect& effect = key.effects.front();
+  const bool has_causes = answer.names_a_cause() && !answer.causes.empty();
+  if (key.acceptable.size() == 1) {
+    marked.is_single_name_right = has_causes && !answer.is_set() && is(effect, answer.causes.front());
+  }
+  if (!has_causes) return;
+  marked.causes_answered = answer.is_set() ? answer.causes.size() : 1;
+  if (answer.is_set()) {
+    marked.is_true_one_covered =
+        std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is(effect, cause); });
+  }
+  for (const AnsweredCause& cause : answer.causes) {
+    if (is(effect, cause)) marked.parameter_errors = errors_of(effect, cause);
+  }
+}
+
+}  // namespace
+
+bool MarkedCase::is_clear() const {
+  return key.truth == TruthClass::none ||
+         (key.gap_to_floor >= kClearGapToFloor && key.held_out_gap_to_floor >= kClearGapToFloor);
+}
+
+bool MarkedCase::is_wrong() const {
+  return is_falsely_named.value_or(false) || !is_effect_right.value_or(true) || !is_interface_right.value_or(true);
+}
+
+MarkedCase mark(const KeyCase& key, const std::optional<Answer>& given) {
+  MarkedCase marked;
+  marked.key = key;
+  marked.answer.verdict = "missing";
+  if (given) marked.answer = *given;
+  const Answer& answer = marked.answer;
+  const bool is_known = key.truth == TruthClass::named || key.truth == TruthClass::pair;
+  if (key.truth != TruthClass::none) marked.is_interface_right = interface_is_right(key, answer);
+  if (!is_known) marked.is_falsely_named = answer.names_a_cause();
+  if (is_known) marked.is_effect_right = is_rightly_silent(key, answer) || cause_is_right(key, answer);
+  if (key.truth == TruthClass::named) mark_named(key, answer, marked);
+  if (key.truth == TruthClass::pair) {
+    marked.are_both_found = std::ranges::all_of(key.effects, [&](const PlantEffect& effect) {
+      return std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is(effect, cause); });
+    });
+  }
+  if (answer.names_a_cause() && !answer.causes.empty()) marked.forecast = forecast_of(key, answer);
+  if (is_known && cause_is_right(key, answer)) {
+    marked.variance_short = std::max(0.0, key.variance_removed) - answer.variance_removed.value_or(0.0);
+  }
+  return marked;
+}
+
+}  // namespace hybridtest::blind

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validation/blind_batches/plant/blind_case.hpp"
+
+namespace hybridtest::blind {
+
+/// A figure with its 95 % interval.
+struct Estimate {
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  std::size_t count = 0;  // what it is made from
+};
+
+/// Share of successes with Wilson's score interval (J. Am. Stat. Assoc. 22, 1927). Nothing for no trials.
+[[nodiscard]] std::optional<Estimate> proportion(std::size_t successes, std::size_t trials);
+
+/// Mean, median … of some of 0 … count - 1, drawn with repetition.
+using Statistic = std::function<double(const std::vector<std::size_t>& drawn)>;
+
+/// The statistic of all, with the percentile interval of 2000 bootstrap draws (Efron, Ann. Stat. 7, 1979)
+/// from a fixed seed. Nothing for no values.
+[[nodiscard]] std::optional<Estimate> bootstrap(std::size_t count, const Statistic& statistic);
+
+[[nodiscard]] std::optional<Estimate> mean(const std::vector<double>& values);
+[[nodiscard]] std::optional<Estimate> median(const std::vector<double>& values);
+
+/// A probability that was given, and whether it came true.
+struct Forecast {
+  double probability = 0.0;
+  bool came_true = false;
+};
+
+/// Expected calibration error over ten equally wide bins (Naeini, Cooper and Hauskrecht, AAAI 2015).
+[[nodiscard]] std::optional<Estimate> calibration_error(const std::vector<Forecast>& forecasts);
+
+struct AnsweredParameter {
+  double value = 0.0;
+  std::optional<std::pair<double, double>> ci95;
+};
+
+struct AnsweredCause {
+  std::string interface;
+  std::string effect;
+  double probability = 0.0;
+  std::map<std::string, AnsweredParameter> parameters;
+};
+
+/// What a scoring looks at in a diagnosis.json (hybridtest/diagnosis/1).
+struct Answer {
+  std::string verdict;
+  std::vector<AnsweredCause> causes;       // most probable first
+  std::string faulty_interface;            // of the largest share; empty when none is named
+  std::optional<double> variance_removed;  // at the interface, held out
+
+  [[nodiscard]] bool names_a_cause() const { return verdict == "named" || verdict == "set" || verdict == "partial"; }
+  [[nodiscard]] bool is_set() const { return verdict == "set"; }
+};
+
+/// @throws std::runtime_error that names what is missing or wrong.
+[[nodiscard]] Answer read_answer(std::string_view json);
+
+/// Everything that a diagnosis can say, in the order of the confusion matrix; then `missing`, for
+/// a case without an answer.
+[[nodiscard]] const std::vector<std::string>& known_verdicts();
+
+/// A case of the key, as it was written by truth_json().
+struct KeyCase {
+  std::string name;
+  TruthClass truth = TruthClass::none;
+  PlantEffects effects;
+  std::vector<Cause> acceptable;
+  std::string gap_at;
+  double gap_to_floor = 0.0;
+  double held_out_gap_to_floor = 0.0;
+  double variance_removed = 0.0;
+};
+
+/// @throws std::runtime_error for what is no key.
+[[nodiscard]] std::vector<KeyCase> read_key(std::string_view json);
+
+struct ParameterError {
+  std::string name;  // coulomb_friction.friction_force_n
+  double relative = 0.0;
+  std::optional<bool> is_in_interval;
+};
+
+/// An answer beside the truth. What a case says nothing about is left empty.
+struct MarkedCase {
+  KeyCase key;
+  Answer answer;
+  std::optional<bool> is_interface_right;      // named, pair, unknown
+  std::optional<bool> is_effect_right;         // named, pair
+  std::optional<bool> is_single_name_right;    // named, where no other cause is acceptable
+  std::optional<bool> is_falsely_named;        // none, unknown
+  std::optional<bool> is_true_one_covered;     // named and answered by a set
+  std::optional<bool> are_both_found;          // pair
+  std::optional<std::size_t> causes_answered;  // named and answered by a name or set; named: 1
+  std::optional<Forecast> forecast;            // where a cause is named
+  std::optional<double> variance_short;        // true model's variance removed less the answer's, effect right
+  std::vector<ParameterError> parameter_errors;
+
+  /// Twice the floor or more in the first fit recording and the held-out one; or nothing to be found.
+  [[nodiscard]] bool is_clear() const;
+  [[nodiscard]] bool is_wrong() const;
+};
+
+/// @param answer   nullopt: missing.
+[[nodiscard]] MarkedCase mark(const KeyCase& key, const std::optional<Answer>& answer);
+
+}  // namespace hybridtest::blind
