@@ -4,7 +4,7 @@
 
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
-#include "scenario/catalogue/effects_text.hpp"
+#include "scenario/catalogue/documentation.hpp"
 
 namespace hybridtest {
 

@@ -35,10 +35,10 @@ void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
 int replay_recording(const ReplayOptions& options) {
   const SiteModelFile model = read_site_model(options.model, options.site);
   const Recording recording = read_recording(options.recording, RecordingRole::held_out, options.site);
-  require_units(model, {&recording, 1});
+  require_match(model, {&recording, 1});
   std::vector<std::vector<ReplayedChannel>> replays;
   std::size_t channels = 0;
-  for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+  for (std::size_t dof = 0; dof < model.dofs.size(); ++dof) {
     replays.push_back(replay(model.dofs[dof], recording, dof));
     channels += replays.back().size();
   }

@@ -89,10 +89,20 @@ std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& mode
   return listed;
 }
 
-void require_units(const SiteModelFile& model, std::span<const Recording> recordings) {
+void require_match(const SiteModelFile& model, std::span<const Recording> recordings) {
   std::vector<ConfigIssue> issues;
   for (const Recording& recording : recordings) {
-    for (std::size_t dof = 0; dof < std::min(model.dofs.size(), recording.dofs.size()); ++dof) {
+    if (recording.dofs.size() != model.dofs.size()) {
+      issues.push_back(
+          {.file = {},
+           .what = fmt::format("{} has {} degrees of freedom, the model {} has {}; expected as many. "
+                               "A list under specimen or transfer_system has an entry for each degree of "
+                               "freedom; laws in parallel on one degree of freedom are written "
+                               "{{type: parallel, laws: [...]}}",
+                               recording.file, recording.dofs.size(), model.file.string(), model.dofs.size())});
+      continue;
+    }
+    for (std::size_t dof = 0; dof < model.dofs.size(); ++dof) {
       for (const IntakeFinding& finding : check_units_against(model.dofs[dof], recording, dof)) {
         issues.push_back({.file = {}, .what = finding.text(recording.file)});
       }
@@ -105,9 +115,8 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
                             DiagnoseSettings settings) {
   settings.site = model.name;
   settings.model_file = model.file.string();
-  std::size_t dofs = model.dofs.size();
-  for (const Recording& recording : recordings) dofs = std::min(dofs, recording.dofs.size());
-  require_units(model, recordings);
+  const std::size_t dofs = model.dofs.size();
+  require_match(model, recordings);
   SiteDiagnosis worst;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;

@@ -21,12 +21,13 @@ struct SiteDiagnosis {
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
 };
 
-/// @throws ConfigError with every column that is in another unit by what the model predicts of it.
-void require_units(const SiteModelFile& model, std::span<const Recording> recordings);
+/// @throws ConfigError with every recording of another number of degrees of freedom than the model, and with every
+///         column that is in another unit by what the model predicts of it.
+void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
-/// Diagnoses every degree of freedom that model and recordings share; the answer is that of the largest gap.
+/// Diagnoses every degree of freedom; the answer is that of the largest gap.
 /// @param settings   its `dof`, `site` and `model_file` are filled in here.
-/// @throws ConfigError as require_units().
+/// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                                           DiagnoseSettings settings);
 

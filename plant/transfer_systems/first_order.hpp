@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "core/time.hpp"
 #include "plant/transfer_systems/transfer_system.hpp"
 
@@ -16,6 +17,16 @@ namespace hybridtest {
 /// At rest, command and displacement are zero one control period before the first step.
 class FirstOrder final : public TransferSystem {
  public:
+  struct Parameters {
+    double time_constant_s = 0.0;
+    double bandwidth_hz = 0.0;  // in its place where that is zero
+
+    void serialize(ParameterArchive& archive) {
+      archive.either({"time_constant_s", time_constant_s, {kPositive, "tau"}},
+                     {"bandwidth_hz", bandwidth_hz, {kPositive, "at which the gain is down by 3 dB"}});
+    }
+  };
+
   /// @param time_constant_s  tau, a thousandth to a million control periods (what is faster is Ideal).
   /// @throws ConfigError for values outside this range.
   FirstOrder(double time_constant_s, Duration control_period);

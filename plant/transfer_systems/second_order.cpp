@@ -3,7 +3,7 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 
@@ -11,9 +11,9 @@ SecondOrder::SecondOrder(const Parameters& parameters, Duration control_period)
     : line_{parameters.delay, control_period} {
   const double period_s = to_seconds(control_period);
   const Range below_ideal{.low = 0.0, .high = 10.0 / period_s, .low_open = true};
-  const Range up_to_ten{.low = 0.0, .high = 10.0, .low_open = true};
-  const double frequency_hz = checked("natural_frequency_hz", parameters.natural_frequency_hz, below_ideal);
-  const double damping_ratio = checked("damping_ratio", parameters.damping_ratio, up_to_ten);
+  expect_in_range("natural_frequency_hz", checked(parameters).natural_frequency_hz, below_ideal);
+  const double frequency_hz = parameters.natural_frequency_hz;
+  const double damping_ratio = parameters.damping_ratio;
   const double angle = 2.0 * std::numbers::pi * frequency_hz * period_s;
   before_corner_ = piece(angle * line_.corner_fraction(), damping_ratio);
   after_corner_ = piece(angle * (1.0 - line_.corner_fraction()), damping_ratio);

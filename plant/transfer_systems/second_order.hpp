@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "core/parameters/parameter_archive.hpp"
 #include "core/time.hpp"
 #include "plant/transfer_systems/delay_line.hpp"
 #include "plant/transfer_systems/transfer_system.hpp"
@@ -21,12 +22,19 @@ namespace hybridtest {
 class SecondOrder final : public TransferSystem {
  public:
   struct Parameters {
-    double natural_frequency_hz = 0.0;  // [Hz] positive, at most 10 times the control rate
-    double damping_ratio = 0.0;         // [-] positive, at most 10
-    Duration delay{};                   // not negative, at most 100 000 control periods
+    double natural_frequency_hz = 0.0;
+    double damping_ratio = 0.0;
+    Duration delay{};
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("natural_frequency_hz", natural_frequency_hz,
+                       {.range = kPositive, .values = "more than 0, at most 10 times the control rate"});
+      archive.required("damping_ratio", damping_ratio, {{.low = 0.0, .high = 10.0, .low_open = true}});
+      archive.optional("delay_s", delay, {{.low = 0.0, .high = 10.0}, "of the command before the actuator"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges.
+  /// @throws ConfigError for values outside their ranges.
   SecondOrder(const Parameters& parameters, Duration control_period);
 
   [[nodiscard]] double step(double command_m) noexcept override;

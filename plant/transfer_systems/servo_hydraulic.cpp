@@ -6,46 +6,30 @@
 #include <string>
 
 #include "core/config_error.hpp"
-#include "core/parameters/checked_parameter.hpp"
+#include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
 namespace {
 
 constexpr double kLongestSubstep_rad = 0.1;
-constexpr int kMaxSubsteps = 1000;
+constexpr int kSubstepsMax = 1000;
 
 }  // namespace
 
-ServoHydraulic::ServoHydraulic(const Parameters& parameters, Duration control_period) : parameters_{parameters} {
+ServoHydraulic::ServoHydraulic(const Parameters& parameters, Duration control_period)
+    : parameters_{checked(parameters)} {
   const Parameters& p = parameters;
-  const auto positive = [](std::string_view name, double value) { return checked(name, value, kPositive); };
-  const auto not_negative = [](std::string_view name, double value) {
-    static_cast<void>(checked(name, value, kNotNegative));
-  };
-  period_s_ = positive("control_period_s", to_seconds(control_period));
-  const double area_m2 = positive("piston_area_m2", p.piston_area_m2);
-  static_cast<void>(positive("supply_pressure_pa", p.supply_pressure_pa));
-  static_cast<void>(positive("rated_flow_m3_per_s", p.rated_flow_m3_per_s));
-  static_cast<void>(positive("stroke_m", p.stroke_m));
-  oil_stiffness_per_m3_ =
-      4.0 * positive("bulk_modulus_pa", p.bulk_modulus_pa) * area_m2 / positive("oil_volume_m3", p.oil_volume_m3);
-  not_negative("leakage_m3_per_s_pa", p.leakage_m3_per_s_pa);
-  not_negative("damping_n_s_per_m", p.damping_n_s_per_m);
-  valve_rad_per_s_ = 2.0 * std::numbers::pi * positive("valve_frequency_hz", p.valve_frequency_hz);
-  static_cast<void>(positive("valve_damping_ratio", p.valve_damping_ratio));
-  static_cast<void>(positive("proportional_gain_per_m", p.proportional_gain_per_m));
-  not_negative("integral_gain_per_m_s", p.integral_gain_per_m_s);
-  not_negative("derivative_gain_s_per_m", p.derivative_gain_s_per_m);
-  static_cast<void>(positive("command_gain", p.command_gain));
-  not_negative("load_stiffness_n_per_m", p.load_stiffness_n_per_m);
-
-  const double mass_kg = positive("moving_mass_kg", p.moving_mass_kg);
+  period_s_ = checked("control_period_s", to_seconds(control_period), kPositive);
+  const double area_m2 = p.piston_area_m2;
+  const double mass_kg = p.moving_mass_kg;
+  oil_stiffness_per_m3_ = 4.0 * p.bulk_modulus_pa * area_m2 / p.oil_volume_m3;
+  valve_rad_per_s_ = 2.0 * std::numbers::pi * p.valve_frequency_hz;
   const double oil_rad_per_s = std::sqrt((oil_stiffness_per_m3_ * area_m2 + p.load_stiffness_n_per_m) / mass_kg);
   const double leak_per_s = oil_stiffness_per_m3_ / area_m2 * p.leakage_m3_per_s_pa;
   const double valve_per_s = valve_rad_per_s_ * std::max(1.0, 2.0 * p.valve_damping_ratio);
   const double fastest_per_s = std::max({oil_rad_per_s, leak_per_s, valve_per_s, p.damping_n_s_per_m / mass_kg});
   const double substeps = std::ceil(fastest_per_s * period_s_ / kLongestSubstep_rad);
-  if (substeps > kMaxSubsteps) {
+  if (substeps > kSubstepsMax) {
     throw ConfigError{"the actuator has a mode of " + std::to_string(fastest_per_s) +
                       " rad/s, too fast for the control period; expected more moving_mass_kg or oil_volume_m3, or less "
                       "leakage or damping"};

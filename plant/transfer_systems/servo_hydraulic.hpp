@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parameters/parameter_archive.hpp"
 #include "core/time.hpp"
 #include "plant/transfer_systems/transfer_system.hpp"
 
@@ -24,25 +25,48 @@ namespace hybridtest {
 class ServoHydraulic final : public TransferSystem {
  public:
   struct Parameters {
-    double piston_area_m2 = 0.0;           // A, positive
-    double supply_pressure_pa = 0.0;       // ps, positive
-    double rated_flow_m3_per_s = 0.0;      // Qr, of the fully open valve without load; positive
-    double stroke_m = 0.0;                 // to either side; positive
-    double oil_volume_m3 = 0.0;            // V, in both chambers; positive
-    double bulk_modulus_pa = 1.0e9;        // B, positive
-    double leakage_m3_per_s_pa = 0.0;      // C, past the piston; not negative
-    double moving_mass_kg = 0.0;           // m, positive
-    double damping_n_s_per_m = 0.0;        // c, not negative
-    double valve_frequency_hz = 0.0;       // w / (2 pi), positive
-    double valve_damping_ratio = 0.7;      // zeta, positive
-    double proportional_gain_per_m = 0.0;  // Kp, of full opening per m of error; positive
-    double integral_gain_per_m_s = 0.0;    // Ki, not negative
-    double derivative_gain_s_per_m = 0.0;  // Kd, not negative
-    double command_gain = 1.0;             // g, positive
-    double load_stiffness_n_per_m = 0.0;   // of the specimen, not negative
+    double piston_area_m2 = 0.0;       // A
+    double supply_pressure_pa = 0.0;   // ps
+    double rated_flow_m3_per_s = 0.0;  // Qr
+    double stroke_m = 0.0;
+    double oil_volume_m3 = 0.0;            // V
+    double bulk_modulus_pa = 1.0e9;        // B
+    double leakage_m3_per_s_pa = 0.0;      // C
+    double moving_mass_kg = 0.0;           // m
+    double damping_n_s_per_m = 0.0;        // c
+    double valve_frequency_hz = 0.0;       // w / (2 pi)
+    double valve_damping_ratio = 0.7;      // zeta
+    double proportional_gain_per_m = 0.0;  // Kp
+    double integral_gain_per_m_s = 0.0;    // Ki
+    double derivative_gain_s_per_m = 0.0;  // Kd
+    double command_gain = 1.0;             // g
+    double load_stiffness_n_per_m = 0.0;
+
+    void serialize(ParameterArchive& archive) {
+      archive.required("piston_area_m2", piston_area_m2, {kPositive});
+      archive.required("supply_pressure_pa", supply_pressure_pa, {kPositive});
+      archive.required("rated_flow_m3_per_s", rated_flow_m3_per_s,
+                       {kPositive, "of the fully open valve, without load"});
+      archive.required("stroke_m", stroke_m, {kPositive, "to either side"});
+      archive.required("oil_volume_m3", oil_volume_m3, {kPositive, "in both chambers"});
+      archive.required("moving_mass_kg", moving_mass_kg, {kPositive, "of piston and fixture"});
+      archive.required("valve_frequency_hz", valve_frequency_hz, {kPositive, "of the spool"});
+      archive.required("proportional_gain_per_m", proportional_gain_per_m,
+                       {kPositive, "opening per error; 1 is fully open"});
+      archive.required("load_stiffness_n_per_m", load_stiffness_n_per_m,
+                       {kNotNegative, "of the specimen, how its force grows between two samples"});
+      archive.optional("bulk_modulus_pa", bulk_modulus_pa, {kPositive, "of the oil"});
+      archive.optional("leakage_m3_per_s_pa", leakage_m3_per_s_pa, {kNotNegative, "past the piston"});
+      archive.optional("damping_n_s_per_m", damping_n_s_per_m, {kNotNegative, "of the seals"});
+      archive.optional("valve_damping_ratio", valve_damping_ratio, {kPositive, "of the spool"});
+      archive.optional("integral_gain_per_m_s", integral_gain_per_m_s,
+                       {kNotNegative, "held while the valve is fully open"});
+      archive.optional("derivative_gain_s_per_m", derivative_gain_s_per_m, {kNotNegative});
+      archive.optional("command_gain", command_gain, {kPositive, "of the commands"});
+    }
   };
 
-  /// @throws ConfigError for values outside these ranges, and when a control period would need more than 1000
+  /// @throws ConfigError for values outside their ranges, and when a control period would need more than 1000
   ///         substeps.
   ServoHydraulic(const Parameters& parameters, Duration control_period);
 

@@ -7,6 +7,7 @@
 #include "mechanics/laws/friction.hpp"
 #include "mechanics/laws/gap_spring.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/viscous.hpp"
 
 namespace hybridtest {
@@ -22,6 +23,19 @@ PartType<Maker<Law>> law(std::string name) {
   return {std::move(name), read, describe<Part>};
 }
 
+Maker<Law> read_parallel(Section& section) {
+  const std::vector<Maker<Law>> makers = read_laws(section, "laws");
+  if (makers.empty()) section.error("laws", "no law in parallel; expected at least one");
+  return [makers] { return std::make_unique<Parallel>(make_all(makers)); };
+}
+
+void describe_parallel(ParameterTable& table) {
+  table.add({.key = "laws",
+             .what = "on the same degree of freedom; their forces add up",
+             .values = "list of laws",
+             .fallback = "—"});
+}
+
 }  // namespace
 
 const std::vector<PartType<Maker<Law>>>& laws() {
@@ -34,6 +48,7 @@ const std::vector<PartType<Maker<Law>>>& laws() {
       law<Friction>("friction"),
       law<GapSpring>("gap"),
       law<Viscous>("viscous"),
+      {"parallel", read_parallel, describe_parallel},
   };
   return table;
 }

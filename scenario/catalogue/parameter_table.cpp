@@ -57,6 +57,11 @@ std::string cell(std::string_view words) {
   return escaped;
 }
 
+std::string table_head(std::string_view first) {
+  return "| " + std::string{first} +
+         " | key | unit | what | values | default |\n| --- | --- | --- | --- | --- | --- |\n";
+}
+
 std::string ParameterTable::lines(std::string first) const {
   if (rows_.empty()) return "| " + first + " | | | | | |\n";
   std::string text;

@@ -14,6 +14,9 @@ namespace hybridtest {
 /// Text for a cell of a Markdown table: a bar would end the cell.
 [[nodiscard]] std::string cell(std::string_view words);
 
+/// The first two lines of a table of parameters. @param first   head of its first column.
+[[nodiscard]] std::string table_head(std::string_view first);
+
 /// Collects what the documentation says of each parameter, one row per key.
 class ParameterTable final : public ParameterArchive {
  public:

@@ -56,7 +56,7 @@ Reading read_type(config::Section& section, const std::vector<PartType<Reading>>
 /// The table of the documentation: `| type | key | unit | what | values | default |`.
 template <class Reading>
 [[nodiscard]] std::string table_of(const std::vector<PartType<Reading>>& types) {
-  std::string text = "| `type` | key | unit | what | values | default |\n| --- | --- | --- | --- | --- | --- |\n";
+  std::string text = table_head("`type`");
   for (const PartType<Reading>& type : types) {
     ParameterTable table;
     if (type.describe) type.describe(table);
@@ -66,6 +66,8 @@ template <class Reading>
 }
 
 /// Reports at `key` when not one was found for each interface degree of freedom.
-void expect_count(config::Section& section, std::string_view key, std::size_t found, int expected);
+/// @param advice   completes the message.
+void expect_count(config::Section& section, std::string_view key, std::size_t found, int expected,
+                  std::string_view advice = {});
 
 }  // namespace hybridtest

@@ -98,5 +98,32 @@ TEST_F(WrongInput, ShippedScenariosAreValid) {
   }
 }
 
+TEST_F(WrongInput, CountsThatDoNotFitAreRefusedByEveryCommand) {
+  const std::string laws = "[{type: elastic, stiffness_n_per_m: 4.0e6}, {type: viscous, damping_n_s_per_m: 2.0e4}]";
+  const auto two_laws = AllOf(HasSubstr("2 given; expected 1"), HasSubstr("{type: parallel, laws: [...]}"));
+  const std::string scenario = shipped_scenario("two_storey_one_site");
+  const Arguments set{"--set", "substructures[storey_1].rig.specimen=" + laws};
+  EXPECT_THAT(refusal("hybridtest", {"check", scenario, set[0], set[1]}), two_laws);
+  EXPECT_THAT(refusal("hybridtest", {"run", scenario, set[0], set[1]}), two_laws);
+  EXPECT_THAT(refusal("hybridtest", {"simulate", scenario, "--seed", "1", set[0], set[1]}), two_laws);
+  EXPECT_THAT(refusal("hybridtest", {"check", scenario, "--set",
+                                     "substructures[storey_1].rig.transfer_system=[{type: ideal}, {type: ideal}]"}),
+              HasSubstr("2 given; expected 1"));
+
+  std::ofstream{directory() / "site.yaml"} << "specimen: " << laws << "\n";
+  std::ofstream recording{directory() / "test.csv"};
+  recording << "time_s,measured_displacement_m,measured_force_n\n";
+  for (int i = 0; i < 1000; ++i) recording << 0.001 * i << ',' << 0.01 << ',' << 4.0e4 << '\n';
+  recording.close();
+  const auto other_count = AllOf(HasSubstr("test.csv has 1 degrees of freedom"), HasSubstr("site.yaml has 2"),
+                                 HasSubstr("{type: parallel, laws: [...]}"));
+  EXPECT_THAT(
+      refusal("hybridtest", {"diagnose", "--model", "site.yaml", "--recording", "test.csv", "--out", "diagnosis"}),
+      other_count);
+  EXPECT_THAT(
+      refusal("hybridtest", {"replay", "--model", "site.yaml", "--recording", "test.csv", "--out", "predicted.csv"}),
+      other_count);
+}
+
 }  // namespace
 }  // namespace hybridtest

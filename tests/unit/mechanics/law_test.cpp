@@ -16,6 +16,7 @@
 #include "mechanics/laws/friction.hpp"
 #include "mechanics/laws/gap_spring.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/parallel.hpp"
 
 namespace hybridtest {
 namespace {
@@ -121,6 +122,14 @@ INSTANTIATE_TEST_SUITE_P(
     Mechanics, EveryLaw,
     testing::Values(
         LawCase{"elastic", [] { return std::make_unique<Elastic>(4.0e6); }},
+        LawCase{"parallel",
+                [] {
+                  std::vector<std::unique_ptr<Law>> laws;
+                  laws.push_back(std::make_unique<Elastic>(2.0e6));
+                  laws.push_back(std::make_unique<Bilinear>(Bilinear::Parameters{
+                      .stiffness_n_per_m = 2.0e6, .yield_force_n = 2.0e4, .hardening_ratio = 0.05}));
+                  return std::make_unique<Parallel>(std::move(laws));
+                }},
         LawCase{"bilinear",
                 [] {
                   return std::make_unique<Bilinear>(Bilinear::Parameters{

@@ -1,11 +1,10 @@
-// docs/scenario.md says of every compensator, force compensator and estimator which keys it has and what an absent
-// one means. What the program reads has to be the same.
+// The tables of docs/scenario.md say which keys every compensator, force compensator and estimator has, and what an
+// absent one means. What the program reads has to be the same.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
 #include <map>
 #include <ranges>
 #include <set>
@@ -13,6 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "scenario/catalogue/compensators.hpp"
+#include "scenario/catalogue/delay_estimators.hpp"
+#include "scenario/catalogue/force_compensators.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
 namespace hybridtest {
@@ -22,7 +24,6 @@ constexpr const char* kRequired = "—";
 
 using Keys = std::map<std::string, std::string>;      // key -> documented default
 using DocumentedTypes = std::map<std::string, Keys>;  // type -> its keys
-constexpr const char* kEveryOne = "every one";
 
 std::string trimmed(const std::string& text) {
   const auto begin = text.find_first_not_of(' ');
@@ -36,43 +37,22 @@ std::vector<std::string> pieces(const std::string& text, char separator) {
   return found;
 }
 
-/// What stands between backticks.
-std::vector<std::string> quoted(const std::string& cell) {
-  std::vector<std::string> found;
-  const auto parts = pieces(cell, '`');
-  for (std::size_t i = 1; i < parts.size(); i += 2) found.push_back(parts[i]);
-  return found;
-}
-
-/// The table below a heading whose columns are type, key, unit, values, default.
-DocumentedTypes documented(const std::string& heading) {
-  std::ifstream in{std::string{HYBRIDTEST_SOURCE_DIR} + "/docs/scenario.md"};
+/// What the documentation says of every type, from which its tables are made.
+template <class Reading>
+DocumentedTypes documented(const std::vector<PartType<Reading>>& parts) {
   DocumentedTypes types;
-  std::vector<std::string> current;
-  bool is_below = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("### ")) is_below = line == "### " + heading;
-    if (!is_below || !line.starts_with("| ")) continue;
-    const auto cells = pieces(line.substr(1), '|');
-    if (cells[0] == "`type`" || cells[0].starts_with("---")) continue;
-    if (cells[0].starts_with("`plant` key")) break;
-    if (cells[0] == kEveryOne) current = {kEveryOne};
-    if (cells[0].starts_with('`')) current = quoted(cells[0]);
-    for (const std::string& type : current) {
-      const auto keys = quoted(cells[1]);
-      const auto defaults = pieces(cells.size() > 4 ? cells[4] : "", ',');
-      types[type];
-      for (std::size_t i = 0; i < keys.size(); ++i) types[type][keys[i]] = defaults.at(i);
-    }
+  for (const PartType<Reading>& part : parts) {
+    ParameterTable table;
+    if (part.describe) part.describe(table);
+    Keys& keys = types[part.name];
+    for (const ParameterTable::Row& row : table.rows()) keys[row.key] = row.fallback;
   }
   return types;
 }
 
 std::set<std::string> names_of(const DocumentedTypes& types) {
   std::set<std::string> names;
-  for (const std::string& name : types | std::views::keys) {
-    if (name != kEveryOne) names.insert(name);
-  }
+  for (const std::string& name : types | std::views::keys) names.insert(name);
   return names;
 }
 
@@ -133,28 +113,25 @@ class DocumentedCompensation : public testing::Test {
 };
 
 TEST_F(DocumentedCompensation, CompensatorsHaveDocumentedKeysAndDefaults) {
-  const DocumentedTypes types = documented("compensator");
+  const DocumentedTypes types = documented(compensators());
   EXPECT_EQ(names_of(types), known("compensator", "{type: ", "}"));
   EXPECT_EQ(types.size(), 12U);
   for (const auto& [type, keys] : types) expect_keys(effective("compensator", yaml_of(type, keys)), keys, type);
 }
 
 TEST_F(DocumentedCompensation, ForceCompensatorsHaveDocumentedKeysAndDefaults) {
-  const DocumentedTypes types = documented("force_compensator");
+  const DocumentedTypes types = documented(force_compensators());
   EXPECT_EQ(names_of(types), known("force_compensator", "{type: ", "}"));
   EXPECT_EQ(types.size(), 5U);
   for (const auto& [type, keys] : types) expect_keys(effective("force_compensator", yaml_of(type, keys)), keys, type);
 }
 
 TEST_F(DocumentedCompensation, EstimatorsHaveDocumentedKeysAndDefaults) {
-  DocumentedTypes types = documented("estimator");
-  const Keys common = types.at(kEveryOne);
-  types.erase(kEveryOne);
+  const DocumentedTypes types = documented(delay_estimators());
   const std::string compensator = "{type: newmark_kinematics, delay_s: 0.02, estimator: ";
   EXPECT_EQ(names_of(types), known("compensator", compensator + "{initial_delay_s: 0.02, type: ", "}}"));
   EXPECT_EQ(types.size(), 5U);
-  for (auto& [type, keys] : types) {
-    keys.insert(common.begin(), common.end());
+  for (const auto& [type, keys] : types) {
     const YAML::Node section = effective("compensator", compensator + yaml_of(type, keys) + "}");
     expect_keys(section["estimator"], keys, type);
   }

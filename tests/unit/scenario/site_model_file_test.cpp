@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/config_error.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
 #include "plant/site_stages.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
@@ -128,6 +129,63 @@ TEST_F(SiteFile, EffectCanApplyToOneDof) {
   ASSERT_EQ(site.dofs.size(), 2U);
   EXPECT_EQ(force_at(site.dofs[0], {.velocity_m_per_s = 1.0, .acceleration_m_per_s2 = 1.0}), 3.0);
   EXPECT_EQ(force_at(site.dofs[1], {.velocity_m_per_s = 1.0, .acceleration_m_per_s2 = 1.0}), 8.0);
+}
+
+TEST_F(SiteFile, AddsLawsInParallel) {
+  const std::string text =
+      "specimen: {type: parallel, laws: [{type: elastic, stiffness_n_per_m: 100.0}, "
+      "{type: viscous, damping_n_s_per_m: 7.0}, {type: parallel, laws: {type: elastic, stiffness_n_per_m: 1.0}}]}\n";
+  const SiteModelFile site = read(text);
+  ASSERT_EQ(site.dofs.size(), 1U);
+  EXPECT_EQ(force_at(site.dofs[0], {.displacement_m = 2.0, .velocity_m_per_s = 3.0}), 202.0 + 21.0);
+  EXPECT_EQ(read(site.text).text, site.text);
+  EXPECT_THAT(error_of("specimen: {type: parallel, laws: []}\n"), testing::HasSubstr("no law in parallel"));
+  EXPECT_THAT(error_of("specimen: {type: parallel}\n"), testing::HasSubstr("laws"));
+  EXPECT_THAT(error_of("specimen: {type: parallel, laws: [{type: elastik, stiffness_n_per_m: 1.0}]}\n"),
+              testing::HasSubstr("did you mean 'elastic'"));
+}
+
+TEST_F(SiteFile, RefusesListsOfDifferentLengths) {
+  EXPECT_THAT(error_of("transfer_system: [{type: ideal}, {type: ideal}, {type: ideal}]\n"
+                       "specimen: [{type: none}, {type: none}]\n"),
+              testing::AllOf(testing::HasSubstr("specimen"), testing::HasSubstr("2 given; expected 3"),
+                             testing::HasSubstr("{type: parallel, laws: [...]}")));
+  EXPECT_THAT(error_of("transfer_system: [{type: ideal}, {type: ideal}]\n"
+                       "specimen: [{type: none}, {type: none}, {type: none}]\n"),
+              testing::AllOf(testing::HasSubstr("transfer_system"), testing::HasSubstr("2 given; expected 3")));
+  EXPECT_THAT(error_of("specimen: [{type: none}, {type: none}, {type: none}]\n"
+                       "compensator: [{type: none}, {type: none}]\n"),
+              testing::HasSubstr("expected one, or one for each degree of freedom"));
+}
+
+Recording recording_of(std::size_t dofs) {
+  Recording recording;
+  recording.file = "test.csv";
+  recording.sample_period_s = kPeriod_s;
+  recording.samples = 100;
+  recording.dofs.resize(dofs);
+  for (DofRecording& dof : recording.dofs) dof.of(Channel::measured_displacement).assign(recording.samples, 0.0);
+  return recording;
+}
+
+TEST_F(SiteFile, ADiagnosisRefusesOtherDegreesOfFreedom) {
+  const auto refusal = [&](const std::string& text, std::size_t dofs) -> std::string {
+    const SiteModelFile model = read(text);
+    const std::vector<Recording> recordings{recording_of(model.dofs.size()), recording_of(dofs)};
+    try {
+      require_match(model, recordings);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string two =
+      "specimen: [{type: elastic, stiffness_n_per_m: 1.0}, {type: viscous, damping_n_s_per_m: 1.0}]\n";
+  EXPECT_THAT(refusal(two, 1),
+              testing::AllOf(testing::HasSubstr("test.csv has 1 degrees of freedom"), testing::HasSubstr("has 2"),
+                             testing::HasSubstr("{type: parallel, laws: [...]}")));
+  EXPECT_THAT(refusal("specimen: {type: none}\n", 2), testing::HasSubstr("test.csv has 2 degrees of freedom"));
+  EXPECT_EQ(refusal(two, 2), "");
 }
 
 }  // namespace

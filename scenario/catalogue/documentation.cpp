@@ -1,11 +1,18 @@
-#include "scenario/catalogue/effects_text.hpp"
+#include "scenario/catalogue/documentation.hpp"
 
 #include <cmath>
 
+#include "compensation/transfer_system_model.hpp"
+#include "core/config_error.hpp"
 #include "core/text/scalar.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/parameter_limits.hpp"
+#include "scenario/catalogue/compensators.hpp"
+#include "scenario/catalogue/delay_estimators.hpp"
+#include "scenario/catalogue/force_compensators.hpp"
+#include "scenario/catalogue/laws.hpp"
 #include "scenario/catalogue/parameter_table.hpp"
+#include "scenario/catalogue/transfer_systems.hpp"
 
 namespace hybridtest {
 namespace {
@@ -60,6 +67,31 @@ std::string effects_markdown() {
     }
   }
   return out;
+}
+
+std::vector<GeneratedPart> generated_parts() {
+  ParameterTable plant;
+  TransferSystemModel{}.serialize(plant);
+  return {{"laws", table_of(laws())},
+          {"transfer systems", table_of(transfer_systems())},
+          {"effects", effects_markdown()},
+          {"compensators", table_of(compensators())},
+          {"plant", table_head("") + plant.lines("`plant`")},
+          {"force compensators", table_of(force_compensators())},
+          {"estimators", table_of(delay_estimators())}};
+}
+
+std::string with_generated_parts(std::string page) {
+  for (const GeneratedPart& part : generated_parts()) {
+    const std::string begin = "<!-- generated: " + part.name + " -->\n";
+    const std::string end = "<!-- end of " + part.name + " -->";
+    const std::size_t first = page.find(begin);
+    const std::size_t last = first == std::string::npos ? first : page.find(end, first);
+    if (last == std::string::npos) throw ConfigError{"the page has no place " + begin + end};
+    const std::size_t from = first + begin.size();
+    page.replace(from, last - from, "\n" + part.text.substr(part.text.starts_with('\n') ? 1 : 0) + "\n");
+  }
+  return page;
 }
 
 }  // namespace hybridtest

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "plant/transfer_systems/transfer_system.hpp"
+#include "scenario/catalogue/part.hpp"
+
+namespace hybridtest {
+
+struct TransferSystemReading {
+  std::function<std::unique_ptr<TransferSystem>(double period_s, double delay_change_s)> make;
+  double delay_s = 0.0;       // at low frequency
+  double pure_delay_s = 0.0;  // of it, without any lag
+};
+
+/// Every transfer system that a file can name.
+[[nodiscard]] const std::vector<PartType<TransferSystemReading>>& transfer_systems();
+
+[[nodiscard]] TransferSystemReading read_transfer_system(config::Section section);
+
+}  // namespace hybridtest
