@@ -6,14 +6,14 @@
 #include <string>
 #include <utility>
 
-/// The few things every caller of the HDF5 C library here needs. Only sources include this.
+/// Shared by all callers of the HDF5 C library in this folder. Only sources include this.
 namespace hybridtest::hdf5 {
 
 /// Debian's serial HDF5 is not thread-safe: every function of this folder that calls it holds
-/// this lock meanwhile. Taking it also keeps the library from printing its error stack.
+/// this lock during the call. It also keeps the library from printing its error stack.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> lock_library();
 
-/// What the library's error stack says went wrong, innermost reason first.
+/// The reasons in the error stack of the library, innermost first.
 [[nodiscard]] std::string last_error();
 
 /// Owns one HDF5 identifier.

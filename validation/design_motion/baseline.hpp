@@ -4,7 +4,7 @@
 
 namespace hybridtest::design_motion {
 
-/// Velocity at each sample, from rest; exact for accelerations straight between their samples.
+/// Velocity at each sample, from rest; exact for accelerations that are linear between their samples.
 [[nodiscard]] std::vector<double> velocity_m_per_s(const std::vector<double>& acceleration_m_per_s2, double dt_s);
 /// Displacement at each sample, likewise.
 [[nodiscard]] std::vector<double> displacement_m(const std::vector<double>& acceleration_m_per_s2, double dt_s);
