@@ -26,12 +26,13 @@ TEST(BoundedQueue, PopFromEmptyLeavesValueUnchanged) {
   EXPECT_EQ(value, 5);
 }
 
-TEST(BoundedQueue, RejectsWhenFull) {
+TEST(BoundedQueue, RejectsAndCountsWhenFull) {
   BoundedQueue<int> queue{2};
   EXPECT_TRUE(queue.push(1));
   EXPECT_TRUE(queue.push(2));
   EXPECT_FALSE(queue.push(3));
   EXPECT_FALSE(queue.push(4));
+  EXPECT_EQ(queue.turned_away(), 2U);
   int value = 0;
   EXPECT_TRUE(queue.pop(value));
   EXPECT_EQ(value, 1);
@@ -43,11 +44,13 @@ TEST(BoundedQueue, RejectsWhenFull) {
   EXPECT_FALSE(queue.pop(value));
 }
 
-TEST(BoundedQueue, DisplacingDropsOldest) {
+TEST(BoundedQueue, DisplacingDropsOldestAndCounts) {
   BoundedQueue<int> queue{2};
   queue.push_displacing(1);
   queue.push_displacing(2);
+  EXPECT_EQ(queue.turned_away(), 0U);
   queue.push_displacing(3);
+  EXPECT_EQ(queue.turned_away(), 1U);
   int value = 0;
   EXPECT_TRUE(queue.pop(value));
   EXPECT_EQ(value, 2);
