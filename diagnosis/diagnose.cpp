@@ -190,7 +190,7 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
   const Verdict verdict = verdict_carried_over(judgement.verdict, shrinks(model, diagnosis.causes, held_out, seed));
   if (verdict == judgement.verdict) return;
   report.notes.push_back(std::string{selection.chosen.effects.front().type->name} +
-                         " goes with the recordings that it was found in and leaves the gap of those held out.");
+                         " fits the fitted recordings but not the held-out ones.");
   judgement = {.verdict = verdict, .indistinguishable = {}, .gap_left = 1.0};
   report.interface_shrink.reset();
   diagnosis.causes.clear();
@@ -240,7 +240,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     report.verdict = Verdict::not_excited;
     report.next_experiment =
         "Record command and measured displacement, or measured displacement and measured force, of one test.";
-    report.notes.emplace_back("No two neighbouring channels of the chain were recorded that the model speaks about.");
+    report.notes.emplace_back(
+        "The recordings hold no two neighbouring channels of the chain for which the model predicts the second one.");
     return diagnosis;
   }
   const IdentificationProblem problem = make_problem(model, segments);
@@ -256,7 +257,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     const std::vector<Segment> with_gap = with_a_gap(problem, judged);
     report.interface_shrink = shrink_on(model, diagnosis.causes, with_gap, settings.seed);
     if (held_out.empty()) {
-      report.notes.emplace_back("No recording was held out: how far the gap shrinks is measured on those fitted.");
+      report.notes.emplace_back("No recording was held out: the shrinking is measured on the fitted recordings.");
     } else if (traces.empty()) {
       drop_what_does_not_carry_over(model, with_gap, settings.seed, selection, judgement, diagnosis);
     }

@@ -152,15 +152,15 @@ std::string missing_columns(std::span<const Recording> recordings, std::size_t d
 std::string why_not(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof,
                     EffectInterface interface) {
   switch (interface) {
-    case numerical_substructure: return "a run directory holds what it received; these recordings are of the site";
-    case displacement_sensor: return "no second displacement: it shows where actuator and specimen agree against it";
-    case force_sensor: return "no second force: it shows as a cause, where the specimen does not explain the gap";
+    case numerical_substructure: return "needs a run directory; these recordings are of the site alone";
+    case displacement_sensor: return "no second displacement to compare with";
+    case force_sensor: return "no second force to compare with";
     default: break;
   }
   std::string missing = missing_columns(recordings, dof, ends_of(interface));
   if (!missing.empty()) return missing;
   return interface == specimen && !model.make_law ? "the model says nothing of the specimen's force"
-                                                  : "its columns are not in one recording together";
+                                                  : "no recording has all of its columns";
 }
 
 }  // namespace
