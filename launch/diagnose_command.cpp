@@ -90,9 +90,7 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
       ->required();
   command->add_option("--seed", options->seed, "Seed of the resampling for the confidence intervals")
       ->capture_default_str();
-  command
-      ->add_option("--threads", options->threads, "Number of threads; 0: one per core")
-      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Number of threads; 0: one per core")->capture_default_str();
   command->callback([options, &action] { action = [options] { return run_diagnosis(*options); }; });
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/assert.hpp"
 #include "diagnosis/intake/intake.hpp"
+#include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
 namespace {

@@ -172,7 +172,8 @@ TEST_F(UdpRigTest, DeadSiteDropsTheEnableAtController) {
   ASSERT_NE(site, 0);
   ASSERT_EQ(::kill(site, SIGKILL), 0);
   EXPECT_TRUE(wait_until([&] {
-    return controller.program().standard_output().find("enable off: watchdog: the control loop of the site did not run") != std::string::npos;
+    return controller.program().standard_output().find(
+               "enable off: watchdog: the control loop of the site did not run") != std::string::npos;
   })) << controller.program().standard_output();
   EXPECT_THAT(udp.wait(), Optional(kExitEndedEarly)) << udp.standard_error();
 }

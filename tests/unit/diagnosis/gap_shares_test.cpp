@@ -141,7 +141,8 @@ TEST(GapOverFrequency, SharesAreThoseOfTheSines) {
   const auto input = sampled(kSpectrumSamples, [](double t) { return sine(1.5, t); });
   auto residual = sampled(kSpectrumSamples, [](double t) { return 1.0 * sine(1.5, t + 0.1) + 2.0 * sine(40.0, t); });
   const GapSignals signals{kMadePeriod_s, input, input, residual};
-  const auto bands = gap_over_frequency(signals, welch(input, residual, kMadePeriod_s, welch_segment(kSpectrumSamples)));
+  const auto bands =
+      gap_over_frequency(signals, welch(input, residual, kMadePeriod_s, welch_segment(kSpectrumSamples)));
   double sum = 0.0;
   for (const BandShare& band : bands) sum += band.share;
   EXPECT_NEAR(sum, 1.0, 1e-12);
