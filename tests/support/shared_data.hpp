@@ -27,7 +27,7 @@ inline bool requires_shared_data() {
 /// so it stands in a test, in SetUp() or in the last function that a test calls.
 #define HYBRIDTEST_NEEDS_DATA(file)                                                                     \
   do {                                                                                                  \
-    const std::filesystem::path needed_file{file};                                                      \
+    const std::filesystem::path& needed_file = file;                                                    \
     if (!std::filesystem::exists(needed_file)) {                                                        \
       if (::hybridtest::requires_shared_data()) {                                                       \
         FAIL() << "recorded data are required (HYBRIDTEST_REQUIRE_DATA=1) and absent: " << needed_file; \
