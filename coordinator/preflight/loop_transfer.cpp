@@ -27,19 +27,24 @@ double reference_frequency(const DenseSystem& system) {
   return ratio > 0.0 ? std::sqrt(ratio) : 1.0;
 }
 
+/// One solver for real and complex matrices: each kind of Eigen's solvers takes ten seconds to compile.
+Eigen::VectorXcd eigenvalues_of(const Eigen::MatrixXcd& matrix) {
+  return Eigen::ComplexSchur<Eigen::MatrixXcd>{matrix, false}.matrixT().diagonal();
+}
+
 }  // namespace
 
 Eigen::VectorXcd poles_rad_per_s(const DenseSystem& system) {
   const Eigen::LLT<Eigen::MatrixXd> mass{system.mass_kg};
-  return Eigen::EigenSolver<Eigen::MatrixXd>{state_matrix(system, mass, reference_frequency(system)), false}
-      .eigenvalues();
+  return eigenvalues_of(state_matrix(system, mass, reference_frequency(system)).cast<Complex>());
 }
 
 LoopTransfer::LoopTransfer(const DenseSystem& structure, DenseSystem substructure, const InterfaceMap& interface)
     : substructure_{std::move(substructure)}, reference_rad_per_s_{reference_frequency(structure)} {
   const Eigen::Index size = structure.mass_kg.rows();
   const Eigen::LLT<Eigen::MatrixXd> mass{structure.mass_kg};
-  const Eigen::ComplexSchur<Eigen::MatrixXd> schur{state_matrix(structure, mass, reference_rad_per_s_)};
+  const Eigen::ComplexSchur<Eigen::MatrixXcd> schur{
+      state_matrix(structure, mass, reference_rad_per_s_).cast<Complex>()};
   triangular_ = schur.matrixT();
   poles_ = triangular_.diagonal();
   const Eigen::MatrixXd to_structure = interface.matrix().transpose();
@@ -60,15 +65,14 @@ Eigen::VectorXcd LoopTransfer::eigenvalues(double frequency_rad_per_s) const {
   if (!compliance.allFinite()) {  // on an undamped resonance
     return Eigen::VectorXcd::Constant(compliance.rows(), Complex{std::numeric_limits<double>::max(), 0.0});
   }
-  Eigen::VectorXcd values =
-      Eigen::ComplexEigenSolver<Eigen::MatrixXcd>{dynamic_stiffness * compliance, false}.eigenvalues();
+  Eigen::VectorXcd values = eigenvalues_of(dynamic_stiffness * compliance);
   std::sort(values.begin(), values.end(), [](Complex a, Complex b) { return std::norm(a) > std::norm(b); });
   return values;
 }
 
 double LoopTransfer::modulus_at_infinity_max() const {
   const Eigen::MatrixXd limit = substructure_.mass_kg * flexibility_at_infinity_;
-  return Eigen::EigenSolver<Eigen::MatrixXd>{limit, false}.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues_of(limit.cast<Complex>()).cwiseAbs().maxCoeff();
 }
 
 }  // namespace hybridtest
