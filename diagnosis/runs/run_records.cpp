@@ -74,8 +74,8 @@ Eigen::MatrixXd at_interface(const RunFileReader& coordinator, const Scenario& s
       Eigen::MatrixXd::Zero(interface.structure_size(), static_cast<Eigen::Index>(coordinator.row_count("steps")));
   for (Eigen::Index dof = 0; dof < structure.rows(); ++dof) {
     if (!interface.uses(dof)) continue;
-    const std::vector<double> values =
-        coordinator.column("steps", quantity + scenario.dofs[static_cast<std::size_t>(dof)] + unit);
+    const std::vector<double> values = coordinator.column(
+        "steps", std::string{quantity}.append(scenario.dofs[static_cast<std::size_t>(dof)]).append(unit));
     structure.row(dof) = Eigen::Map<const Eigen::RowVectorXd>{values.data(), structure.cols()};
   }
   Eigen::MatrixXd at_interface{interface.size(), structure.cols()};

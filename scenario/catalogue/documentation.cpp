@@ -87,7 +87,7 @@ std::string with_generated_parts(std::string page) {
     const std::string end = "<!-- end of " + part.name + " -->";
     const std::size_t first = page.find(begin);
     const std::size_t last = first == std::string::npos ? first : page.find(end, first);
-    if (last == std::string::npos) throw ConfigError{"the page has no place " + begin + end};
+    if (last == std::string::npos) throw ConfigError{"the page has no place for the generated part " + part.name};
     const std::size_t from = first + begin.size();
     page.replace(from, last - from, "\n" + part.text.substr(part.text.starts_with('\n') ? 1 : 0) + "\n");
   }

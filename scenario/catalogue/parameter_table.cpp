@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -32,7 +31,11 @@ std::string joined(std::span<const std::string> words) {
 
 std::string unit_of(std::string_view key) {
   std::vector<std::string_view> words;
-  for (const auto part : std::views::split(key, '_')) words.emplace_back(part.begin(), part.end());
+  for (std::size_t begin = 0; begin <= key.size();) {
+    const std::size_t end = std::min(key.find('_', begin), key.size());
+    words.push_back(key.substr(begin, end - begin));
+    begin = end + 1;
+  }
   // The name of the quantity is at least one word, so that the key `n` has no unit.
   auto first = words.end();
   while (first != words.begin() + 1 && unit_words().contains(*(first - 1))) --first;

@@ -39,9 +39,9 @@ struct Prose {
 /// The number of equal fence characters that a line begins with, after at most three spaces; 0: no fence.
 std::size_t fence_length(std::string_view line, char& character) {
   const std::size_t begin = line.find_first_not_of(' ');
-  if (begin == std::string_view::npos || begin > 3) return 0;
+  if (begin > 3) return 0;  // also where there is none
   character = line[begin];
-  if (character != '`' && character != '~') return 0;
+  if (std::string_view{"`~"}.find(character) == std::string_view::npos) return 0;
   const std::size_t end = line.find_first_not_of(character, begin);
   const std::size_t length = (end == std::string_view::npos ? line.size() : end) - begin;
   return length >= 3 ? length : 0;

@@ -36,7 +36,7 @@ std::vector<TestName> names_of_tests(const std::vector<SourceFile>& files) {
 std::vector<std::string> too_long(const std::vector<SourceFile>& files) {
   std::vector<std::string> found;
   for (const auto& [file, name] : names_of_tests(files)) {
-    if (name.size() > kNameLength_max) found.push_back(file + ": " + name);
+    if (name.size() > kNameLength_max) found.push_back(std::string{file}.append(": ").append(name));
   }
   return found;
 }

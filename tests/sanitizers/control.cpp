@@ -61,7 +61,7 @@ volatile int one = 1;  // not known to the compiler
 
 int past_the_end() {
   const auto values = std::make_unique<int[]>(4);
-  return values[static_cast<std::size_t>(3 + one)];
+  return values[3 + static_cast<std::size_t>(one)];
 }
 
 int after_release() {

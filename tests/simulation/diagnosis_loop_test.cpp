@@ -34,7 +34,7 @@ class DiagnosisLoop : public testing::Test {
  protected:
   Scenario simulate(const std::string& run, std::vector<std::string> overrides) {
     overrides.emplace_back("time.duration_s=8");
-    const Scenario scenario = shipped_scenario("two_storey_one_site", overrides);
+    Scenario scenario = shipped_scenario("two_storey_one_site", overrides);
     prepare_run_directory(directory_ / run, scenario);
     RecordedSimulation simulation{scenario, directory_ / run, std::size_t{1} << 14U};
     SimulationSettings settings;

@@ -39,7 +39,9 @@ std::vector<std::vector<double>> per_dof(const KeptSimulation& run, const Scenar
                                          const std::string& after) {
   std::vector<std::vector<double>> columns;
   for (const std::string& dof : scenario.dofs) {
-    columns.push_back(coordinator_steps(run).column_values(before + dof + after));
+    std::string name = before;
+    name.append(dof).append(after);
+    columns.push_back(coordinator_steps(run).column_values(name));
   }
   return columns;
 }
@@ -74,7 +76,8 @@ void expect_exchanges(const KeptSimulation& run, const Scenario& scenario, std::
     return;
   }
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (steps[i] == static_cast<double>(i / count) && substructures[i] == static_cast<double>(i % count) &&
+    const std::size_t step = i / count;
+    if (steps[i] == static_cast<double>(step) && substructures[i] == static_cast<double>(i % count) &&
         attempts[i] >= 1.0) {
       continue;
     }

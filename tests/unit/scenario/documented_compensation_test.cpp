@@ -6,7 +6,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <map>
-#include <ranges>
 #include <set>
 #include <sstream>
 #include <string>
@@ -52,7 +51,7 @@ DocumentedTypes documented(const std::vector<PartType<Reading>>& parts) {
 
 std::set<std::string> names_of(const DocumentedTypes& types) {
   std::set<std::string> names;
-  for (const std::string& name : types | std::views::keys) names.insert(name);
+  for (const auto& [name, keys] : types) names.insert(name);
   return names;
 }
 
@@ -104,7 +103,7 @@ class DocumentedCompensation : public testing::Test {
         EXPECT_EQ(entry.second.as<double>(), std::stod(written)) << type << '.' << key;
       }
     }
-    for (const std::string& key : documented_keys | std::views::keys) {
+    for (const auto& [key, value] : documented_keys) {
       EXPECT_TRUE(found.contains(key)) << type << " is said to take " << key << ", and does not";
     }
   }

@@ -61,7 +61,7 @@ class ScenarioFile {
       static_cast<void>(read(text, overrides));
     } catch (const ConfigError& error) {
       std::vector<std::string> lines;
-      for (ConfigIssue issue : error.issues()) {
+      for (const ConfigIssue& issue : error.issues()) {
         const std::string whole = issue.text();
         const std::string name = path().string() + ":";
         lines.push_back(whole.starts_with(name) ? whole.substr(name.size()) : whole);
