@@ -23,7 +23,7 @@ VirtualTest test_of(const BenchmarkInputs& inputs, int case_number, std::size_t 
 }  // namespace
 
 std::size_t study_size(std::size_t candidates, const StudySettings& settings) {
-  return candidates * kCases * kMotions * static_cast<std::size_t>(settings.plants) + 1;
+  return candidates * kCases * kMotions * (static_cast<std::size_t>(settings.plants) + 1);
 }
 
 std::vector<StudyRun> run_study(const BenchmarkInputs& inputs, const std::vector<Candidate>& candidates,
