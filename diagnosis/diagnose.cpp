@@ -39,7 +39,7 @@ bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
          });
 }
 
-/// The verdict's causes first, then what else was considered.
+/// The causes of the verdict first, then the other candidates.
 std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
                               const Judgement& judgement) {
   std::vector<RankedCause> ranking;
@@ -76,7 +76,7 @@ std::vector<RankedCause> rank(const IdentificationProblem& problem, const Select
   }
   std::ranges::stable_sort(ranking,
                            [](const RankedCause& a, const RankedCause& b) { return a.is_cause && !b.is_cause; });
-  // A second cause was not competing with the first one: it stands by the share of the evidence for it.
+  // A second cause does not compete with the first one: its probability follows from its own share of the evidence.
   if (selection.chosen.effects.size() > 1 && has_causes) {
     for (RankedCause& cause : ranking) {
       if (cause.is_cause) cause.probability = 1.0 - judgement.gap_left;
@@ -118,7 +118,7 @@ GapPlace place_of(const report::InterfaceSeries& series) {
   return place;
 }
 
-/// Those that a cause touches first, then those with the larger gap.
+/// Interfaces changed by a cause first, then by size of the gap.
 void worst_first(std::vector<report::InterfaceSeries>& series) {
   const auto rank = [](const report::InterfaceSeries& one) {
     double gap = 0.0;
@@ -156,8 +156,8 @@ std::vector<EffectSetting> causes_of(const Selection& selection, const Judgement
   return causes;
 }
 
-/// Where the fit found a gap. A further channel that a cause acts on too, and that stays within its floor with it and
-/// without it, says nothing of how far the gap shrinks.
+/// The segments in which the fit found a gap. A channel that a cause also changes, but that is within its noise floor
+/// with and without the cause, does not show how much of the gap is removed.
 std::vector<Segment> with_a_gap(const IdentificationProblem& problem, std::span<const Segment> segments) {
   std::vector<Segment> kept;
   std::ranges::copy_if(segments, std::back_inserter(kept), [&](const Segment& segment) {
@@ -202,15 +202,17 @@ void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   };
   if (!sees(Channel::measured_force)) {
     diagnosis.report.notes.emplace_back(
-        "No measured displacement with a measured force and a specimen model for it: the specimen is not judged.");
+        "The specimen is not judged: it needs measured displacement, measured force and a specimen in the model.");
   }
   if (!sees(Channel::measured_displacement)) {
-    diagnosis.report.notes.emplace_back("No command with a measured displacement: the transfer system is not judged.");
+    diagnosis.report.notes.emplace_back(
+        "The transfer system is not judged: it needs command and measured displacement.");
   }
   for (const RankedCause& cause : diagnosis.report.ranking) {
     for (const report::ReportedParameter& parameter : cause.parameters) {
       if (cause.is_cause && parameter.is_at_bound) {
-        diagnosis.report.notes.push_back(cause.effect + ": " + parameter.name + " is at the end of its search range.");
+        diagnosis.report.notes.push_back(cause.effect + ": " + parameter.name +
+                                         " is at the limit of its search range.");
       }
     }
   }
@@ -233,7 +235,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
   std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
-  // What arrived at random is told by its trace alone.
+  // Random network faults are found by their traces only.
   std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
   if (segments.empty() && traces.empty()) {
     add_unjudged(model, recordings, settings.dof, report.where);
@@ -241,7 +243,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     report.next_experiment =
         "Record command and measured displacement, or measured displacement and measured force, of one test.";
     report.notes.emplace_back(
-        "The recordings hold no two neighbouring channels of the chain for which the model predicts the second one.");
+        "The recordings do not contain input and output of any interface that the model predicts.");
     return diagnosis;
   }
   const IdentificationProblem problem = make_problem(model, segments);
@@ -257,7 +259,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
     const std::vector<Segment> with_gap = with_a_gap(problem, judged);
     report.interface_shrink = shrink_on(model, diagnosis.causes, with_gap, settings.seed);
     if (held_out.empty()) {
-      report.notes.emplace_back("No recording was held out: the shrinking is measured on the fitted recordings.");
+      report.notes.emplace_back(
+          "No recording was held out: the gap that remains is measured on the fitted recordings.");
     } else if (traces.empty()) {
       drop_what_does_not_carry_over(model, with_gap, settings.seed, selection, judgement, diagnosis);
     }
@@ -286,7 +289,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   worst_first(report.series);
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
-  report.why_no_response = "recordings of a site alone do not say of what structure it was a part";
+  report.why_no_response = "it needs a run directory; these recordings contain only the site, not the structure";
   add_notes(diagnosis, segments);
   return diagnosis;
 }

@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// A signal of one degree of freedom of a site, in the order in which it comes about.
+/// A signal of one degree of freedom of a site, in the order of the signal flow.
 enum class Channel : std::uint8_t {
   sent_displacement,      // [m] by the coordinator
   target_displacement,    // [m] at the site, after the network
@@ -19,7 +19,7 @@ enum class Channel : std::uint8_t {
 };
 inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::measured_force) + 1;
 
-/// As a column is headed: `measured_force_n`.
+/// Name of the column: `measured_force_n`.
 [[nodiscard]] std::string_view column_name(Channel channel) noexcept;
 
 /// The channels that were recorded of one degree of freedom; those that were not are empty.
@@ -42,7 +42,7 @@ struct Recording {
   RecordingRole role = RecordingRole::fit;
   double sample_period_s = 0.0;
   std::size_t samples = 0;
-  std::size_t first_row = 1;  // how the first sample is counted in findings: the line of a CSV
+  std::size_t first_row = 1;  // row number of the first sample in findings: its line in a CSV file
   std::vector<DofRecording> dofs;
 };
 

@@ -11,22 +11,22 @@
 
 namespace hybridtest {
 
-/// What a model predicts for one recorded channel, driven with what was recorded in front of it.
+/// Prediction of one recorded channel by a model whose input is the recorded channel before it.
 struct ReplayedChannel {
-  std::string_view interface;  // that the prediction passes, the last of them
+  std::string_view interface;  // the last one that the prediction passes
   Channel from{};
   Channel to{};
   std::vector<double> predicted;  // one per sample of the recording, in the unit of `to`
   double nrmse = 0.0;             // root mean square of the gap over that of the recorded channel
-  double floor_nrmse = 0.0;       // what noise in both channels makes of it
-  double share = 0.0;             // of what all channels have above their floors, energies relative to their own
+  double floor_nrmse = 0.0;       // the same, from sensor noise of both channels alone
+  double share = 0.0;             // of the energy of all gaps above their floors, each relative to its channel
 };
 
-/// Drives a model stage by stage with one degree of freedom of a recording, so that an error of one stage
-/// does not reach the next. A specimen is left out where the model says nothing of its force.
+/// Computes each stage of a model with its recorded input, for one degree of freedom, so that an error of one stage
+/// does not reach the next. The specimen is omitted if the model has none.
 /// @param dof   0-based; the recording has it.
-/// @return in the order of the chain; empty where no two neighbouring channels were recorded.
-/// @throws ConfigError for parameters that the model's parts refuse at this sample period.
+/// @return in the order of the chain; empty if no two consecutive channels were recorded.
+/// @throws ConfigError for parameters that a part of the model does not accept at this sample period.
 [[nodiscard]] std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof);
 
 /// A recording with what was predicted of it, as CSV: `time_s`, the recorded channels, then

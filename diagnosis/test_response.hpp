@@ -4,7 +4,7 @@
 
 namespace hybridtest {
 
-/// What the structure did in a whole hybrid test: one row per degree of freedom, one column per step.
+/// Response of the structure in a whole hybrid test: one row per degree of freedom, one column per step.
 /// Displacements, velocities and forces are positive the same way, velocities per second of model time.
 struct TestResponse {
   double step_s = 0.0;
@@ -16,11 +16,11 @@ struct TestResponse {
   [[nodiscard]] Eigen::Index steps() const noexcept { return displacement_m.cols(); }
 };
 
-/// How far one response is from another one, over the steps that both have.
+/// Difference between two responses, over the steps that both have.
 struct ResponseError {
   double nrmse = 0.0;         // of displacement, all degrees of freedom, over that of the recorded one
   double peak_error = 0.0;    // largest of any degree of freedom: |peak - recorded peak| over the recorded peak
-  double energy_error = 0.0;  // of the work that the substructures took, over the work that the ground put in
+  double energy_error = 0.0;  // of the energy in the substructures, over the energy input of the ground motion
 };
 
 /// Peaks are of |displacement|. Energies are of velocity times force, by the trapezoidal rule up to the last common

@@ -4,98 +4,98 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Every number of the diagnosis that was chosen and not derived, by subject, with what it was chosen for. Two kinds
-/// stand elsewhere: the search ranges of the effects (identification/search_table.hpp) and the layout of the page
+/// All chosen (not derived) numbers of the diagnosis, by subject, with the reason for each choice. Two kinds
+/// are elsewhere: the search ranges of the effects (identification/search_table.hpp) and the layout of the page
 /// (page/). tests/architecture/tuning_test.cpp finds any other.
 namespace hybridtest::tuning {
 
-// Intake: what is still a recording.
+// Intake: limits of what is accepted as a recording.
 
-/// Rows of data below which a recording tells nothing.
+/// Minimum number of rows of data.
 inline constexpr std::size_t kSamplesMin = 16;
-/// Size of a file that is still read: 2 GiB.
+/// Largest file that is read: 2 GiB.
 inline constexpr std::uintmax_t kFileSizeMax_bytes = std::uintmax_t{1} << 31U;
-/// Columns of a file above which it is no recording.
+/// Largest number of columns in a file.
 inline constexpr std::size_t kColumnsMax = 200;
-/// Degrees of freedom of one site that a suffix tells apart.
+/// Largest number of degrees of freedom of one site (the suffix of a column name).
 inline constexpr std::size_t kDofsMax = 12;
-/// Findings of different kinds that are listed; a file with more is no recording.
+/// Largest number of different findings that are listed.
 inline constexpr std::size_t kFindingsMax = 50;
 /// Share of the sample period by which one interval may differ from it.
 inline constexpr double kEvenSpacing = 0.01;
 /// An interval of more than this many periods is a gap, a shorter one uneven sampling.
 inline constexpr double kGapPeriods = 1.5;
-/// Time stamps whose last digit is coarser than this share of the period excuse nothing; else an interval may be off by
-/// this many of that digit (one, and rounding).
+/// If the last digit of the time stamps is at most this share of the period, an interval may deviate by this many
+/// units of that digit (one, and rounding).
 inline constexpr double kLastDigitOfPeriodMax = 0.1;
 inline constexpr double kLastDigits = 1.01;
 /// Rounding of time stamps far from zero, as a share of them: about two units in the last place.
 inline constexpr double kTimeRounding = 4e-16;
 
-// Intake: units that contradict their header.
+// Intake: columns whose unit differs from their header.
 
 /// A displacement or a speed above these is suspected to be in another unit than metres.
 inline constexpr double kDisplacementMax_m = 10.0;
 inline constexpr double kSpeedMax_m_per_s = 10.0;
-/// Time over which that speed is taken.
+/// Time over which that speed is computed.
 inline constexpr double kSpeedWindow_s = 0.02;
-/// How far the ratio of two spans may be from a unit's: channels differ by gain, lag and noise.
+/// Tolerance of the ratio of two ranges against the ratio of units: channels differ by gain, lag and noise.
 inline constexpr double kUnitRatioTolerance = 0.25;
-/// A channel that is less correlated with another one rests, or does not take part in the motion.
+/// A channel with a smaller correlation to another one is at rest, or not part of the motion.
 inline constexpr double kUnitCorrelationMin = 0.5;
-/// Correlation of an acceleration with the one that the displacement went through. Noise of the latter takes from both
-/// by as much as the tolerance of the ratio.
+/// Minimum correlation of a measured acceleration with the second derivative of the displacement. Noise of the latter
+/// reduces both by as much as the tolerance of the ratio.
 inline constexpr double kAccelerationCorrelationMin = 0.8;
-/// Correlation of a force with the one that the model predicts.
+/// Minimum correlation of a force with the one that the model predicts.
 inline constexpr double kForceCorrelationMin = 0.3;
-/// Factor within which a force has to be of another unit: of a thousand or a million, no specimen is so much softer
-/// than its model; of 4448 (kips) less.
+/// Tolerance (a factor) of the force ratio for another unit. It is wide for a thousand or a million, because no
+/// specimen is so much softer than its model, and narrower for 4448 (kips).
 inline constexpr double kForceFactor = 3.0;
 inline constexpr double kKipsFactor = 1.5;
-/// A wrong stiffness may be as large as 9.8 or 4.4: kilograms and pounds of force have to be nearer, and what is left
-/// after conversion [rms over rms] smaller.
+/// A wrong stiffness can also give a factor of 9.8 or 4.4. For kilograms and pounds of force the tolerance is therefore
+/// narrower, and the gap after conversion [rms over rms] must be small.
 inline constexpr double kForceOfMassFactor = 1.03;
 inline constexpr double kForceOfMassLeaves = 0.1;
-/// The slowest controller that is recorded. With samples further apart, time is suspected to be in milliseconds or
-/// less.
+/// Longest control period of a recorded controller. With a longer sample period, time is probably in milliseconds or
+/// microseconds.
 inline constexpr double kControlPeriodMax_s = 0.1;
-/// By which factor, and to which gap [rms over rms], the model has to come nearer with another unit of time.
+/// Factor by which another unit of time must reduce the gap, and the largest gap [rms over rms] that may remain.
 inline constexpr double kTimeUnitNearer = 3.0;
 inline constexpr double kTimeUnitNear = 0.3;
 
 // Signals: smoothing, reversals, rest.
 
-/// Degree of the local polynomials that derivatives are taken from.
+/// Degree of the local polynomials from which derivatives are computed.
 inline constexpr std::ptrdiff_t kSmoothingDegree = 4;
 /// Half-widths that are tried, in samples, each about 1.4 times the one before.
 inline constexpr std::array<std::size_t, 9> kSmoothingHalfWidths{3, 4, 5, 7, 10, 14, 20, 28, 40};
-/// What a wider window may leave, over what white noise alone would leave [variance]: the smoothing error then stays
-/// below half the noise.
+/// Largest residual variance of a wider window over that of white noise alone: the smoothing error then stays below
+/// half the noise.
 inline constexpr double kSmoothingLeaves = 1.2;
 /// Rounding of recorded values, as a share of their mean square.
 inline constexpr double kRoundingVariance = 1e-24;
-/// Weights of the flat smoother are left out beyond so many deviations of its widest part: 3e-4 of the largest.
+/// Weights of the flat smoother are omitted beyond this many deviations of its widest part: 3e-4 of the largest.
 inline constexpr double kSmootherReach = 4.0;
-/// Deviations [samples] by which force and motion are smoothed alike, each about 1.4 times the one before.
+/// Deviations [samples] with which force and motion are both smoothed, each about 1.4 times the one before.
 inline constexpr std::array kSmoothingDeviations{0.0, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 23.0, 32.0};
-/// The deviation taken, over the best one. At the best one, smoothing takes off the motion as much as the noise that is
-/// left. As the force is smoothed too, that is not missed, and the next step is quieter.
+/// The chosen deviation over the best one. At the best one, smoothing removes as much motion as noise remains. The
+/// force is smoothed in the same way, so this loss does no harm, and the next wider deviation has less noise.
 inline constexpr double kSmoothingNextStep = 1.4;
-/// A reversal is a motion back by more than this share of the whole span: above what noise does.
+/// A reversal is a motion back by more than this share of the whole range: more than noise causes.
 inline constexpr double kReversalShare = 0.02;
-/// Rest is a stretch so long in which the motion stays within this share of its whole span.
+/// Rest: for this time the motion stays within this share of its whole range.
 inline constexpr double kRestLength_s = 0.2;
 inline constexpr double kRestSpan = 0.001;
-/// Reach of the central differences of maps and screens: quiet enough for 10 um of noise, short enough for 20 Hz.
+/// Half-width of the central differences of maps and screens: long enough for 10 um of noise, short enough for 20 Hz.
 inline constexpr double kVelocityReach_s = 0.005;
 
 // Where: tables and plots of one interface.
 
-/// Samples below which a recording is too short to say where in it a gap lies.
+/// A recording with fewer samples is too short to locate a gap in it.
 inline constexpr std::size_t kLocaliseSamplesMin = 64;
-/// Share of the energy that the listed windows, bands and regions hold together.
+/// Share of the energy in the listed windows, bands and regions together.
 inline constexpr double kMainShare = 0.5;
-/// Windows of the list and of the plot, and stretches that parameters are fitted to.
+/// Number of time windows of the list and of the plot, and of those to which parameters are fitted.
 inline constexpr std::size_t kPlaceWindows = 24;
 inline constexpr std::size_t kTimeWindows = 40;
 inline constexpr std::size_t kParameterWindows = 16;
@@ -107,18 +107,18 @@ inline constexpr std::size_t kCycleBinsMax = 16;
 inline constexpr std::size_t kSpectrumSegmentMin = 16;
 inline constexpr std::size_t kSpectrumSegmentMax = 8192;
 inline constexpr std::size_t kSpectrumAverages = 8;
-/// Lines of the spectrum that the first band holds; below them nothing can be told apart.
+/// Number of spectral lines in the first band; the spectrum does not resolve less.
 inline constexpr double kFirstBandLines = 3.0;
-/// A window whose amplitude is below this share of the largest is at rest; with fewer windows nothing drifts.
+/// A window whose amplitude is below this share of the largest is at rest; minimum number of windows for a drift.
 inline constexpr double kWindowAmplitudeMin = 0.05;
 inline constexpr std::size_t kDriftWindowsMin = 4;
-/// Rank correlations are cut here, so that Fisher's z stays finite.
+/// Rank correlations are limited to this value, so that Fisher's z stays finite.
 inline constexpr double kRankCorrelationMax = 0.999999;
-/// Share of the force's variance that goes with the displacement, below which a specimen is no spring.
+/// Below this share of the force variance explained by displacement, a specimen is not treated as a spring.
 inline constexpr double kElasticShareMin = 0.5;
 /// Equal samples in a row at an extreme that count as clipped.
 inline constexpr std::size_t kClippedRun = 3;
-/// Lag of the force that is looked for; the recording has to be so many times longer, and the correlation so large.
+/// Longest lag of the force that is searched; minimum length of the recording in such lags; minimum correlation.
 inline constexpr double kForceLagMax_s = 0.05;
 inline constexpr std::size_t kForceLagRecordings = 4;
 inline constexpr double kForceLagCorrelationMin = 0.5;
@@ -127,25 +127,25 @@ inline constexpr double kForceLagCorrelationMin = 0.5;
 
 /// Two recordings repeat each other when their inputs differ by less than this [rms over rms].
 inline constexpr double kSameInput = 0.01;
-/// A cycle repeats another one where the input comes back within this share of half its span.
+/// A cycle repeats another one if their inputs agree within this share of half the range.
 inline constexpr double kSameCycle = 0.02;
-/// Cycles are counted between reversals of this many times the usual threshold, and need at least so many.
+/// Cycles are counted between reversals of this many times the usual threshold; minimum number of cycles.
 inline constexpr double kCycleThreshold = 10.0;
 inline constexpr std::size_t kCycleReversalsMin = 5;
-/// The period of cycles is looked for within this share of the mean one.
+/// The period of cycles is searched within this share of the mean period.
 inline constexpr double kCycleSpread = 0.03;
 
-// Traces: what shows in the digits of a recording.
+// Traces: network faults and converter steps, found in the recorded values.
 
-/// Latest arrival of a target that is looked for.
+/// Longest delay of a target that is searched.
 inline constexpr double kArrivalLagMax_s = 0.5;
-/// Share of moving samples whose lag is found, above which the targets are those that were sent.
+/// If the lag of more than this share of moving samples is found, the targets are the ones that were sent.
 inline constexpr double kLagsFoundMin = 0.9;
-/// Share of steps in which a lag shrinks, above which it fluctuates: a drift never goes back.
+/// If a lag decreases in more than this share of steps, it fluctuates: a drift never decreases.
 inline constexpr double kLagsShrinkingMin = 0.002;
-/// Share of fresh targets that are equally late when nothing but loss is at work.
+/// Minimum share of new targets with equal lag when loss is the only fault.
 inline constexpr double kEquallyLateMin = 0.97;
-/// Readings below which no step of a converter is looked for.
+/// With fewer readings, no converter step is searched.
 inline constexpr std::size_t kStepSamplesMin = 64;
 /// Bins over the span of the readings, and over how many times that their spectrum goes: it resolves steps to a quarter
 /// of what tells neighbouring ones apart.
@@ -167,19 +167,19 @@ inline constexpr double kStepAsCoherent = 0.8;
 inline constexpr double kStepReach = 0.3;
 inline constexpr int kStepSections = 24;
 
-// Segments and what they are compared by.
+// Segments and their comparison.
 
 /// Rate at which predictions are compared [Hz]. Ten samples per cycle of the fastest motion that
 /// servo-hydraulic actuators follow (about 25 Hz).
 inline constexpr double kFitRate_hz = 250.0;
-/// Before the record everything stood where it stands at its first sample, for so long.
+/// Time before the recording during which everything is assumed at rest at the values of the first sample.
 inline constexpr double kRestBefore_s = 0.5;
-/// Of the one draw of noise that floors are taken from.
+/// Seed of the noise from which floors are computed.
 inline constexpr std::uint64_t kNoiseSeed = 1;
-/// Share of the signal that no model is expected to reproduce: keeps noise-free records from being
-/// judged by rounding, and weighs interfaces against each other.
+/// Share of the signal that no model is expected to reproduce. It prevents rounding from deciding in recordings
+/// without noise, and gives the weight of interfaces against each other.
 inline constexpr double kModelAllowance = 0.0005;
-/// Held-out blocks per recording; as many as cycles allow within these.
+/// Minimum and maximum number of held-out blocks per recording; the number of cycles decides.
 inline constexpr double kBlocksMin = 5.0;
 inline constexpr double kBlocksMax = 12.0;
 /// A law is a spring when its force at these shares of the peak is proportional, within this share.
@@ -188,9 +188,9 @@ inline constexpr double kSpringRounding = 1e-9;
 /// Step of the slope over a wrong stiffness ratio.
 inline constexpr double kStiffnessStep = 1e-3;
 
-// Search: how far it goes.
+// Search: its limits.
 
-/// Its steps, the relative gain below which it stops, and how many of the starts it follows.
+/// Number of steps, relative gain below which the search stops, and number of starts that it continues.
 inline constexpr int kSearchIterations = 12;
 inline constexpr double kSearchTolerance = 1e-5;
 inline constexpr std::size_t kRefinedStarts = 2;
@@ -206,7 +206,7 @@ inline constexpr double kInstantStepMin = 1e-5;
 /// clearance or a friction has to move over several samples to be felt. In the search, and at the optimum.
 inline constexpr double kDifferenceStep = 1e-3;
 inline constexpr double kSlopeStep = 1e-3;
-/// Nearer than this share of the range to its end a parameter has hit it.
+/// A parameter nearer than this share of its range to the limit counts as at the limit.
 inline constexpr double kAtBound = 1e-3;
 /// Shares added to the diagonal of normal equations: in the projection, where columns that are almost multiples of each
 /// other would cancel in huge numbers, and in the covariance.
@@ -217,14 +217,14 @@ inline constexpr double kCovarianceRidge = 1e-9;
 inline constexpr double kAsGoodAsLinear = 1e-3;
 inline constexpr int kRelinearisations = 3;
 inline constexpr double kCoefficientStep = 1e-2;
-/// Largest correlation of neighbouring residuals that is believed.
+/// Upper limit of the estimated correlation of neighbouring residuals.
 inline constexpr double kNeighbourCorrelationMax = 0.999;
 
 // Score of a candidate [nats].
 
 /// Independent samples that a second of a structured residual is worth.
 inline constexpr double kIndependentPerSecond = 5.0;
-/// What leaving the model's slightly wrong parameters free costs a candidate [nats].
+/// Penalty of a candidate for freeing slightly wrong parameters of the model [nats].
 inline constexpr double kNuisanceCost = 3.0;
 /// Share of the secant stiffness by which a slightly wrong model may be off.
 inline constexpr double kSlightlyWrong = 0.25;
@@ -302,7 +302,7 @@ inline constexpr std::size_t kResamplesBeyond = kResamples / 40;
 /// Blocks per segment that the shrinking is resampled from.
 inline constexpr std::size_t kShrinkBlocks = 12;
 
-// The computed structure: everything is computed and nothing measured.
+// The computed structure: all signals are computed, without measurement noise.
 
 /// As kNamedLeaves: wrong ratios come within a hundredth, right ones within rounding.
 inline constexpr double kComputedLeaves = 1e-6;
@@ -313,7 +313,7 @@ inline constexpr double kRatioDifference = 1e-6;
 inline constexpr double kRatioSettled = 1e-12;
 /// Share of a ground motion's root mean square below which two are the same, written with other digits.
 inline constexpr double kSameMotion = 1e-9;
-/// Network latency of a test that is run again: short beside any step.
+/// Network latency of a repeated simulated test: short compared with any step.
 inline constexpr int kRerunLatency_us = 50;
 
 }  // namespace hybridtest::tuning

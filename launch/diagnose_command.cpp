@@ -26,7 +26,7 @@ struct DiagnoseOptions {
   std::size_t threads = 0;
 };
 
-/// The first run directory, preferably a held-out one: only a run directory holds the whole test of the site.
+/// The first run directory, preferably a held-out one: a CSV file does not contain the whole test.
 std::optional<std::filesystem::path> run_to_repeat(const DiagnoseOptions& options) {
   for (const auto* files : {&options.held_out, &options.recordings}) {
     const auto run = std::ranges::find_if(*files, [](const auto& file) { return std::filesystem::is_directory(file); });
@@ -39,8 +39,8 @@ int run_diagnosis(const DiagnoseOptions& options) {
   const std::optional<std::filesystem::path> run = run_to_repeat(options);
   if (!run && !options.scenario.empty()) {
     throw ConfigError{
-        "--scenario: it needs a run directory as --recording or --held-out; a CSV file does not hold the commands and "
-        "forces of the structure"};
+        "--scenario: only CSV files are given; expected a run directory as --recording or --held-out, because a CSV "
+        "file does not contain the commands and forces of the structure"};
   }
   const SiteModelFile model = read_site_model(options.model, options.site);
   std::vector<Recording> recordings;
@@ -72,20 +72,20 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
   CLI::App* command = app.add_subcommand(
       "diagnose",
       "Find where recordings of a site and its model disagree, which unmodelled effect explains the gap,\n"
-      "and how much of the gap remains with it. Exit code 4: the recordings cannot tell.");
+      "and how much of the gap remains with it. Exit code 4: the recordings are not sufficient.");
   command->add_option("--model", options->model, "Model of the site: a site file, or a scenario")->required();
   command->add_option("--site", options->site, "Id of the site; required if the scenario or run has several sites");
   command
       ->add_option("--recording", options->recordings,
-                   "CSV file or run directory in which to find the cause; repeatable")
+                   "CSV file or run directory to which effects are fitted; repeatable")
       ->required();
   command->add_option(
       "--held-out", options->held_out,
       "CSV file or run directory, not used for fitting, on which the remaining gap is measured; repeatable");
   command->add_option(
       "--scenario", options->scenario,
-      "Scenario with your numbers of the structure (mass, damping, stiffness, step), to check them; default: the\n"
-      "scenario of the run directory");
+      "Scenario with the mass, damping, stiffness and step to be checked; default: the scenario of the run\n"
+      "directory");
   command->add_option("--out", options->out, "Directory for diagnosis.html, diagnosis.json and augmented_model.yaml")
       ->required();
   command->add_option("--seed", options->seed, "Seed of the resampling for the confidence intervals")

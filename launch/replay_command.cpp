@@ -45,15 +45,17 @@ int replay_recording(const ReplayOptions& options) {
   if (channels == 0) {
     fmt::print(
         stderr,
-        "{}: nothing to compare. Expected: command and measured displacement; or measured displacement and measured "
-        "force, with a specimen in the model\n",
+        "{}: no channels to compare. Expected the columns command_displacement_m and measured_displacement_m; or "
+        "measured_displacement_m and measured_force_n, with a specimen in the model\n",
         recording.file);
     return kExitDataInvalid;
   }
   print_gaps(replays);
   std::ofstream file{options.out, std::ios::binary};
   file << replay_csv(recording, replays);
-  if (!file.flush()) throw ConfigError{"--out " + options.out.string() + ": cannot be written"};
+  if (!file.flush())
+    throw ConfigError{"--out " + options.out.string() +
+                      ": this file cannot be written; check the folder and its permissions"};
   fmt::print("  written to {}\n", options.out.string());
   return kExitCompleted;
 }
@@ -64,8 +66,8 @@ void add_replay_command(CLI::App& app, CommandAction& action) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand(
       "replay",
-      "Drive a model of a site stage by stage with a recording, and print the gap of each interface.\n"
-      "Exit code 4: the recording has nothing to compare.");
+      "Compute each stage of a site model with the recorded input of that stage, and print the gap of each interface.\n"
+      "Exit code 4: the recording has no channels to compare.");
   command->add_option("--model", options->model, "Model of the site: a site file, or a scenario")->required();
   command->add_option("--site", options->site, "Id of the site; required if the scenario or run has several sites");
   command->add_option("--recording", options->recording, "CSV file or run directory")->required();

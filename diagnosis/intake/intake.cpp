@@ -59,7 +59,7 @@ constexpr std::string_view kPredicted = "predicted_";
 
 Channel channel_at(std::size_t index) { return static_cast<Channel>(index); }
 
-/// `_2` as 1; nothing for what is no such suffix.
+/// `_2` gives 1; nothing for any other suffix.
 std::optional<std::size_t> dof_of_suffix(std::string_view suffix) {
   if (suffix.empty()) return 0;
   if (suffix.size() < 2 || suffix.front() != '_' || suffix[1] == '0') return {};
@@ -90,7 +90,8 @@ bool is_left_aside(std::string_view header) {
 std::string unknown_column_advice(std::string_view header) {
   std::vector<std::string> known{std::string{kTimeColumn}};
   for (std::size_t i = 0; i < kChannels; ++i) known.emplace_back(column_name(channel_at(i)));
-  return "unknown column" + name_advice(header, known, "known here") + "; _1, _2 ... for several degrees of freedom";
+  return "unknown column" + name_advice(header, known, "known here") +
+         "; with several degrees of freedom, add _1, _2, ... to the name";
 }
 
 namespace {
@@ -105,18 +106,21 @@ double median_interval(const std::vector<double>& time_s) {
 
 /// What is wrong with one interval; empty when nothing is.
 std::string judged(double interval_s, double period_s, double tolerance_s) {
-  if (interval_s == 0.0) return "time stamp repeated; it must increase from row to row";
-  if (interval_s < 0.0) return "time stamp goes back; it must increase from row to row";
+  if (interval_s == 0.0) return "time stamp repeated; time must increase from row to row";
+  if (interval_s < 0.0) return "time stamp is earlier than the one before; time must increase from row to row";
   if (std::abs(interval_s - period_s) <= tolerance_s) return {};
   const double periods = interval_s / period_s;
   if (periods > tuning::kGapPeriods) {
-    return fmt::format("gap before this row: about {:.0f} samples are missing at {:.6g} s per sample",
-                       std::max(1.0, std::round(periods) - 1.0), period_s);
+    return fmt::format(
+        "gap before this row: about {:.0f} samples are missing at {:.6g} s per sample; expected a recording without "
+        "gaps, so export the part before or after it",
+        std::max(1.0, std::round(periods) - 1.0), period_s);
   }
-  return fmt::format("uneven sampling: not the usual {:.6g} s after the row before", period_s);
+  return fmt::format("uneven sampling: expected {:.6g} s after the row before; resample to a constant period",
+                     period_s);
 }
 
-/// Every interval may be even and the period still change on the way.
+/// Every interval can be within its tolerance while the period slowly changes.
 void check_drift(const RawRecording& raw, double period_s, FindingList& findings) {
   std::size_t worst = 0;
   double worst_s = 0.0;
@@ -128,10 +132,11 @@ void check_drift(const RawRecording& raw, double period_s, FindingList& findings
     }
   }
   if (worst_s <= 0.5 * period_s + raw.time_resolution_s) return;
-  findings.add(raw.first_row + worst, std::string{kTimeColumn}, fmt::format("{}", raw.time_s[worst]),
-               fmt::format("uneven sampling: the period changes on the way; here {:.3g} s away from an even grid of "
-                           "{:.6g} s",
-                           worst_s, period_s));
+  findings.add(
+      raw.first_row + worst, std::string{kTimeColumn}, fmt::format("{}", raw.time_s[worst]),
+      fmt::format("uneven sampling: the sample period changes during the recording; this row is {:.3g} s away from a "
+                  "constant period of {:.6g} s. Resample to a constant period",
+                  worst_s, period_s));
 }
 
 }  // namespace
@@ -140,7 +145,10 @@ double check_sampling(const RawRecording& raw, FindingList& findings) {
   const std::vector<double>& time_s = raw.time_s;
   const double usual_s = median_interval(time_s);
   if (!(usual_s > 0.0)) {
-    findings.add(0, std::string{kTimeColumn}, {}, "time does not advance: half of the time stamps repeat or go back");
+    findings.add(
+        0, std::string{kTimeColumn}, {},
+        "time does not advance: at least half of the time stamps are not later than the one before; time must increase "
+        "from row to row");
     return 0.0;
   }
   const double digits_s = raw.time_resolution_s <= tuning::kLastDigitOfPeriodMax * usual_s
@@ -167,7 +175,8 @@ void check_finite(const RawRecording& raw, const std::string& name, const std::v
                   FindingList& findings) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
-      findings.add(raw.first_row + i, name, fmt::format("{}", values[i]), "no finite number");
+      findings.add(raw.first_row + i, name, fmt::format("{}", values[i]),
+                   "not a finite number; expected a number, replace or remove this part of the recording");
     }
   }
 }
@@ -179,11 +188,12 @@ std::size_t dof_count(const RawRecording& raw) {
 }
 
 void check_columns(const RawRecording& raw, FindingList& findings) {
-  if (raw.columns.empty()) findings.add(0, {}, {}, "no channel: a recording has at least one column besides time_s");
+  if (raw.columns.empty()) findings.add(0, {}, {}, "no data column: expected at least one column besides time_s");
   for (std::size_t dof = 0; dof < dof_count(raw); ++dof) {
     if (std::ranges::count(raw.columns, dof, &RawColumn::dof) > 0) continue;
-    findings.add(0, {}, {},
-                 fmt::format("columns of degree of freedom {} are missing; they are counted from 1", dof + 1));
+    findings.add(
+        0, {}, {},
+        fmt::format("columns of degree of freedom {} are missing; expected numbers from 1 without a gap", dof + 1));
   }
 }
 
@@ -207,10 +217,10 @@ Intake check_recording(RawRecording raw) {
   for (const RawColumn& column : raw.columns) check_finite(raw, column.name, column.values, findings);
   if (raw.time_s.size() < tuning::kSamplesMin) {
     findings.add(0, {}, {},
-                 fmt::format("{} rows of data; at least {} are needed", raw.time_s.size(), tuning::kSamplesMin));
+                 fmt::format("{} rows of data; expected at least {}", raw.time_s.size(), tuning::kSamplesMin));
   }
   double period_s = 0.0;
-  // What follows looks at differences and extremes.
+  // The next checks use differences and extreme values: they need finite numbers.
   if (findings.empty()) period_s = check_sampling(raw, findings);
   if (period_s > 0.0) check_units(raw, period_s, findings);
   if (!findings.empty()) return {{}, findings.sorted()};

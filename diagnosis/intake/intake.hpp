@@ -10,13 +10,13 @@
 
 namespace hybridtest {
 
-/// One thing wrong with a recording, by its place. Nothing of a recording is ever repaired.
+/// One error in a recording and its place. Recordings are never repaired automatically.
 struct IntakeFinding {
   std::size_t row = 0;       // line of the file, the header being 1; 0 when it belongs to no row
   std::string column;        // empty when it belongs to no column
   std::string value;         // as found; empty where there is none to show
   std::string what;          // what is wrong and what was expected
-  std::size_t more = 0;      // rows further down with the same in the same column
+  std::size_t more = 0;      // later rows with the same error in the same column
   std::size_t last_row = 0;  // the last of them
 
   /// `FILE:ROW: column 'C': 'VALUE': WHAT (and in 12 more rows, the last 400)`
@@ -36,7 +36,7 @@ class FindingList {
   std::size_t left_out_ = 0;
 };
 
-/// A channel as it was found, before anything is checked.
+/// A channel as it was read, before any check.
 struct RawColumn {
   std::string name;  // as headed
   Channel channel{};
@@ -44,10 +44,10 @@ struct RawColumn {
   std::vector<double> values;
 };
 
-/// A recording as it was found: all columns of one length.
+/// A recording as it was read: all columns have the same length.
 struct RawRecording {
   std::string file;           // as the user named it
-  std::size_t first_row = 1;  // how the first sample is counted in findings
+  std::size_t first_row = 1;  // row number of the first sample in findings
   std::vector<double> time_s;
   double time_resolution_s = 0.0;  // of the last digit of the time stamps; 0 when they are not rounded
   std::vector<RawColumn> columns;
@@ -61,42 +61,42 @@ struct ChannelColumn {
 
 inline constexpr std::string_view kTimeColumn = "time_s";
 
-/// What a column is by its header: `measured_force_n` or `measured_force_n_2`, counted from 1.
+/// Channel and degree of freedom that a header names: `measured_force_n` or `measured_force_n_2`, counted from 1.
 /// @return nothing for a header that names no channel.
 [[nodiscard]] std::optional<ChannelColumn> channel_of_header(std::string_view header);
 
-/// Whether it is a column that a run's own tables and replays have and the diagnosis has no use for.
+/// Whether it is a known column of run tables or replays that the diagnosis does not use.
 [[nodiscard]] bool is_left_aside(std::string_view header);
 
-/// What to say of a header that is unknown: the nearest known name, and all of them.
+/// The message for an unknown header: the nearest known name, and all known names.
 [[nodiscard]] std::string unknown_column_advice(std::string_view header);
 
 /// Finds repeated, reversed and unevenly spaced time stamps, gaps, and a period that drifts.
 ///
-/// An interval is even when it differs from the median interval by less than a hundredth or, where
-/// the stamps were rounded to digits (1/1024 s written as 0.000977), by the last digit; digits
-/// coarser than a tenth of the period cannot excuse anything. The whole must follow an even grid
-/// within half a period.
+/// An interval is accepted when it differs from the median interval by less than 1 % or, if the time stamps
+/// are rounded (1/1024 s written as 0.000977), by less than the last digit. Digits coarser than a tenth of the
+/// period do not widen the tolerance. All time stamps must be within half a period of a grid with a constant
+/// period.
 /// @param raw   at least two samples, times finite.
 /// @return the period [s]: length over intervals; meaningless when something was found.
 [[nodiscard]] double check_sampling(const RawRecording& raw, FindingList& findings);
 
-/// What became of a recording: itself, or everything that is wrong with it.
+/// The result of reading a recording: the recording, or all errors found in it.
 struct Intake {
-  std::optional<Recording> recording;  // without its hash and role, which the reader of the file knows
+  std::optional<Recording> recording;  // without hash and role; the reader of the file fills them in
   std::vector<IntakeFinding> findings;
 };
 
-/// Takes a recording from CSV: a header of names and units (`time_s`, and any of column_name(), with
+/// Reads a recording from CSV: a header of names and units (`time_s`, and any of column_name(), with
 /// `_1`, `_2` … for several degrees of freedom), one row per sample, SI.
 ///
-/// Columns of a run's own tables that are no channel are left aside; any other unknown one is a
-/// finding, and so is everything of check_recording().
+/// Columns of run tables that are not channels are ignored; any other unknown column is a finding.
+/// All findings of check_recording() are added.
 /// @param file   as the user named it.
 [[nodiscard]] Intake read_csv_recording(std::string_view text, const std::string& file);
 
 /// Checks what was read: every value finite, sampling even and without gaps (check_sampling()),
-/// units plausible (check_units()), degrees of freedom without a hole, samples enough.
+/// units plausible (check_units()), no missing degree of freedom, enough samples.
 [[nodiscard]] Intake check_recording(RawRecording raw);
 
 }  // namespace hybridtest

@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Cuts off what stands before the separator, which goes as well.
+/// Removes the text up to and including the separator; returns the text before it.
 std::string_view cut(std::string_view& text, char separator) {
   const std::size_t end = std::min(text.find(separator), text.size());
   const std::string_view part = text.substr(0, end);
@@ -38,7 +38,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// Digits behind the point as the step of the last one; 0 for numbers with an exponent.
+/// The step of the last digit after the decimal point; 0 for numbers with an exponent.
 double resolution_of(std::string_view number) {
   if (number.find_first_of("eE") != std::string_view::npos) return 0.0;
   const std::size_t point = number.find('.');
@@ -46,7 +46,7 @@ double resolution_of(std::string_view number) {
   return std::pow(10.0, -static_cast<double>(digits));
 }
 
-/// Reads a file row by row into columns, noting what is no number.
+/// Reads a file row by row into columns; a cell that is not a number becomes a finding.
 class CsvReader {
  public:
   CsvReader(std::string_view text, const std::string& file) : rest_{text} {
@@ -69,18 +69,22 @@ class CsvReader {
 
   void read_header() {
     const std::string_view line = cut(rest_, '\n');
-    if (trimmed(line).empty()) return findings_.add(0, {}, {}, "the file is empty; expected a header with time_s");
+    if (trimmed(line).empty())
+      return findings_.add(0, {}, {}, "the file is empty; expected a header row with time_s and the measured columns");
     if (line.find(',') == std::string_view::npos && line.find_first_of(";\t") != std::string_view::npos) {
-      return findings_.add(kHeaderRow, {}, {}, "columns are separated by commas, and decimals by points");
+      return findings_.add(
+          kHeaderRow, {}, {},
+          "columns are separated by semicolons or tabs; expected commas between columns and points in decimal numbers");
     }
     const std::vector<std::string_view> names = cells_of(line);
     if (names.size() > tuning::kColumnsMax) {
       return findings_.add(kHeaderRow, {}, {},
-                           fmt::format("{} columns; at most {}", names.size(), tuning::kColumnsMax));
+                           fmt::format("{} columns; expected at most {}", names.size(), tuning::kColumnsMax));
     }
     for (const std::string_view name : names) place(std::string{name}, names);
     if (std::ranges::find(target_, kTime) == target_.end()) {
-      findings_.add(kHeaderRow, std::string{kTimeColumn}, {}, "missing; every recording has its time in seconds");
+      findings_.add(kHeaderRow, std::string{kTimeColumn}, {},
+                    "missing; expected a column time_s with the time in seconds");
     }
   }
 
@@ -91,11 +95,12 @@ class CsvReader {
     const bool is_time = name == kTimeColumn;
     target_.push_back(is_time ? kTime : channel ? raw_.columns.size() : kNone);
     if (!is_time && !channel && !is_left_aside(name)) {
-      // A header of numbers is most likely none at all.
+      // A header of numbers probably means that the header row is missing.
       double number = 0.0;
       const bool is_number = std::from_chars(name.data(), name.data() + name.size(), number).ptr != name.data();
       findings_.add(kHeaderRow, name, {},
-                    is_number ? "a header of names and units was expected" : unknown_column_advice(name));
+                    is_number ? "number in the header row; expected a first row with column names such as time_s"
+                              : unknown_column_advice(name));
     }
     if (is_time && std::ranges::count(names, std::string_view{name}) > 1) return twice(name);
     if (!channel) return;
@@ -106,7 +111,9 @@ class CsvReader {
     raw_.columns.push_back({name, channel->channel, channel->dof, {}});
   }
 
-  void twice(const std::string& name) { findings_.add(kHeaderRow, name, {}, "there are two columns of this name"); }
+  void twice(const std::string& name) {
+    findings_.add(kHeaderRow, name, {}, "two columns have this name; remove or rename one");
+  }
 
   void read_rows() {
     const auto expected = static_cast<std::size_t>(std::ranges::count(rest_, '\n')) + 1;
@@ -117,18 +124,20 @@ class CsvReader {
       if (!trimmed(line).empty()) {
         read_row(row, line);
       } else if (rest_.find_first_not_of(" \t\r\n") != std::string_view::npos) {
-        findings_.add(row, {}, {}, "empty row");
+        findings_.add(row, {}, {}, "empty row; remove it, or fill in its values");
       } else {
         break;  // blank lines at the end
       }
     }
-    if (raw_.time_s.empty() && findings_.empty()) findings_.add(0, {}, {}, "a header and no data");
+    if (raw_.time_s.empty() && findings_.empty())
+      findings_.add(0, {}, {}, "a header without data; expected one row per sample");
   }
 
   void read_row(std::size_t row, std::string_view line) {
     const auto cells = static_cast<std::size_t>(std::ranges::count(line, ',')) + 1;
     if (cells != names_.size()) {
-      findings_.add(row, {}, {}, fmt::format("{} cells in this row; the header has {}", cells, names_.size()));
+      findings_.add(row, {}, {},
+                    fmt::format("{} cells in this row; expected {} as in the header", cells, names_.size()));
       return;
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -137,7 +146,7 @@ class CsvReader {
       const double value = number(row, names_[i], cell);
       if (target_[i] == kTime) {
         raw_.time_s.push_back(value);
-        // Writers drop trailing zeros: the row with the most digits tells.
+        // Programs drop trailing zeros: the row with the most digits shows the resolution.
         const double resolution_s = resolution_of(cell);
         if (raw_.time_s.size() == 1 || resolution_s < raw_.time_resolution_s) raw_.time_resolution_s = resolution_s;
       } else {
@@ -148,17 +157,19 @@ class CsvReader {
 
   double number(std::size_t row, const std::string& column, std::string_view cell) {
     if (cell.empty()) {
-      findings_.add(row, column, {}, "empty cell; a number was expected");
+      findings_.add(row, column, {}, "empty cell; expected a number");
       return 0.0;
     }
     double value = 0.0;
     const std::string_view digits = cell.size() > 1 && cell.front() == '+' ? cell.substr(1) : cell;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size()) {
-      findings_.add(row, column, std::string{cell}, "no number");
+      findings_.add(row, column, std::string{cell}, "not a number; expected digits with a decimal point and no unit");
       return 0.0;
     }
-    if (!std::isfinite(value)) findings_.add(row, column, std::string{cell}, "no finite number");
+    if (!std::isfinite(value))
+      findings_.add(row, column, std::string{cell},
+                    "not a finite number; expected a number, replace or remove this part of the recording");
     return value;
   }
 

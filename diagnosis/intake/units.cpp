@@ -68,7 +68,7 @@ double fastest(const std::vector<double>& values, double period_s) {
 void suspect(const RawRecording& raw, const RawColumn& column, std::size_t sample, const std::string& why,
              FindingList& findings) {
   findings.add(raw.first_row + sample, column.name, fmt::format("{}", column.values[sample]),
-               why + "; metres were expected");
+               why + "; expected metres");
 }
 
 /// Against the other displacements of the same degree of freedom.
@@ -82,7 +82,7 @@ bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, Fin
       const double ratio = own.width / other_width / unit.per_metre;
       if (ratio < 1.0 - tuning::kUnitRatioTolerance || ratio > 1.0 + tuning::kUnitRatioTolerance) continue;
       suspect(raw, column, own.farthest,
-              fmt::format("seems to be in {}: it spans {:.4g}, {:.0f} times what '{}' spans ({:.4g})", unit.name,
+              fmt::format("seems to be in {}: its range is {:.4g}, {:.0f} times the range of '{}' ({:.4g})", unit.name,
                           own.width, own.width / other_width, other.name, other_width),
               findings);
       return true;
@@ -91,11 +91,11 @@ bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, Fin
   return false;
 }
 
-/// What the ratio of a measured acceleration to the displacement's second derivative says of a column.
+/// What the ratio of measured acceleration to the second derivative of displacement shows about a unit.
 struct AccelerationRatio {
   double ratio;
   std::string_view what;
-  bool is_of_time;  // and not of the acceleration
+  bool is_of_time;  // the wrong unit is that of time, not of acceleration
 };
 constexpr std::array<AccelerationRatio, 5> kAccelerationRatios{{{1.0 / 9.80665, "seems to be in g", false},
                                                                 {1000.0, "seems to be in mm/s2", false},
@@ -103,7 +103,7 @@ constexpr std::array<AccelerationRatio, 5> kAccelerationRatios{{{1.0 / 9.80665, 
                                                                 {1e6, "seems to be in milliseconds", true},
                                                                 {1e12, "seems to be in microseconds", true}}};
 
-/// Second derivative of the displacement, as quiet as the motion allows.
+/// Second derivative of the displacement, smoothed as far as the motion allows.
 std::vector<double> acceleration_of(const std::vector<double>& displacement_m, double period_s) {
   const LocalPolynomial polynomial{widest_faithful_half_width(displacement_m), period_s};
   std::vector<double> acceleration(displacement_m.size());
@@ -134,8 +134,8 @@ void check_acceleration(const RawRecording& raw, const RawColumn& column, double
     const double value = known.is_of_time ? raw.time_s[sample] : column.values[sample];
     findings.add(raw.first_row + sample, known.is_of_time ? std::string{kTimeColumn} : column.name,
                  fmt::format("{}", value),
-                 fmt::format("{}: '{}' is {:.4g} times the second derivative of '{}'; {} expected", known.what,
-                             column.name, ratio, displacement->name, known.is_of_time ? "seconds were" : "m/s2 were"));
+                 fmt::format("{}: '{}' is {:.4g} times the second derivative of '{}'; expected {}", known.what,
+                             column.name, ratio, displacement->name, known.is_of_time ? "seconds" : "m/s2"));
     return;
   }
 }
@@ -149,11 +149,11 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
     const std::size_t farthest = span_of(column.values).farthest;
     const double speed = fastest(column.values, period_s);
     if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {
-      suspect(raw, column, farthest, "seems to be in millimetres: no site moves by more than 10 m", findings);
+      suspect(raw, column, farthest, "seems to be in millimetres: the largest displacement accepted is 10 m", findings);
     } else if (speed > tuning::kSpeedMax_m_per_s) {
       suspect(raw, column, farthest,
-              fmt::format("seems to be in millimetres: in metres it would move at {:.3g} m/s, and no site is faster "
-                          "than 10 m/s",
+              fmt::format("seems to be in millimetres: read in metres its speed is {:.3g} m/s, and the largest speed "
+                          "accepted is 10 m/s",
                           speed),
               findings);
     }
@@ -165,8 +165,8 @@ namespace {
 struct ForceUnit {
   double newtons;
   std::string_view name;
-  double factor;         // by which the ratio may be off
-  double largest_nrmse;  // once converted
+  double factor;         // tolerance of the ratio
+  double largest_nrmse;  // after conversion
 };
 constexpr double kAnyFit = std::numeric_limits<double>::infinity();
 constexpr std::array<ForceUnit, 6> kForceUnits{
@@ -183,13 +183,13 @@ struct TimeUnit {
 };
 constexpr std::array<TimeUnit, 2> kTimeUnits{{{1e3, "milliseconds"}, {1e6, "microseconds"}}};
 
-/// Around its mean.
+/// Deviation from the mean.
 Eigen::VectorXd swing(const std::vector<double>& values) {
   const Eigen::Map<const Eigen::VectorXd> all{values.data(), std::ssize(values)};
   return all.array() - all.mean();
 }
 
-/// Samples are numbered as lines of the file are.
+/// Samples are numbered like the lines of the file.
 IntakeFinding finding_at(const Recording& recording, const std::string& column, const std::vector<double>& values,
                          std::string what) {
   const auto farthest = std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
@@ -205,7 +205,7 @@ std::string column_of(const Recording& recording, Channel channel, std::size_t d
   return recording.dofs.size() > 1 ? name + "_" + std::to_string(dof + 1) : name;
 }
 
-/// How far off the ratio is, as a factor of at least 1.
+/// Deviation of the ratio from 1, as a factor of at least 1.
 double off_by(double ratio) { return std::exp(std::abs(std::log(ratio))); }
 
 void check_force(const Segment& segment, const SiteModel& model, const Recording& recording, std::size_t dof,
@@ -221,12 +221,12 @@ void check_force(const Segment& segment, const SiteModel& model, const Recording
   if (off_by(newtons / nearest->newtons) > nearest->factor || left > nearest->largest_nrmse) return;
   findings.push_back(
       finding_at(recording, column_of(recording, segment.to, dof), segment.measured,
-                 fmt::format("seems to be in {}: the model predicts {:.4g} times as much; newtons were expected",
+                 fmt::format("seems to be in {}: the model predicts {:.4g} times this force; expected newtons",
                              nearest->name, newtons)));
 }
 
-/// Root mean square of the segments' gaps over those of their outputs, at another sample period; beyond all where
-/// a part of the model refuses that period.
+/// Root mean square of the gap over that of the output, for another sample period; infinite if a part of the model
+/// does not accept that period.
 double gap_at(const SiteModel& model, const Recording& recording, std::size_t dof, double period_s) try {
   Recording tried = recording;
   tried.sample_period_s = period_s;
@@ -258,8 +258,8 @@ void check_time(const SiteModel& model, const Recording& recording, std::size_t 
         {.row = recording.first_row + 1,
          .column = "time_s",
          .value = fmt::format("{}", recording.sample_period_s),
-         .what = fmt::format("seems to be in {}: with samples so far apart the model is off by {:.3g} of "
-                             "what was measured, with {} s by {:.3g}; seconds were expected",
+         .what = fmt::format("seems to be in {}: with this sample period the NRMSE of the model is {:.3g}, with a "
+                             "period of {} s it is {:.3g}; expected seconds",
                              unit.name, as_written, period_s, converted)});
     return;
   }

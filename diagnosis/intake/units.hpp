@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// Suspects columns of another unit than their header says.
+/// Reports columns whose unit seems to differ from the one in their header.
 ///
 /// The displacements of a degree of freedom describe one motion: where one spans 1000, 100 or 39.37
 /// times what another spans, it is in millimetres, centimetres or inches. Alone, a displacement is
@@ -20,7 +20,7 @@ namespace hybridtest {
 /// @param raw   values finite. @param period_s   positive.
 void check_units(const RawRecording& raw, double period_s, FindingList& findings);
 
-/// Suspects force and time columns of another unit than their header says, by what the model predicts.
+/// Reports force and time columns whose unit seems to differ from the one in their header, using the model.
 ///
 /// A force that goes with the predicted one (correlation at least 0.3) and is within a factor of three of a thousandth
 /// or a millionth of it, or of what kips would read, is in that unit: no specimen is so much softer than its model. In

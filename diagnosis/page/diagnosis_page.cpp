@@ -15,7 +15,7 @@ namespace {
 
 using plot::escaped;
 
-/// In the order in which a signal passes them.
+/// In the order of the signal flow.
 constexpr std::array<std::string_view, 7> kChain{"numerical_substructure", "network",  "compensator", "transfer_system",
                                                  "displacement_sensor",    "specimen", "force_sensor"};
 
@@ -26,9 +26,9 @@ std::string judged_link(const InterfaceGap& gap, bool is_main) {
       "<span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span><em>{}</em></li>\n",
       state, escaped(plain(gap.interface)), sees(gap.interface), percent(gap.share), between_percent(gap.share_ci95),
       100.0 * std::clamp(gap.share, 0.0, 1.0),
-      is_main           ? "✗ the gap is here"
-      : gap.is_at_fault ? "above its floor"
-                        : "✓ within its floor");
+      is_main           ? "✗ largest gap"
+      : gap.is_at_fault ? "above its noise floor"
+                        : "✓ within its noise floor");
 }
 
 std::string unjudged_link(std::string_view interface, const std::string& why) {
@@ -44,7 +44,7 @@ std::string chain_part(const DiagnosisReport& report) {
   for (const std::string_view interface : kChain) {
     const auto gap = std::ranges::find(report.where, interface, &InterfaceGap::interface);
     if (gap == report.where.end()) {
-      html += unjudged_link(interface, "nothing in the recordings tells");
+      html += unjudged_link(interface, "no recorded channel shows it");
     } else if (!gap->is_judged) {
       html += unjudged_link(interface, gap->why_not);
     } else {
@@ -65,14 +65,14 @@ std::string parameter_text(const ReportedParameter& parameter) {
       fmt::format("<span class=\"par\">{} <b>{}</b>", escaped(plain_parameter(parameter.name, parameter.unit)),
                   escaped(quantity(parameter.value, parameter.unit)));
   if (parameter.ci95) text += fmt::format(" <small>({})</small>", escaped(between(*parameter.ci95, parameter.unit)));
-  if (parameter.is_at_bound) text += " <small class=\"warn\">at the bound of the search</small>";
+  if (parameter.is_at_bound) text += " <small class=\"warn\">at the limit of its search range</small>";
   return text + "</span>";
 }
 
 std::string row(const RankedCause& cause) {
   std::string parameters;
   for (const ReportedParameter& parameter : cause.parameters) parameters += parameter_text(parameter);
-  const std::string_view standing = cause.is_cause ? "cause" : cause.is_indistinguishable ? "not told apart" : "";
+  const std::string_view standing = cause.is_cause ? "cause" : cause.is_indistinguishable ? "not distinguishable" : "";
   return fmt::format(
       "<tr class=\"{}\"><td><b>{}</b><small>{}</small><small class=\"eq\">{}</small></td>"
       "<td class=\"prob\">{}<span class=\"bar\"><i "
@@ -82,7 +82,7 @@ std::string row(const RankedCause& cause) {
       standing);
 }
 
-/// The causes with what cannot be told from them; empty when the causes stand alone.
+/// The causes and the effects that cannot be distinguished from them; empty when there is no such effect.
 std::string alike_text(const DiagnosisReport& report) {
   std::vector<std::string> alike;
   for (const RankedCause& cause : report.ranking) {
@@ -91,7 +91,7 @@ std::string alike_text(const DiagnosisReport& report) {
   const bool is_open =
       report.verdict == Verdict::set || std::ranges::any_of(report.ranking, &RankedCause::is_indistinguishable);
   if (!is_open || alike.size() < 2) return "";
-  return fmt::format("<p>These recordings cannot tell apart {}.</p>\n", escaped(joined(alike)));
+  return fmt::format("<p>These recordings cannot distinguish {}.</p>\n", escaped(joined(alike)));
 }
 
 }  // namespace
@@ -100,13 +100,14 @@ std::string causes_part(const DiagnosisReport& report) {
   std::string html;
   if (!report.ranking.empty()) {
     html +=
-        "<h2>Which effect</h2>\n<table class=\"causes\"><tr><th>effect</th><th>probability</th><th>parameters (95 "
+        "<h2>Effects that explain the gap</h2>\n<table "
+        "class=\"causes\"><tr><th>effect</th><th>probability</th><th>parameters (95 "
         "%)</th>"
         "<th></th></tr>\n";
     for (std::size_t i = 0; i < std::min(kRowsMax, report.ranking.size()); ++i) html += row(report.ranking[i]);
     html += "</table>\n";
     if (report.ranking.size() > kRowsMax) {
-      html += fmt::format("<p class=\"fine\">{} more are in diagnosis.json.</p>\n", report.ranking.size() - kRowsMax);
+      html += fmt::format("<p class=\"fine\">diagnosis.json lists {} more.</p>\n", report.ranking.size() - kRowsMax);
     }
   }
   html += alike_text(report);
@@ -127,7 +128,7 @@ std::string interface_rows(const DiagnosisReport& report) {
     rows += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                         escaped(plain(gap.interface)), percent(gap.nrmse), percent(gap.floor_nrmse),
                         gap.repeatability ? percent(gap.repeatability->nrmse) + " (" + gap.repeatability->source + ")"
-                                          : "nothing repeats",
+                                          : "no repetition",
                         percent(gap.share), between_percent(gap.share_ci95));
   }
   return rows;
@@ -148,16 +149,17 @@ std::string recording_rows(const DiagnosisReport& report) {
 
 std::string facts_part(const DiagnosisReport& report) {
   const std::string interfaces = interface_rows(report);
-  std::string html = interfaces.empty() && report.notes.empty() ? "" : "<h2>In figures</h2>\n";
+  std::string html = interfaces.empty() && report.notes.empty() ? "" : "<h2>Results by interface</h2>\n";
   if (!interfaces.empty()) {
     html +=
-        "<table><tr><th>interface</th><th>error</th><th>floor of noise</th><th>what differs when it is "
-        "repeated</th><th>share of the gap</th><th>95 %</th></tr>\n" +
+        "<table><tr><th>interface</th><th>gap, NRMSE</th><th>noise floor</th><th>difference between "
+        "repetitions</th><th>share of the gap</th><th>95 %</th></tr>\n" +
         interfaces + "</table>\n";
   }
   for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
-  html += "<h2>What went in</h2>\n<p>Model: " + escaped(report.model_file) + "</p>\n<div class=\"scroll\"><table>";
-  html += "<tr><th>recording</th><th>used for</th><th>length</th><th>sample</th><th>SHA-256</th></tr>\n";
+  html +=
+      "<h2>Model and recordings</h2>\n<p>Model: " + escaped(report.model_file) + "</p>\n<div class=\"scroll\"><table>";
+  html += "<tr><th>recording</th><th>used for</th><th>length</th><th>sample period</th><th>SHA-256</th></tr>\n";
   return html + recording_rows(report) + "</table></div>\n";
 }
 
@@ -165,14 +167,14 @@ namespace {
 
 using plot::escaped;
 
-/// More of a recording at the very extremes is no chance.
+/// A larger share of samples at the extreme values is not chance: the sensor is clipped.
 constexpr double kClipped = 0.001;
 
 std::string rest_text(const SensorFacts& facts) {
-  if (!facts.at_rest) return "no rest";
+  if (!facts.at_rest) return "no rest recorded";
   const RestFacts& rest = *facts.at_rest;
-  return fmt::format("{} first, {} last; noise {}", quantity(rest.first, facts.unit), quantity(rest.last, facts.unit),
-                     quantity(rest.rms, facts.unit));
+  return fmt::format("{} at start, {} at end; noise {}", quantity(rest.first, facts.unit),
+                     quantity(rest.last, facts.unit), quantity(rest.rms, facts.unit));
 }
 
 std::string row(const SensorFacts& facts) {
@@ -189,21 +191,22 @@ std::string row(const SensorFacts& facts) {
 std::string sensors_part(const DiagnosisReport& report) {
   if (report.sensors.empty()) return "";
   std::string html =
-      "<h2>What the sensors tell of themselves</h2>\n<div class=\"scroll\"><table><tr><th>channel</th><th>smallest "
-      "step</th><th>unchanged samples</th><th>at an end of its range</th><th>at rest</th><th>behind the "
+      "<h2>Sensor checks</h2>\n<div class=\"scroll\"><table><tr><th>channel</th><th>smallest "
+      "step</th><th>unchanged samples</th><th>at the end of the range</th><th>at rest</th><th>lag behind "
       "displacement</th></tr>\n";
   for (const SensorFacts& facts : report.sensors) html += row(facts);
   return html +
-         "</table></div>\n<p class=\"fine\">At an end: samples that sit, three or more in a row, at the very extremes. "
-         "Behind the displacement: the lag at which the changes of force and displacement go together best; a "
-         "specimen that resists with velocity or mass leads or lags by itself.</p>\n";
+         "</table></div>\n<p class=\"fine\">At the end of the range: three or more consecutive samples at the extreme "
+         "value. "
+         "Lag behind displacement: the lag at which the changes of force and displacement correlate best; a specimen "
+         "with damping or mass also leads or lags without any sensor error.</p>\n";
 }
 
 namespace {
 
 using plot::escaped;
 
-/// A stack over the whole gap's energy: removed, left and unknown, floor.
+/// A stacked bar of the energy of the gap: removed, repeatable but unexplained, other, noise floor.
 std::string energy_bar(const Shrink& shrink) {
   const double before = shrink.nrmse_before * shrink.nrmse_before;
   const double floor = before > 0.0 ? std::min(1.0, shrink.floor_nrmse * shrink.floor_nrmse / before) : 0.0;
@@ -217,10 +220,10 @@ std::string energy_bar(const Shrink& shrink) {
     html += fmt::format("<i class=\"{}\" style=\"width:{:.2f}%\"></i>", name, 100.0 * share);
     legend += fmt::format("<span><i class=\"{}\"></i>{} {}</span>", name, percent(share), text);
   };
-  piece(removed, "removed", "removed by the cause");
+  piece(removed, "removed", "removed by the causes");
   piece(unknown, "unknown", "repeatable, unexplained");
   piece(other, "other", "not explained, not known to be repeatable");
-  piece(floor, "floor", "floor: no model could remove it");
+  piece(floor, "floor", "noise floor: no model can remove it");
   return html + "</div>" + legend + "</p>\n";
 }
 
@@ -233,7 +236,7 @@ std::string before_after(std::string_view what, double before, double after) {
 }
 
 std::string response_rows(const ResponseShrink& response) {
-  std::string rows = before_after("response of the whole test, error", response.nrmse_before, response.nrmse_after) +
+  std::string rows = before_after("response of the whole test, NRMSE", response.nrmse_before, response.nrmse_after) +
                      before_after("response, peak error", response.peak_error_before, response.peak_error_after);
   if (response.energy_error_before && response.energy_error_after) {
     rows += before_after("response, energy error", *response.energy_error_before, *response.energy_error_after);
@@ -248,27 +251,27 @@ std::string shrink_part(const DiagnosisReport& report) {
   const Shrink& shrink = *report.interface_shrink;
   const bool is_held_out = std::ranges::any_of(
       report.recordings, [](const ReportedRecording& recording) { return recording.role == RecordingRole::held_out; });
-  std::string html = "<h2>How far the gap shrinks</h2>\n<p>Energy of the gap ";
-  html += is_held_out ? "on recordings that were not used to find the cause: "
-                      : "on the recordings of the fit themselves, since none was held out: ";
+  std::string html = "<h2>Gap before and after adding the causes</h2>\n<p>Energy of the gap ";
+  html +=
+      is_held_out ? "on the held-out recordings: " : "on the fitted recordings, because no recording was held out: ";
   html += fmt::format("<b>{}</b> removed", percent(shrink.variance_removed));
   if (shrink.ci95) html += fmt::format(" (95 %: {})", between_percent(*shrink.ci95));
   if (shrink.explainable_fraction)
-    html += fmt::format(", {} of what any model could remove", percent(*shrink.explainable_fraction));
+    html += fmt::format(", {} of what a perfect model could remove", percent(*shrink.explainable_fraction));
   html += ".</p>\n" + energy_bar(shrink);
   html += "<table class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
-  html += before_after("at the interface, error", shrink.nrmse_before, shrink.nrmse_after);
+  html += before_after("at the interface, NRMSE", shrink.nrmse_before, shrink.nrmse_after);
   if (report.response_shrink) html += response_rows(*report.response_shrink);
-  html += "</table>\n<p class=\"fine\">Errors are root mean squares over that of the measured signal.";
+  html += "</table>\n<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
   if (!report.response_shrink && !report.why_no_response.empty()) {
-    html += " Response of the whole test: " + escaped(report.why_no_response) + ".";
+    html += " Response of the whole test not compared: " + escaped(report.why_no_response) + ".";
   }
   return html + "</p>\n";
 }
 
 namespace {
 
-/// Figures are drawn on white; where the reader's system is dark they are turned over as a whole.
+/// Figures are drawn on white; on a system with dark colours they are inverted.
 constexpr std::string_view kStyle = R"css(
 :root { --ground: #fff; --ink: #222; --soft: #666; --line: #d0d0d0; --panel: #f6f6f6; --bad: #b3261e; --badsoft: #fdecea;
   --good: #1b7f4b; --blue: #0072b2; --orange: #d55e00; --grey: #b5b5b5; }
@@ -329,8 +332,10 @@ std::string head(const DiagnosisReport& report) {
 
 std::string diagnosis_page(const DiagnosisReport& report) {
   return head(report) +
-         fmt::format("<h1>Where model and test of {} disagree, and why</h1>\n<p class=\"verdict {}\">{}</p>\n",
-                     plot::escaped(report.site), name_of(report.verdict), plot::escaped(verdict_sentence(report))) +
+         fmt::format(
+             "<h1>Diagnosis of {}: where the test differs from its model, and why</h1>\n<p class=\"verdict "
+             "{}\">{}</p>\n",
+             plot::escaped(report.site), name_of(report.verdict), plot::escaped(verdict_sentence(report))) +
          chain_part(report) + shrink_part(report) + causes_part(report) + curves_part(report) + location_part(report) +
          sensors_part(report) + facts_part(report) + "</body>\n</html>\n";
 }

@@ -10,7 +10,7 @@
 
 namespace hybridtest::report {
 
-/// The series of one interface made ready for drawing: residuals, and units of handy size.
+/// The series of one interface prepared for drawing: residuals, and suitable units.
 class SeriesView {
  public:
   /// @param series   not empty; must outlive the view.
@@ -21,10 +21,10 @@ class SeriesView {
   [[nodiscard]] bool gives_force() const noexcept { return series_->unit == "N"; }
   [[nodiscard]] GapSignals before() const noexcept;
   [[nodiscard]] GapSignals after() const noexcept;  // has_augmented()
-  /// Of the output, as drawn: `force [kN]`, and what a value is multiplied by.
+  /// Axis label of the output: `force [kN]`.
   [[nodiscard]] const std::string& output_label() const noexcept { return output_label_; }
 
-  /// A range of samples, both ends of a drawing.
+  /// The range of samples to draw.
   struct Range {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -50,16 +50,16 @@ inline constexpr double kMillimetres = 1e3;  // per metre
 
 /// The parts of diagnosis.html, each a piece of HTML; empty where the report has nothing for it.
 
-/// Width of a figure that leaves room for a second one beside it.
+/// Width of a figure when two stand side by side.
 inline constexpr double kHalfWidth = 560.0;  // [px]
 
-/// The interfaces from the coordinator to the force sensor with their shares; what is at fault is marked.
+/// The interfaces from the coordinator to the force sensor with their shares of the gap; faults are marked.
 [[nodiscard]] std::string chain_part(const DiagnosisReport& report);
 /// Gap before and after, floor and unknown share, at the interface and in the whole test.
 [[nodiscard]] std::string shrink_part(const DiagnosisReport& report);
-/// Causes and alternatives with probabilities and parameters, what could not be told apart, what to do next.
+/// Causes and alternatives with probabilities and parameters, indistinguishable effects, next experiment.
 [[nodiscard]] std::string causes_part(const DiagnosisReport& report);
-/// Measured against model before and after, residuals, loops or synchronisation subspace.
+/// Measured and modelled output before and after, residuals, loops or synchronisation subspace.
 [[nodiscard]] std::string curves_part(const DiagnosisReport& report);
 /// Where inside the interface: time, frequency, motion, distance since reversal, drifting parameters.
 [[nodiscard]] std::string location_part(const DiagnosisReport& report);

@@ -19,8 +19,8 @@ namespace hybridtest::report {
 namespace {
 
 constexpr double kCloseUpCycles = 4.0;
-constexpr double kCloseUpSteps = 8.0;  // per close-up, in looking for the worst
-/// More points than a curve of a loop needs on a screen.
+constexpr double kCloseUpSteps = 8.0;  // per close-up, in the search for the largest gap
+/// A loop with more points looks the same on a screen.
 constexpr std::size_t kLoopPointsMax = 2000;
 
 std::vector<double> difference(const std::vector<double>& measured, const std::vector<double>& model) {
@@ -35,7 +35,7 @@ double largest_magnitude(const std::vector<double>& values) {
   return largest;
 }
 
-/// Samples of a cycle on average; all of them where there is none.
+/// Mean number of samples per cycle; all samples when there is no full cycle.
 double samples_per_cycle(const std::vector<double>& input_m) {
   const auto turns = reversals_of(input_m, reversal_threshold_m(input_m));
   if (turns.size() < 3) return static_cast<double>(input_m.size());
@@ -105,7 +105,7 @@ using plot::Panel;
 constexpr double kWide = 900.0;
 const std::string kMeasured = "measured";
 const std::string kModel = "model as given";
-const std::string kAugmented = "model with the cause added";
+const std::string kAugmented = "model with the causes added";
 
 Line measured_behind(Line line) {
   line.is_background = true;
@@ -169,10 +169,11 @@ std::string tracking(const SeriesView& view) {
     line.x.push_back(static_cast<double>(i) * series.sample_period_s);
     line.y.push_back(kMillimetres * kMillimetres * indicator[i]);
   }
-  return to_svg(LineFigure{.panels = {{"tracking indicator (rising: behind)", {"time [s]"}, {"TI [mm²]"}, {line}}},
-                           .columns = 1,
-                           .panel_width = kWide,
-                           .panel_height = 190.0});
+  return to_svg(LineFigure{
+      .panels = {{"tracking indicator (it rises while the actuator lags)", {"time [s]"}, {"TI [mm²]"}, {line}}},
+      .columns = 1,
+      .panel_width = kWide,
+      .panel_height = 190.0});
 }
 
 std::string screens_text(const SeriesView& view) {
@@ -180,13 +181,13 @@ std::string screens_text(const SeriesView& view) {
   const auto evaluation = evaluate_tracking_frequency(series.input_m, series.measured, series.sample_period_s);
   if (!evaluation) return "";
   return fmt::format(
-      "<p>Frequency evaluation index: amplitude {:.3f}, delay {} at {:.2f} Hz. Screens show that an actuator is off, "
-      "not why: "
-      "a delay of one frequency may be the lag of another.</p>\n",
+      "<p>Frequency evaluation index: amplitude {:.3f}, delay {} at {:.2f} Hz. This index and the tracking indicator "
+      "show that the actuator does not follow its command, but not why: a constant delay and a lag that depends on "
+      "frequency can give the same value.</p>\n",
       evaluation->amplitude, quantity(evaluation->delay_s, "s"), evaluation->frequency_hz);
 }
 
-/// What the delay of the transfer system does with the stiffness of the specimen.
+/// The damping that the delay of the transfer system adds through the stiffness of the specimen.
 std::string consequence_text(const DiagnosisReport& report, const InterfaceSeries& transfer) {
   const auto specimen = std::ranges::find_if(report.series, [&](const InterfaceSeries& series) {
     return series.unit == "N" && series.dof == transfer.dof && series.recording == transfer.recording &&
@@ -199,16 +200,15 @@ std::string consequence_text(const DiagnosisReport& report, const InterfaceSerie
   const auto monitor =
       error_monitor(transfer.input_m, transfer.measured, specimen->measured, consequence->stiffness_n_per_m);
   return fmt::format(
-      "<p>In a hybrid test that lateness acts as a damper of {} (−k τ, k = {}): where the structure damps less at this "
-      "degree of "
-      "freedom, the test turns unstable. Hybrid simulation error monitor at the end: {:.2f} of the peak strain "
-      "energy.</p>\n",
+      "<p>In a hybrid test this delay acts like a damper of {} (−k τ, k = {}). The test becomes unstable if the "
+      "structure has less damping at this degree of freedom. Hybrid simulation error monitor at the end: {:.2f} of "
+      "the peak strain energy.</p>\n",
       quantity(consequence->equivalent_damping_n_s_per_m, "N s/m"), quantity(consequence->stiffness_n_per_m, "N/m"),
       monitor.back());
 }
 
 std::string heading(const InterfaceSeries& series) {
-  return fmt::format("<h2>Measured against modelled: {}</h2>\n<p class=\"fine\">{}, {}{}</p>\n",
+  return fmt::format("<h2>Measured and modelled output: {}</h2>\n<p class=\"fine\">{}, {}{}</p>\n",
                      plot::escaped(plain(series.interface)), plot::escaped(series.recording),
                      series.is_held_out ? "held out" : "used for the fit",
                      series.dof > 0 ? fmt::format(", degree of freedom {}", series.dof + 1) : "");
@@ -223,7 +223,7 @@ std::string curves_part(const DiagnosisReport& report) {
   const auto transfer = std::ranges::find_if(report.series, [](const auto& series) { return series.unit == "m"; });
   if (transfer == report.series.end()) return html;
   const SeriesView motion{*transfer};
-  html += "<h2>How the actuator follows</h2>\n" + screens_text(motion) + consequence_text(report, *transfer);
+  html += "<h2>Tracking of the actuator</h2>\n" + screens_text(motion) + consequence_text(report, *transfer);
   html += tracking(motion);
   if (&*transfer != &view.series()) html += loops(motion);
   return html;
@@ -246,10 +246,11 @@ struct Steps {
 };
 
 Line floor_line(double low, double high, double floor_nrmse) {
-  return {.name = "floor", .x = {low, high}, .y = {100.0 * floor_nrmse, 100.0 * floor_nrmse}, .is_background = true};
+  return {
+      .name = "noise floor", .x = {low, high}, .y = {100.0 * floor_nrmse, 100.0 * floor_nrmse}, .is_background = true};
 }
 
-/// Both residuals of an interface, located.
+/// The residuals of an interface before and after, by time, frequency and motion.
 struct Located {
   Localisation before;
   std::optional<Localisation> after;
@@ -262,7 +263,7 @@ struct Located {
     add(before, model);
     std::vector<Line> result{model.line};
     if (after) {
-      Steps augmented{{.name = "model with the cause added"}};
+      Steps augmented{{.name = "model with the causes added"}};
       add(*after, augmented);
       result.push_back(augmented.line);
     }
@@ -304,7 +305,7 @@ Panel over_reversal(const Located& located) {
 }
 
 Panel over_cycles(const Located& located) {
-  return {"over the cycles",
+  return {"over the number of cycles",
           {"cycles completed"},
           {"error [%]", false, 0.0},
           located.lines([](const Localisation& where, Steps& steps) {
@@ -334,12 +335,13 @@ std::string motion_map(const Localisation& where, const std::string& title) {
 }
 
 std::string maps(const Located& located) {
-  std::string html = "<div class=\"pair\">" + motion_map(located.before, "share of the gap over the motion, before");
-  if (located.after) html += motion_map(*located.after, "share of what is left, after");
+  std::string html =
+      "<div class=\"pair\">" + motion_map(located.before, "share of the gap by displacement and velocity, before");
+  if (located.after) html += motion_map(*located.after, "share of the remaining gap, after");
   return html + "</div>\n";
 }
 
-/// What holds the better part of the gap, in a sentence.
+/// The times and the frequency bands that contain half of the gap, as a sentence.
 std::string in_words(const Localisation& where) {
   std::vector<std::string> times;
   std::vector<std::string> bands;
@@ -348,12 +350,13 @@ std::string in_words(const Localisation& where) {
   for (const BandShare& band : where.main_bands)
     bands.push_back(fmt::format("{:.2f} to {:.2f} Hz", band.low_hz, band.high_hz));
   constexpr std::size_t kNamedMax = 4;
-  if (times.size() > kNamedMax) times = {"many stretches of time"};
-  if (bands.size() > kNamedMax) bands = {"many bands"};
-  return fmt::format("<p>Half of the gap's energy lies in {}; half of it in {}.</p>\n", joined(times), joined(bands));
+  if (times.size() > kNamedMax) times = {"many separate time intervals"};
+  if (bands.size() > kNamedMax) bands = {"many separate frequency bands"};
+  return fmt::format("<p>Half of the energy of the gap is in the time {}. By frequency, half of it is in {}.</p>\n",
+                     joined(times), joined(bands));
 }
 
-/// What a parameter goes with, and what that hints at where the recording tells it from the rest.
+/// What a parameter is correlated with, and the likely reason if it is correlated with one quantity only.
 std::string drift_sentence(const ParameterDrift& drift) {
   std::vector<std::string> with;
   std::string hint;
@@ -362,12 +365,12 @@ std::string drift_sentence(const ParameterDrift& drift) {
     with.push_back(fmt::format("{} with {}", correlation > 0.0 ? "rises" : "falls", what));
     hint = meaning;
   };
-  note(drift.with_amplitude, "amplitude", "a missing nonlinearity");
-  note(drift.with_time, "time", "a degradation or drift");
-  note(drift.with_frequency, "frequency", "a missing dynamic");
+  note(drift.with_amplitude, "amplitude", "a sign of a missing nonlinearity");
+  note(drift.with_time, "time", "a sign of degradation or drift");
+  note(drift.with_frequency, "frequency", "a sign of missing dynamics");
   if (with.empty()) return "";
-  if (with.size() > 1) hint = "they go together in this recording, so which one matters cannot be told";
-  return fmt::format("<p>Fitted window by window, the {} {} ({}); it varies by ±{}.</p>\n",
+  if (with.size() > 1) hint = "these quantities are correlated in this recording; it cannot show which one matters";
+  return fmt::format("<p>Fitted in each time window, the {} {} ({}); it varies by ±{}.</p>\n",
                      drift.parameter.substr(0, drift.parameter.find('_')), joined(with), hint, percent(drift.spread));
 }
 
@@ -392,8 +395,8 @@ std::string location_part(const DiagnosisReport& report) {
       .columns = 2,
       .panel_width = kHalfWidth,
       .panel_height = 230.0};
-  return "<h2>Where inside the " + plain(view.series().interface) + "</h2>\n" + in_words(located.before) +
-         drift_text(located.before) + to_svg(figure) + maps(located);
+  return "<h2>The gap at the " + plain(view.series().interface) + " by time, frequency and motion</h2>\n" +
+         in_words(located.before) + drift_text(located.before) + to_svg(figure) + maps(located);
 }
 
 }  // namespace hybridtest::report

@@ -19,7 +19,7 @@ struct Prefix {
 constexpr std::string_view kNoBreak = "\u00a0";
 constexpr std::array<Prefix, 6> kPrefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "µ"}}};
 
-/// Units that take a prefix as they stand; others are shown as they are.
+/// Units that take a prefix (k, m, ...); all others are shown without one.
 bool takes_prefix(std::string_view unit) {
   return !unit.empty() && std::string_view{"mNsJ"}.find(unit.front()) != std::string_view::npos;
 }
@@ -41,20 +41,21 @@ std::vector<std::string> causes(const DiagnosisReport& report) {
 
 std::string where_it_lies(const DiagnosisReport& report) {
   const InterfaceGap* fault = main_fault(report);
-  if (fault == nullptr) return "The model and the recordings disagree";
-  return fmt::format("The gap lies at the {} ({} of it)", plain(fault->interface), percent(fault->share));
+  if (fault == nullptr) return "The model does not agree with the recordings";
+  return fmt::format("The gap is at the {} ({} of the whole gap)", plain(fault->interface), percent(fault->share));
 }
 
 std::string removal(const DiagnosisReport& report) {
   if (!report.interface_shrink) return "";
-  return fmt::format(" Adding {} to the model removes {} of the gap there.", causes(report).size() > 1 ? "them" : "it",
+  return fmt::format(" Adding {} to the model removes {} of the energy of this gap.",
+                     causes(report).size() > 1 ? "these effects" : "this effect",
                      percent(report.interface_shrink->variance_removed));
 }
 
 std::string named_sentence(const DiagnosisReport& report) {
   const std::vector<std::string> names = causes(report);
   std::string text =
-      where_it_lies(report) + (names.size() > 1 ? "; its causes are " : "; its cause is ") + joined(names);
+      where_it_lies(report) + (names.size() > 1 ? ". Its causes are " : ". Its cause is ") + joined(names);
   if (names.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
   return text + "." + removal(report);
 }
@@ -83,12 +84,12 @@ std::string plain_parameter(std::string_view name, std::string_view unit) {
 }
 
 std::string sees(std::string_view interface) {
-  if (interface == "network") return "sent to received";
+  if (interface == "network") return "sent to received target";
   if (interface == "compensator") return "target to command";
   if (interface == "transfer_system") return "command to displacement";
-  if (interface == "displacement_sensor") return "true to read displacement";
+  if (interface == "displacement_sensor") return "true to measured displacement";
   if (interface == "specimen") return "displacement to force";
-  if (interface == "force_sensor") return "true to read force";
+  if (interface == "force_sensor") return "true to measured force";
   if (interface == "numerical_substructure") return "forces to commands";
   return "";
 }
@@ -138,19 +139,22 @@ const InterfaceGap* main_fault(const DiagnosisReport& report) {
 
 std::string verdict_sentence(const DiagnosisReport& report) {
   switch (report.verdict) {
-    case Verdict::none: return "Model and recordings agree: no gap stands above what repeating the test would show.";
+    case Verdict::none: return "The model agrees with the recordings: no gap is larger than its noise floor.";
     case Verdict::named: return named_sentence(report);
     case Verdict::set:
-      return where_it_lies(report) + "; these recordings cannot tell apart " + joined(causes(report)) + "." +
+      return where_it_lies(report) + ". These recordings cannot distinguish " + joined(causes(report)) + "." +
              removal(report);
     case Verdict::partial: {
       const double unknown = report.interface_shrink ? report.interface_shrink->unknown_share : 0.0;
       return named_sentence(report) +
-             fmt::format(" {} of the gap is repeatable and nothing in the library explains it.", percent(unknown));
+             fmt::format(" {} of the gap is repeatable, and no effect in the library explains it.", percent(unknown));
     }
     case Verdict::unknown:
-      return where_it_lies(report) + "; it is repeatable, and no effect of the library explains it.";
-    case Verdict::not_excited: return "These recordings cannot tell whether the model is right.";
+      return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
+    case Verdict::not_excited:
+      return "These recordings are not sufficient to check the model: the motion is too small against the noise, or "
+             "channels are "
+             "missing.";
   }
   return "";
 }

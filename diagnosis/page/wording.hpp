@@ -6,18 +6,18 @@
 
 #include "diagnosis/result/diagnosis_report.hpp"
 
-/// How the page of a diagnosis puts things, in words that need no manual.
+/// The texts of the diagnosis page: names, quantities and the sentence of the verdict.
 namespace hybridtest::report {
 
 /// `transfer_system` as `transfer system`.
 [[nodiscard]] std::string plain(std::string_view name);
 /// A parameter without the unit that its name ends with: `friction_force_n` as `friction force`.
 [[nodiscard]] std::string plain_parameter(std::string_view name, std::string_view unit);
-/// Where it stands in the chain, in a few words: `command to measured displacement`.
+/// Input and output of an interface, in a few words: `command to displacement`.
 [[nodiscard]] std::string sees(std::string_view interface);
-/// Three digits with a unit of handy size, kept on one line: `16.6 ms`, `512 N`, `4.00 MN/m`.
+/// Three digits with a suitable unit prefix, kept on one line: `16.6 ms`, `512 N`, `4.00 MN/m`.
 [[nodiscard]] std::string quantity(double value, std::string_view unit);
-/// `12 %`; more digits close to nothing and close to all, where they matter.
+/// `12 %`; more digits near 0 % and near 100 %.
 [[nodiscard]] std::string percent(double share);
 /// `498 N to 527 N`
 [[nodiscard]] std::string between(const Interval& interval, std::string_view unit);
@@ -27,7 +27,7 @@ namespace hybridtest::report {
 
 /// The interface at fault whose share is largest; nullptr when there is none.
 [[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
-/// The verdict in one sentence or two.
+/// The verdict in one to three sentences.
 [[nodiscard]] std::string verdict_sentence(const DiagnosisReport& report);
 
 }  // namespace hybridtest::report

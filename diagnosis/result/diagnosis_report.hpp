@@ -32,7 +32,7 @@ struct ReportedRecording {
   double sample_period_s = 0.0;
 };
 
-/// How closely a residual comes back when the input does.
+/// Difference between the residuals of repeated inputs.
 struct Repeatability {
   double nrmse = 0.0;
   std::string source;  // `repeated cycles`, `repeated recordings`
@@ -42,8 +42,8 @@ struct Repeatability {
 struct InterfaceGap {
   std::string interface;  // `transfer_system`
   bool is_judged = false;
-  std::string why_not{};     // where it is not: the channel that is missing, or what it would need
-  bool is_at_fault = false;  // its gap stands above its floor
+  std::string why_not{};     // if not judged: the missing channel or other requirement
+  bool is_at_fault = false;  // its gap is above its noise floor
   double share = 0.0;        // of the whole gap, 0 to 1
   Interval share_ci95{};
   double nrmse = 0.0;
@@ -51,7 +51,7 @@ struct InterfaceGap {
   std::optional<Repeatability> repeatability{};  // where the test repeats itself
 };
 
-/// What a channel reads while the motion rests, in its unit.
+/// Readings of a channel while the motion is at rest, in its unit.
 struct RestFacts {
   double first = 0.0;
   double last = 0.0;
@@ -59,14 +59,14 @@ struct RestFacts {
   double rms = 0.0;  // of the noise
 };
 
-/// What a measured channel tells of its sensor.
+/// Sensor checks of a measured channel.
 struct SensorFacts {
   std::string recording;
   std::string column;  // `measured_force_n`
   std::string unit;
   double quantum = 0.0;         // smallest step between neighbours; 0 for a channel that never changes
   double repeated_share = 0.0;  // of samples that equal the one before
-  double clipped_share = 0.0;   // of samples that sit at the very extremes
+  double clipped_share = 0.0;   // of samples at the extreme values
   std::optional<RestFacts> at_rest{};
   std::optional<double> lag_s{};  // of a force behind the displacement
 };
@@ -91,7 +91,7 @@ struct RankedCause {
   std::vector<ReportedParameter> parameters{};
 };
 
-/// How far a gap shrinks when the causes are added to the model, on data not used to find them.
+/// The gap before and after the causes are added to the model, on held-out data if there are any.
 struct Shrink {
   double nrmse_before = 0.0;
   double nrmse_after = 0.0;
@@ -100,7 +100,7 @@ struct Shrink {
   double variance_removed = 0.0;  // 0 to 1
   std::optional<Interval> ci95{};
   std::optional<double> explainable_fraction{};  // (E0 - E1) / (E0 - floor)
-  double unknown_share = 0.0;                    // of the gap before: repeatable, and explained by nothing
+  double unknown_share = 0.0;                    // of the gap before: repeatable and unexplained
 };
 
 /// The same in the response of a whole hybrid test.
@@ -110,12 +110,12 @@ struct ResponseShrink {
   double nrmse_after = 0.0;
   double peak_error_before = 0.0;  // relative to the peak
   double peak_error_after = 0.0;
-  std::optional<double> energy_error_before{};  // of what the substructures took, over what the ground put in
+  std::optional<double> energy_error_before{};  // in the substructures, over the input of the ground motion
   std::optional<double> energy_error_after{};
 };
 
-/// What went in and came out of one interface, as recorded and as modelled: the curves of the page.
-/// All of one length, evenly sampled.
+/// Input and output of one interface, recorded and modelled: the curves of the page.
+/// All have the same length and a constant sample period.
 struct InterfaceSeries {
   std::string interface;
   std::size_t dof = 0;    // 0-based
@@ -123,7 +123,7 @@ struct InterfaceSeries {
   bool is_held_out = false;
   double sample_period_s = 0.0;
   std::string unit;                 // of the output: "m" or "N"
-  std::vector<double> input_m{};    // what drove it: command of a transfer system, measured displacement of a specimen
+  std::vector<double> input_m{};    // its input: command of a transfer system, measured displacement of a specimen
   std::vector<double> measured{};   // output
   std::vector<double> model{};      // output of the user's model
   std::vector<double> augmented{};  // output with the causes added; empty when there is no cause
@@ -140,8 +140,8 @@ struct DiagnosisReport {
   std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause
   std::optional<ResponseShrink> response_shrink;
   std::string why_no_response;          // where there is none
-  std::string next_experiment;          // empty when nothing is left to tell apart
-  std::vector<std::string> notes;       // what a reader must know: bounds that were hit, channels that were missing
+  std::string next_experiment;          // empty if the cause is clear
+  std::vector<std::string> notes;       // for the reader: parameters at their limits, missing channels
   std::vector<InterfaceSeries> series;  // at least of the interface at fault; its first one is drawn large
 };
 

@@ -48,8 +48,9 @@ void require_models(const Scenario& scenario) {
     if (!site->site.has_model && site->site.rig_type != "simulated") without.push_back(site->id);
   }
   if (without.empty()) return;
-  throw ConfigError{"--diagnose compares a site with its model; give `model: FILE` beside the rig of " +
-                    listed(without)};
+  throw ConfigError{
+      "--diagnose compares each site with its model, and a model is missing. Add `model: FILE` beside the rig of " +
+      listed(without)};
 }
 
 void diagnose_run(const Scenario& scenario, const std::filesystem::path& run, const DiagnosisProgress& progress,
@@ -59,8 +60,8 @@ void diagnose_run(const Scenario& scenario, const std::filesystem::path& run, co
     const std::filesystem::path directory = sites.size() == 1 ? run / "diagnosis" : run / "diagnosis" / site->id;
     if (!std::filesystem::exists(run_file(run, site->id))) {
       out << "\n"
-          << site->id << " is not diagnosed: its records are not in " << run.string()
-          << "; copy them there and use `hybridtest diagnose`\n";
+          << site->id << " is not diagnosed: its recording is not in " << run.string()
+          << ". Copy it from the host of the site into this directory and use `hybridtest diagnose`\n";
       continue;
     }
     try {

@@ -29,17 +29,19 @@ double largest_gap(const Diagnosis& diagnosis) {
 void write_file(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out{file, std::ios::binary};
   out << text;
-  if (!out.flush()) throw ConfigError{file.string() + ": cannot be written"};
+  if (!out.flush())
+    throw ConfigError{file.string() +
+                      ": this file cannot be written; check the permissions and the free space of the folder"};
 }
 
 std::string in_words(Verdict verdict) {
   switch (verdict) {
-    case Verdict::none: return "no gap above the floor";
+    case Verdict::none: return "no gap is above the noise floor";
     case Verdict::named: return "the cause is named";
-    case Verdict::set: return "one of several effects that these recordings cannot tell apart";
-    case Verdict::partial: return "a cause is named, and part of the gap comes back that it does not explain";
-    case Verdict::unknown: return "the gap comes back, and no effect of the library explains it";
-    case Verdict::not_excited: return "the recordings cannot tell";
+    case Verdict::set: return "one of several effects that these recordings cannot distinguish";
+    case Verdict::partial: return "a cause is named, but it does not explain a repeatable part of the gap";
+    case Verdict::unknown: return "the gap is repeatable, and no effect in the library explains it";
+    case Verdict::not_excited: return "the recordings are not sufficient to check the model";
   }
   return {};
 }
@@ -49,13 +51,13 @@ std::string parameters_in_words(const report::RankedCause& cause) {
   for (const report::ReportedParameter& parameter : cause.parameters) {
     text += fmt::format("      {:<32} {:.5g}", parameter.name, parameter.value);
     if (parameter.ci95) text += fmt::format("  [{:.5g}, {:.5g}]", parameter.ci95->low, parameter.ci95->high);
-    if (parameter.is_at_bound) text += "  at the end of its range";
+    if (parameter.is_at_bound) text += "  at the limit of its search range";
     text += '\n';
   }
   return text;
 }
 
-/// As a scenario's list, or for --set.
+/// As the list `effects` of a scenario, or for --set.
 std::string written_in_one_line(std::span<const EffectSetting> effects) {
   std::string list;
   for (const EffectSetting& effect : effects) {
@@ -95,7 +97,7 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
     if (recording.dofs.size() != model.dofs.size()) {
       issues.push_back(
           {.file = {},
-           .what = fmt::format("{} has {} degrees of freedom, the model {} has {}; expected as many. "
+           .what = fmt::format("{} has {} degrees of freedom, the model {} has {}; expected the same number. "
                                "A list under specimen or transfer_system has an entry for each degree of "
                                "freedom; laws in parallel on one degree of freedom are written "
                                "{{type: parallel, laws: [...]}}",
@@ -121,7 +123,9 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;
     Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
-    if (dofs > 1) diagnosis.report.notes.push_back(fmt::format("Speaks of degree of freedom {} of {}.", dof + 1, dofs));
+    if (dofs > 1)
+      diagnosis.report.notes.push_back(
+          fmt::format("This diagnosis is of degree of freedom {} of {}, which has the largest gap.", dof + 1, dofs));
     if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
   }
   return worst;
@@ -140,8 +144,9 @@ void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path
     report.notes.push_back(fmt::format("The numerical substructure is not judged: {}.", error.what()));
   }
   if (!diagnosis.structure_causes.empty()) {
-    report.notes.push_back("Effects of the numerical substructure belong into the scenario, not into the model: " +
-                           written_in_one_line(diagnosis.structure_causes));
+    report.notes.push_back(
+        "Write effects of the numerical substructure into the scenario, not into the model of the site: " +
+        written_in_one_line(diagnosis.structure_causes));
   }
 }
 

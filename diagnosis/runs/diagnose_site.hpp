@@ -11,7 +11,7 @@
 
 namespace hybridtest {
 
-/// A diagnosis of a site, and the degree of freedom it speaks of.
+/// The diagnosis of a site, and the degree of freedom that it is about.
 struct SiteDiagnosis {
   Diagnosis diagnosis;
   std::size_t dof = 0;                          // 0-based
@@ -21,19 +21,19 @@ struct SiteDiagnosis {
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
 };
 
-/// @throws ConfigError with every recording of another number of degrees of freedom than the model, and with every
-///         column that is in another unit by what the model predicts of it.
+/// @throws ConfigError for each recording whose number of degrees of freedom differs from the model, and for each
+///         column whose unit seems wrong compared with the prediction of the model.
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
-/// Diagnoses every degree of freedom; the answer is that of the largest gap.
+/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap.
 /// @param settings   its `dof`, `site` and `model_file` are filled in here.
 /// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                                           DiagnoseSettings settings);
 
-/// Adds what the run's record tells of the interface `numerical_substructure`: whether the structure of a scenario
-/// makes the recorded commands of the recorded forces. Where that is not recorded, a note says so.
-/// @param scenario   of the same test; the run's own, or with numbers that the user takes for right.
+/// Adds the result for the interface `numerical_substructure`: whether the structure of a scenario computes the
+/// recorded commands from the recorded forces. If the run did not record them, a note says so.
+/// @param scenario   of the same test: the scenario of the run, or one with the values that the user expects.
 /// @throws ConfigError for a scenario of another test.
 void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
                            const std::filesystem::path& scenario);
@@ -43,7 +43,7 @@ void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path
 void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
                      const std::filesystem::path& directory);
 
-/// The answer in words, for a person.
+/// The result as text for the terminal.
 [[nodiscard]] std::string summary_of(const SiteDiagnosis& diagnosis);
 
 }  // namespace hybridtest

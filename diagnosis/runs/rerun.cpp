@@ -63,7 +63,7 @@ SimulatedTest simulated_test(const Scenario& scenario, const std::function<void(
           result.coordinator.reason};
 }
 
-/// The scenario's own list `effects`, made longer.
+/// The list `effects` of the scenario with the causes added.
 std::string longer_effects(const std::filesystem::path& file, std::span<const EffectSetting> causes) {
   config::Document document = config::Document::load(file);
   config::Section root = document.root();
@@ -75,8 +75,8 @@ std::string longer_effects(const std::filesystem::path& file, std::span<const Ef
   return list;
 }
 
-/// The scenario with `rig` in place of the site's, effects of its structure added, and models in place of other
-/// sites that are elsewhere.
+/// The scenario with the rig of the site replaced by `rig`, effects of the structure added, and the laboratory rigs
+/// of other sites replaced by their models.
 Scenario scenario_with(const std::filesystem::path& file, const std::string& site, const std::string& rig,
                        std::span<const EffectSetting> structure_causes) {
   std::vector<std::string> overrides{"substructures[" + site + "].rig=" + rig};
@@ -84,7 +84,7 @@ Scenario scenario_with(const std::filesystem::path& file, const std::string& sit
   for (const SubstructureScenario& other : read_scenario(file, {}).substructures) {
     if (other.id == site || !other.site.rig_is_elsewhere) continue;
     if (!other.site.has_model) {
-      throw ConfigError{"the rig of " + other.id + " stands in a laboratory, and there is no `model` beside it"};
+      throw ConfigError{"the rig of " + other.id + " is in a laboratory and has no model; add `model: FILE` beside it"};
     }
     overrides.push_back("substructures[" + other.id + "].rig=" + read_site_model(file, other.id).rig);
   }
@@ -93,11 +93,12 @@ Scenario scenario_with(const std::filesystem::path& file, const std::string& sit
 
 std::string early_end(std::string_view which, const SimulatedTest& test, Eigen::Index recorded_steps) {
   return fmt::format(
-      "With the model {} the whole test ends after {} of {} steps ({}); responses are compared up to there.", which,
-      test.response.steps(), recorded_steps, name(test.reason));
+      "With the model {}, the simulated test stops after {} of {} steps ({}). The responses are compared up to that "
+      "step.",
+      which, test.response.steps(), recorded_steps, name(test.reason));
 }
 
-/// A note where a model does not bring the test as far as it really went.
+/// Adds a note if the simulated test stops earlier than the recorded test.
 void note_early_end(std::string_view which, const SimulatedTest& test, const TestResponse& recorded,
                     std::vector<std::string>& notes) {
   if (test.response.steps() < recorded.steps()) notes.push_back(early_end(which, test, recorded.steps()));

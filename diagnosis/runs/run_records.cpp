@@ -34,9 +34,12 @@ const SubstructureScenario& site_of(const Scenario& scenario, const std::filesys
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (substructure.role == Role::experimental_site) sites.push_back(substructure.id);
   }
-  const std::string known = "; sites of " + run.string() + ": " + listed(sites);
-  if (sites.empty()) throw ConfigError{run.string() + ": this run has no experimental site"};
-  if (id.empty() && sites.size() > 1) throw ConfigError{"--site: which site?" + known};
+  const std::string known = "; the sites of " + run.string() + " are " + listed(sites);
+  if (sites.empty())
+    throw ConfigError{run.string() +
+                      ": this run has no experimental site; expected the run directory of a test with one"};
+  if (id.empty() && sites.size() > 1)
+    throw ConfigError{"--site is missing and the run has several sites; expected the id of one" + known};
   const SubstructureScenario* site = scenario.find(id.empty() ? std::string_view{sites.front()} : id);
   if (site == nullptr || site->role != Role::experimental_site) {
     throw ConfigError{"--site " + std::string{id} + ": no such site" + known};
@@ -50,7 +53,7 @@ struct SentMotion {
   std::vector<double> displacement_m;
   std::vector<double> velocity_m_per_s;  // per second of model time
 
-  /// Cubic through both ends of the step; held before the first and after the last.
+  /// Cubic between two steps; constant before the first step and after the last one.
   [[nodiscard]] double at(double time_s) const {
     const auto after = std::ranges::upper_bound(model_time_s, time_s);
     if (after == model_time_s.begin()) return displacement_m.front();
@@ -102,8 +105,8 @@ std::vector<SentMotion> sent_motions(const RunFileReader& coordinator, const Sce
   return sent;
 }
 
-/// Model time of each control sample if every command came in time: site time over the scale,
-/// counted from the sample at which path time began to run.
+/// Model time of each control sample if every command arrived on time: site time divided by the time scale,
+/// counted from the sample at which model time started.
 std::vector<double> planned_model_time_s(const RunFileReader& site, double time_scale) {
   std::vector<double> time_s = site.column("control", std::string{kTimeColumn});
   const std::vector<double> model_time_s = site.column("control", "model_time_s");
@@ -140,8 +143,8 @@ void add_control_table(RawRecording& raw, const RunFileReader& site) {
   raw.time_s = site.column("control", std::string{kTimeColumn});
 }
 
-/// Leaves out what comes after the last target: the site returning to rest, alone and without its
-/// compensator, is no part of the test.
+/// Removes the samples after the last target: there the site returns to rest without its compensator, which is
+/// not part of the test.
 void cut_return(RawRecording& raw, const RunFileReader& site) {
   const std::vector<double> model_time_s = site.column("control", "model_time_s");
   const auto last = std::ranges::max_element(model_time_s);  // the first of equals: path time stands still from there
@@ -182,7 +185,9 @@ std::string content_of(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw ConfigError{path.string() + ": cannot be read (" + error.message() + ")"};
-  if (size > tuning::kFileSizeMax_bytes) throw ConfigError{path.string() + ": larger than 2 GiB"};
+  if (size > tuning::kFileSizeMax_bytes)
+    throw ConfigError{path.string() +
+                      ": this file is larger than 2 GiB; expected a smaller one, export a part of the recording"};
   std::ifstream stream{path, std::ios::binary};
   std::string text{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
   if (!stream || text.size() != size) throw ConfigError{path.string() + ": cannot be read"};
@@ -192,7 +197,7 @@ std::string content_of(const std::filesystem::path& path) {
 Recording accepted(Intake intake, const std::string& file) {
   if (intake.recording) return std::move(*intake.recording);
   std::vector<ConfigIssue> issues;
-  // Rows are shown as lines are; the text of a finding has its place already.
+  // The text of a finding already contains file and row.
   for (const IntakeFinding& finding : intake.findings) issues.push_back({.file = {}, .what = finding.text(file)});
   throw ConfigError{std::move(issues)};
 }
@@ -245,15 +250,16 @@ TestResponse response_of_steps(const Scenario& scenario,
 namespace {
 
 void require_same_test(const Scenario& scenario, const Scenario& ran) {
-  const std::string what = scenario.file.string() + ": not the test that was recorded: ";
-  if (scenario.dofs != ran.dofs) throw ConfigError{what + "the degrees of freedom have other names or another order"};
+  const std::string what = scenario.file.string() + ": this scenario is not the one of the recorded test: ";
+  if (scenario.dofs != ran.dofs)
+    throw ConfigError{what + "the names or the order of the degrees of freedom differ; expected the same"};
   const bool same = std::ranges::equal(scenario.substructures, ran.substructures, [](const auto& a, const auto& b) {
     return a.id == b.id && a.role == b.role && a.interface_names == b.interface_names;
   });
-  if (!same) throw ConfigError{what + "the substructures or their interfaces differ"};
+  if (!same) throw ConfigError{what + "the substructures or their interfaces differ; expected the same"};
 }
 
-/// Velocity that a command carries: from the step before, with its acceleration kept. One column per step.
+/// Velocity sent with a command: that of the step before plus its acceleration times the step. One column per step.
 Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, const Scenario& scenario,
                                            const TestResponse& response, double step_s) {
   Eigen::MatrixXd velocity = Eigen::MatrixXd::Zero(response.displacement_m.rows(), response.steps());
@@ -267,7 +273,7 @@ Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, con
   return velocity;
 }
 
-/// What a numerical substructure answered, one column per step; nothing where a step is missing.
+/// The forces of a numerical substructure, one column per step; nothing if a step is missing.
 std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const SubstructureScenario& substructure,
                                                Eigen::Index steps) {
   Eigen::MatrixXd forces_n(substructure.interface.size(), steps);
@@ -284,7 +290,7 @@ std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const 
   return forces_n;
 }
 
-/// Forces of the numerical substructures, recorded and modelled; left out where one has no record.
+/// Forces of the numerical substructures, recorded and modelled; omitted if one substructure has no recording.
 void add_numerical_forces(const std::filesystem::path& run, const Scenario& scenario, const Eigen::MatrixXd& velocity,
                           StructureRecord& record) {
   StructureRecording& recording = record.recording;
@@ -297,8 +303,8 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
       forces_n = recorded_forces(RunFileReader{run_file(run, substructure.id)}, substructure, recording.steps());
     }
     if (!forces_n) {
-      record.notes.push_back("The forces of " + substructure.id + " are not all in " + run.string() +
-                             ": the stiffness of numerical substructures is not judged.");
+      record.notes.push_back("Forces of " + substructure.id + " are missing in " + run.string() +
+                             ": the stiffness of the numerical substructures is not checked.");
       return;
     }
     const auto model = substructure.make_model();
@@ -320,16 +326,16 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
   recording.modelled_numerical_force_n = std::move(modelled_n);
 }
 
-/// What of the configuration differs that no effect stands for.
+/// Adds notes on differences of the configuration for which there is no effect.
 void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen::RowVectorXd& ground_m_per_s2,
                       std::vector<std::string>& notes) {
   if (scenario.integrator_type != ran.integrator_type) {
-    notes.push_back(fmt::format("The scenario integrates by {}, the test was by {}.", scenario.integrator_type,
-                                ran.integrator_type));
+    notes.push_back(fmt::format("The integrator of the scenario is {}, that of the recorded test is {}.",
+                                scenario.integrator_type, ran.integrator_type));
   }
   if (scenario.time.step_s != ran.time.step_s) {
-    notes.push_back(
-        fmt::format("The scenario's step is {} s, that of the test {} s.", scenario.time.step_s, ran.time.step_s));
+    notes.push_back(fmt::format("The step of the scenario is {} s, that of the recorded test is {} s.",
+                                scenario.time.step_s, ran.time.step_s));
     return;
   }
   const auto steps = std::min<Eigen::Index>(ground_m_per_s2.size(), std::ssize(scenario.ground_acceleration_m_per_s2));
@@ -337,8 +343,8 @@ void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen
   const double off = (own - ground_m_per_s2.head(steps)).norm();
   if (off > tuning::kSameMotion * ground_m_per_s2.norm()) {
     notes.push_back(
-        fmt::format("The scenario's ground motion is not the one of the test: they differ by {:.3g} of its root mean "
-                    "square. The one that was recorded is taken.",
+        fmt::format("The ground motion of the scenario differs from the recorded one by {:.3g} of its root mean "
+                    "square. The recorded ground motion is used.",
                     off / ground_m_per_s2.norm()));
   }
 }
@@ -350,7 +356,8 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   require_same_test(scenario, ran);
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
   const TestResponse response = recorded_response(run, ran);
-  if (response.steps() == 0) throw RecordingError{run.string() + ": the coordinator completed no step"};
+  if (response.steps() == 0)
+    throw RecordingError{run.string() + ": the coordinator completed no step; expected a test with at least one step"};
   StructureRecord record;
   record.model.structure = scenario.structure;
   record.model.step_s = scenario.integrator_step_s;

@@ -14,24 +14,24 @@
 
 namespace hybridtest {
 
-/// The id of the site that is meant: `site`, or that of the run's only one where it is empty.
+/// The id of the requested site: `site`, or the only site of the run if `site` is empty.
 /// @throws ConfigError as raw_recording_of_run().
 [[nodiscard]] std::string site_of_run(const std::filesystem::path& run, std::string_view site);
 
 /// The run file of a site. @throws ConfigError as raw_recording_of_run().
 [[nodiscard]] std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site);
 
-/// What a site recorded in a run, and what was sent to it; see read_recording().
+/// The recording of a site in a run and the displacements sent to it; see read_recording().
 /// @throws ConfigError when there is no such site, or several and none was named, or records are missing.
 [[nodiscard]] RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_view site);
 
 /// Reads and checks a recording for the diagnosis: a CSV file (see read_csv_recording()) or a run directory.
 ///
-/// Of a run directory the site's control table is read, one sample per control period, and from the
-/// coordinator's steps what it sent: continued between steps by a cubic through displacement and
-/// velocity, as the site's trajectory does, in site time from the first step on. A run whose
-/// coordinator left no file is read without it. It ends with the last target: how the site then returns to rest is no
-/// part of the test. The hash is that of the CSV, or of the site's run file.
+/// From a run directory it reads the control table of the site, one sample per control period, and the
+/// displacements that the coordinator sent. Between steps these follow a cubic through displacement and velocity,
+/// like the trajectory of the site, in site time from the first step. Without a file of the coordinator they are
+/// omitted. The recording ends with the last target: the return to rest after it is not part of the test. The hash
+/// is that of the CSV file, or of the run file of the site.
 /// @param site   id of the substructure; may be empty where the run has one site, and has no meaning for a CSV.
 /// @throws ConfigError when it cannot be read, and with every finding of the intake.
 [[nodiscard]] Recording read_recording(const std::filesystem::path& path, RecordingRole role,
@@ -41,16 +41,16 @@ namespace hybridtest {
 /// @throws RecordingError when there is no such record, or of other degrees of freedom.
 [[nodiscard]] TestResponse recorded_response(const std::filesystem::path& run, const Scenario& scenario);
 
-/// Likewise from the columns of its table `steps`, wherever they are.
+/// The same from the columns of a table `steps` that is not in a file.
 /// @param column   all values under a column's name.
 [[nodiscard]] TestResponse response_of_steps(const Scenario& scenario,
                                              const std::function<std::vector<double>(const std::string&)>& column);
 
-/// The computed part of a test, as a scenario has it and as a run recorded it.
+/// The computed part of a test, as the scenario describes it and as the run recorded it.
 struct StructureRecord {
   ComputedStructure model;
   StructureRecording recording;
-  std::vector<std::string> notes;  // what differs besides, and what was not recorded
+  std::vector<std::string> notes;  // other differences, and missing recordings
 };
 
 /// @param scenario   the user's; of the same degrees of freedom and substructures as the run's own.

@@ -295,7 +295,8 @@ void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis) {
             "bit."
           : fmt::format("The coordinator's displacements, recomputed with the scenario from the forces it received, "
                         "agree to within {:.2g} of their root mean square{}.",
-                        structure.nrmse, agrees ? "" : "; driven by recorded forces, an error grows with time"));
+                        structure.nrmse,
+                        agrees ? "" : "; because recorded forces drive the computation, an error grows with time"));
   if (agrees) return;
   const Verdict site = report.verdict;
   report.verdict = together(site, structure.verdict);
@@ -305,12 +306,12 @@ void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis) {
   }
   if (structure.verdict == Verdict::unknown) {
     report.notes.emplace_back(
-        "No one ratio on mass, damping, numerical stiffness or step makes the scenario's structure command what was "
-        "recorded: compare it with the one that ran, degree of freedom by degree of freedom.");
+        "No single factor on mass, damping, numerical stiffness or step reproduces the recorded commands: compare the "
+        "structure of the scenario with the tested one at each degree of freedom.");
     return;
   }
   if (report.verdict == Verdict::partial && site == Verdict::unknown) {
-    report.notes.emplace_back("The causes are of the numerical substructure; the gap at the site stays unexplained.");
+    report.notes.emplace_back("The causes are at the numerical substructure; the gap at the site remains unexplained.");
   }
   for (report::RankedCause& cause : report.ranking) cause.share *= 1.0 - share;
   add_causes(structure, share, report.ranking);

@@ -56,7 +56,7 @@ std::string Excitation::why_not() const {
   }
   if (output_size <= 0.0) return fmt::format("{} never changes", column_name(output));
   if (!shows()) {
-    return fmt::format("{} changes by {}, within what noise makes of it ({})", column_name(output),
+    return fmt::format("{} changes by {}, within its noise ({})", column_name(output),
                        report::quantity(output_size, unit_of(output)), report::quantity(output_floor, unit_of(output)));
   }
   return {};
@@ -95,11 +95,11 @@ std::string experiment_that_excites(const std::vector<Excitation>& excitations) 
   }
   const auto still =
       std::ranges::find_if(excitations, [](const Excitation& excitation) { return excitation.motion_m <= 0.0; });
-  if (still != excitations.end()) return "Record a test that moves: " + still->why_not() + ".";
-  if (closest->output_size <= 0.0) return "Look at the sensor: " + closest->why_not() + ".";
+  if (still != excitations.end()) return "Record a test with motion: " + still->why_not() + ".";
+  if (closest->output_size <= 0.0) return "Check the sensor: " + closest->why_not() + ".";
   return fmt::format(
-      "Repeat with at least {:.0f} times the motion, or with sensors as much quieter: {}. At thirty times the noise "
-      "what changes a tenth of the signal shows.",
+      "Repeat with at least {:.0f} times the motion, or with sensor noise smaller by this factor: {}. At thirty times "
+      "the noise, an effect on a tenth of the signal can be found.",
       std::ceil(tuning::kWellExcitedOverNoise / margin(*closest)), closest->why_not());
 }
 
@@ -128,12 +128,12 @@ std::string experiment_that_splits(const std::vector<const EffectType*>& effects
   };
   const auto any_of = [&](EffectFamily family) { return std::ranges::any_of(effects, is_of(family)); };
   if (any_of(EffectFamily::mass)) {
-    return "Air run: the same motion without the specimen. Forces of mass and load cell stay; those of the specimen "
-           "vanish.";
+    return "Air run: the same motion without the specimen. Inertia forces and load cell errors remain; the forces of "
+           "the specimen are zero.";
   }
   if (any_at(force_sensor) && any_at(specimen)) {
-    return any_of(EffectFamily::rate) ? "Repeat the test at half the rate: a sensor's lag shrinks with the rate; what "
-                                        "the specimen does does not."
+    return any_of(EffectFamily::rate) ? "Repeat the test at half the rate: the effect of a sensor lag becomes smaller; "
+                                        "that of the specimen does not change."
                                       : "Put a dead weight of known size on the load cell and compare its reading.";
   }
   if (any_at(displacement_sensor)) {
@@ -141,25 +141,25 @@ std::string experiment_that_splits(const std::vector<const EffectType*>& effects
   }
   if (std::ranges::all_of(effects, is_of(EffectFamily::arrival))) {
     return "Compare the clocks of coordinator and site before and after a longer test: an offset stays the same, a "
-           "drift grows with time, and a latency changes neither.";
+           "drift grows with time, and a latency changes neither of them.";
   }
   if (any_of(EffectFamily::rate) || any_of(EffectFamily::arrival)) {
-    return "Repeat the test at half the rate: a delay stays the same time, a lag changes its phase with frequency, "
-           "a damping force halves, and a force of displacement does not change.";
+    return "Repeat the test at half the rate: a delay keeps its time, a lag changes its phase with frequency, a "
+           "damping force halves, and a force that depends on displacement does not change.";
   }
   if (any_of(EffectFamily::offset)) {
-    return "Record a stretch of rest before and after the test, and tare at zero force.";
+    return "Record some seconds at rest before and after the test, and tare the load cell at zero force.";
   }
   if (any_of(EffectFamily::degradation)) {
     return "Repeat the same cycle many times at constant amplitude: degradation changes the force from cycle to cycle.";
   }
   if (any_of(EffectFamily::load)) {
-    return "Air run: the same motion without the specimen. The error of a compliance vanishes with the force; that of "
-           "a gain, a play or a dead band stays.";
+    return "Air run: the same motion without the specimen. The error of a compliance disappears with the force; "
+           "that of a gain, a backlash or a dead band remains.";
   }
   if (any_of(EffectFamily::position)) {
-    return "Slow ramp through both stops from different starting positions: a fixed gap stays in place, play moves "
-           "with the last reversal.";
+    return "Slow ramp through both stops from different starting positions: a fixed gap stays in place, a "
+           "backlash moves with the last reversal.";
   }
   return "Amplitude sweep: slow cycles of growing and then of shrinking amplitude, with a reversal at every level.";
 }
@@ -168,11 +168,11 @@ std::string experiment_for_unknown(EffectInterface interface) {
   switch (interface) {
     case specimen:
     case force_sensor:
-      return "Slow cycles of growing amplitude, then the same at twice and at half the rate, and a stretch of rest: "
-             "they show whether the force follows position, rate or history.";
+      return "Slow cycles of growing amplitude, then the same at twice and at half the rate, and some seconds at "
+             "rest: they show whether the force depends on displacement, velocity or history.";
     default:
-      return "A sweep of small amplitude without specimen, then at twice the amplitude: what is linear scales, "
-             "what is not changes its shape.";
+      return "A frequency sweep of small amplitude without the specimen, then at twice the amplitude: a linear gap "
+             "doubles, a nonlinear gap changes its shape.";
   }
 }
 

@@ -152,15 +152,15 @@ std::string missing_columns(std::span<const Recording> recordings, std::size_t d
 std::string why_not(const SiteModel& model, std::span<const Recording> recordings, std::size_t dof,
                     EffectInterface interface) {
   switch (interface) {
-    case numerical_substructure: return "needs a run directory; these recordings are of the site alone";
-    case displacement_sensor: return "no second displacement to compare with";
-    case force_sensor: return "no second force to compare with";
+    case numerical_substructure: return "a run directory is needed; these recordings contain only the site";
+    case displacement_sensor: return "no second displacement sensor was recorded";
+    case force_sensor: return "no second force sensor was recorded";
     default: break;
   }
   std::string missing = missing_columns(recordings, dof, ends_of(interface));
   if (!missing.empty()) return missing;
-  return interface == specimen && !model.make_law ? "the model says nothing of the specimen's force"
-                                                  : "no recording has all of its columns";
+  return interface == specimen && !model.make_law ? "the model has no specimen"
+                                                  : "no recording has all columns of this interface";
 }
 
 }  // namespace

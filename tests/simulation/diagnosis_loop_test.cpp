@@ -144,8 +144,9 @@ TEST_F(DiagnosisLoop, RejectsScenarioOfAnotherTest) {
   SiteDiagnosis diagnosis;
   const std::filesystem::path other =
       std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios" / "two_storey_two_sites.yaml";
-  EXPECT_THAT([&] { diagnose_structure_of(diagnosis, directory_ / "run", other); },
-              testing::ThrowsMessage<ConfigError>(testing::HasSubstr("not the test that was recorded")));
+  EXPECT_THAT(
+      [&] { diagnose_structure_of(diagnosis, directory_ / "run", other); },
+      testing::ThrowsMessage<ConfigError>(testing::HasSubstr("this scenario is not the one of the recorded test")));
 }
 
 TEST_F(DiagnosisLoop, TestWithoutSimulationHasNoResponse) {
@@ -184,7 +185,7 @@ TEST_F(DiagnosisLoop, SkipsSiteRecordedOnAnotherHost) {
   prepare_run_directory(directory_ / "empty", scenario);
   std::ostringstream said;
   diagnose_run(scenario, directory_ / "empty", {}, said);
-  EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its records are not in"));
+  EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its recording is not in"));
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ TEST(ReadRecording, FindingsAndMissingFileAreConfigErrors) {
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     ASSERT_EQ(error.issues().size(), 1U);
-    EXPECT_EQ(error.issues()[0].text(),
-              (directory / "a.csv").string() + ":3: column 'measured_force_n': 'nan': no finite number");
+    EXPECT_EQ(error.issues()[0].text(), (directory / "a.csv").string() +
+                                            ":3: column 'measured_force_n': 'nan': not a finite number; expected a "
+                                            "number, replace or remove this part of the recording");
   }
   EXPECT_THROW((void)read_recording(directory / "b.csv", RecordingRole::fit), ConfigError);
 }

@@ -106,7 +106,8 @@ TEST(DiagnosisPage, IsSelfContainedAndSmall) {
 
 TEST(DiagnosisPage, ShowsInterfaceEffectAndShrink) {
   const std::string page = diagnosis_page(example());
-  EXPECT_THAT(page, HasSubstr("The gap lies at the specimen (93.0\u00a0% of it); its cause is coulomb friction"));
+  EXPECT_THAT(page,
+              HasSubstr("The gap is at the specimen (93.0\u00a0% of the whole gap). Its cause is coulomb friction"));
   EXPECT_THAT(page, HasSubstr("<li class=\"fault main\"><b>specimen</b>"));
   EXPECT_THAT(page, HasSubstr("command_displacement_m was not recorded"));
   EXPECT_THAT(page, HasSubstr("friction force <b>512\u00a0N</b> <small>(498\u00a0N to 527\u00a0N)</small>"));
@@ -122,13 +123,13 @@ TEST(DiagnosisPage, ShowsSensorFactsAndRepeatability) {
   const std::string page = diagnosis_page(report);
   EXPECT_THAT(page, HasSubstr("(repeated cycles)"));
   EXPECT_THAT(page, HasSubstr("<td class=\"warn\">4.0")) << "a twenty-fifth at the end of its range is marked";
-  EXPECT_THAT(page, HasSubstr("-185\u00a0N first, -170\u00a0N last; noise 4.40\u00a0N"));
+  EXPECT_THAT(page, HasSubstr("-185\u00a0N at start, -170\u00a0N at end; noise 4.40\u00a0N"));
   EXPECT_THAT(page, HasSubstr("2.10\u00a0ms"));
   EXPECT_THAT(page, HasSubstr("command_displacement_m was not recorded"));
   report.sensors.front().clipped_share = 0.0;
   EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("<td class=\"warn\">")));
   report.sensors.clear();
-  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("What the sensors tell")));
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("Sensor checks")));
 }
 
 TEST(DiagnosisPage, EscapesUserText) {
@@ -154,7 +155,7 @@ TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {
   report.ranking[1].is_cause = true;
   report.next_experiment = "repeat at half the rate";
   const std::string page = diagnosis_page(report);
-  EXPECT_THAT(page, HasSubstr("these recordings cannot tell apart coulomb friction and stribeck friction."));
+  EXPECT_THAT(page, HasSubstr("These recordings cannot distinguish coulomb friction and stribeck friction."));
   EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
 }
 

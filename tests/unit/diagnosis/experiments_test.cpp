@@ -54,7 +54,7 @@ TEST(NotExcited, IsReportedWithoutMotion) {
   const Diagnosis diagnosis = diagnosis_of(scaled_recording(0.0, 1.0, {}));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited);
   EXPECT_TRUE(diagnosis.causes.empty());
-  EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("Record a test that moves"));
+  EXPECT_THAT(diagnosis.report.next_experiment, HasSubstr("Record a test with motion"));
 }
 
 TEST(NotExcited, IsReportedWhenWrongSpringWouldNotShow) {
@@ -158,7 +158,7 @@ TEST(NextExperiment, RateAsksForHalfTheRate) {
 }
 
 TEST(NextExperiment, OffsetAsksForRest) {
-  EXPECT_THAT(splitting({{force_sensor, "bias"}, {force_sensor, "drift"}}), HasSubstr("stretch of rest"));
+  EXPECT_THAT(splitting({{force_sensor, "bias"}, {force_sensor, "drift"}}), HasSubstr("some seconds at rest"));
 }
 
 TEST(NextExperiment, DegradationAsksForEqualCycles) {

@@ -114,19 +114,19 @@ void replace(std::string& row, const std::string& part, const std::string& by) {
 INSTANTIATE_TEST_SUITE_P(
     Cells, OneThingWrong,
     testing::Values(Spoiled{"nan", [](ExampleCsv& csv) { csv.row(7) = "0.005,nan,0,0"; },
-                            "a.csv:7: column 'command_displacement_m': 'nan': no finite number"},
+                            "a.csv:7: column 'command_displacement_m': 'nan': not a finite number; expected a number"},
                     Spoiled{"infinite", [](ExampleCsv& csv) { csv.row(8) = "0.006,0,0,-inf"; },
-                            "a.csv:8: column 'measured_force_n': '-inf': no finite number"},
+                            "a.csv:8: column 'measured_force_n': '-inf': not a finite number; expected a number"},
                     Spoiled{"too_large", [](ExampleCsv& csv) { csv.row(8) = "0.006,0,0,1e999"; },
-                            "a.csv:8: column 'measured_force_n': '1e999': no number"},
+                            "a.csv:8: column 'measured_force_n': '1e999': not a number; expected digits"},
                     Spoiled{"empty", [](ExampleCsv& csv) { csv.row(7) = "0.005,,0,0"; },
-                            "a.csv:7: column 'command_displacement_m': empty cell; a number was expected"},
+                            "a.csv:7: column 'command_displacement_m': empty cell; expected a number"},
                     Spoiled{"text", [](ExampleCsv& csv) { csv.row(7) = "0.005,0,0,12 kN"; },
-                            "a.csv:7: column 'measured_force_n': '12 kN': no number"},
+                            "a.csv:7: column 'measured_force_n': '12 kN': not a number; expected digits"},
                     Spoiled{"cells", [](ExampleCsv& csv) { csv.row(7) = "0.005,0,0"; },
-                            "a.csv:7: 3 cells in this row; the header has 4"},
+                            "a.csv:7: 3 cells in this row; expected 4 as in the header"},
                     Spoiled{"empty_row", [](ExampleCsv& csv) { csv.rows.insert(csv.rows.begin() + 6, ""); },
-                            "a.csv:7: empty row"},
+                            "a.csv:7: empty row; remove it"},
                     Spoiled{"many",
                             [](ExampleCsv& csv) {
                               for (const std::size_t row : {7, 9, 30}) replace(csv.row(row), ",", ",nan");
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 csv.rows.push_back(fmt::format("{:.7f},0,0,0", time_s));
                               }
                             },
-                            "uneven sampling: the period changes on the way"}),
+                            "uneven sampling: the sample period changes during the recording"}),
     [](const auto& param_info) { return param_info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
@@ -164,44 +164,44 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"no_time", [](ExampleCsv& csv) { replace(csv.row(1), "time_s", "sample"); },
                 "a.csv:1: column 'time_s': missing"},
         Spoiled{"twice", [](ExampleCsv& csv) { replace(csv.row(1), "command_dis", "measured_dis"); },
-                "a.csv:1: column 'measured_displacement_m': there are two columns of this name"},
+                "a.csv:1: column 'measured_displacement_m': two columns have this name"},
         Spoiled{"hole",
                 [](ExampleCsv& csv) {
                   csv.row(1) = "time_s,command_displacement_m,measured_displacement_m,measured_force_n_3";
                 },
                 "a.csv: columns of degree of freedom 2 are missing"},
         Spoiled{"no_channel", [](ExampleCsv& csv) { csv.row(1) = "time_s,sample,model_time_s,faults"; },
-                "a.csv: no channel"},
+                "a.csv: no data column"},
         Spoiled{"semicolons", [](ExampleCsv& csv) { std::ranges::replace(csv.row(1), ',', ';'); },
-                "a.csv:1: columns are separated by commas"},
-        Spoiled{"header_only", [](ExampleCsv& csv) { csv.rows.resize(1); }, "a.csv: a header and no data"},
-        Spoiled{"short", [](ExampleCsv& csv) { csv.rows.resize(10); }, "a.csv: 9 rows of data; at least 16"},
+                "a.csv:1: columns are separated by semicolons or tabs; expected commas"},
+        Spoiled{"header_only", [](ExampleCsv& csv) { csv.rows.resize(1); }, "a.csv: a header without data"},
+        Spoiled{"short", [](ExampleCsv& csv) { csv.rows.resize(10); }, "a.csv: 9 rows of data; expected at least 16"},
         Spoiled{"nothing", [](ExampleCsv& csv) { csv.rows.clear(); }, "a.csv: the file is empty"}),
     [](const auto& param_info) { return param_info.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Units, OneThingWrong,
-    testing::Values(
-        Spoiled{
-            "millimetres_beside_metres", [](ExampleCsv& csv) { csv = ExampleCsv{1000.0}; },
-            "column 'measured_displacement_m': '-18.9994497': seems to be in millimetres: it spans 37.99, 950 times"},
-        Spoiled{"inches_beside_metres", [](ExampleCsv& csv) { csv = ExampleCsv{39.3701}; }, "seems to be in inches"},
-        Spoiled{"all_in_millimetres",
-                [](ExampleCsv& csv) {
-                  csv.rows = {"time_s,measured_displacement_m"};
-                  for (int i = 0; i < 1000; ++i)
-                    csv.rows.push_back(fmt::format("{},{}", 0.001 * i, 20.0 * std::sin(0.01 * i)));
-                },
-                "seems to be in millimetres: no site moves by more than 10 m; metres were expected"},
-        Spoiled{"small_and_fast",
-                [](ExampleCsv& csv) {
-                  csv.rows = {"time_s,measured_displacement_m"};
-                  // 3 mm at 1 Hz read as metres: 18.8 m/s.
-                  for (int i = 0; i < 1000; ++i) {
-                    csv.rows.push_back(fmt::format("{},{}", 0.001 * i, 3.0 * std::sin(6.2832 * 0.001 * i)));
-                  }
-                },
-                "in metres it would move at 18.8 m/s"}),
+    testing::Values(Spoiled{"millimetres_beside_metres", [](ExampleCsv& csv) { csv = ExampleCsv{1000.0}; },
+                            "column 'measured_displacement_m': '-18.9994497': seems to be in millimetres: its range is "
+                            "37.99, 950 times"},
+                    Spoiled{"inches_beside_metres", [](ExampleCsv& csv) { csv = ExampleCsv{39.3701}; },
+                            "seems to be in inches"},
+                    Spoiled{"all_in_millimetres",
+                            [](ExampleCsv& csv) {
+                              csv.rows = {"time_s,measured_displacement_m"};
+                              for (int i = 0; i < 1000; ++i)
+                                csv.rows.push_back(fmt::format("{},{}", 0.001 * i, 20.0 * std::sin(0.01 * i)));
+                            },
+                            "seems to be in millimetres: the largest displacement accepted is 10 m; expected metres"},
+                    Spoiled{"small_and_fast",
+                            [](ExampleCsv& csv) {
+                              csv.rows = {"time_s,measured_displacement_m"};
+                              // 3 mm at 1 Hz read as metres: 18.8 m/s.
+                              for (int i = 0; i < 1000; ++i) {
+                                csv.rows.push_back(fmt::format("{},{}", 0.001 * i, 3.0 * std::sin(6.2832 * 0.001 * i)));
+                              }
+                            },
+                            "in metres it would move at 18.8 m/s"}),
     [](const auto& param_info) { return param_info.param.name; });
 
 TEST(CsvRecording, NamesRowsOfInvalidTimeStamps) {
@@ -212,7 +212,9 @@ TEST(CsvRecording, NamesRowsOfInvalidTimeStamps) {
   const auto complaints = csv.complaints();
   ASSERT_THAT(complaints, SizeIs(testing::Ge(3U)));
   EXPECT_THAT(complaints, testing::Contains(HasSubstr("a.csv:10: column 'time_s': '0.007': time stamp repeated")));
-  EXPECT_THAT(complaints, testing::Contains(HasSubstr("a.csv:20: column 'time_s': '0.016': time stamp goes back")));
+  EXPECT_THAT(
+      complaints,
+      testing::Contains(HasSubstr("a.csv:20: column 'time_s': '0.016': time stamp is earlier than the one before")));
   EXPECT_THAT(complaints, testing::Contains(HasSubstr("a.csv:30: column 'time_s': '0.0284': uneven sampling")));
 }
 
