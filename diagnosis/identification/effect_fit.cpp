@@ -11,7 +11,7 @@
 namespace hybridtest {
 namespace {
 
-/// What fit and held-out residuals are linear in around the optimum.
+/// The linearisation at the optimum from which fitted and held-out residuals are computed.
 struct Linearisation {
   Eigen::MatrixXd columns;        // change of the prediction per searched, linear, nuisance parameter
   std::vector<std::size_t> free;  // of them, those not held at a bound
@@ -46,7 +46,7 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   return result;
 }
 
-/// Samples that a residual of such neighbours is worth: N (1 - r) / (1 + r).
+/// Number of independent samples for this correlation of neighbours: N (1 - r) / (1 + r).
 double effective_share(const Eigen::VectorXd& residual) {
   const Eigen::Index n = residual.size();
   if (n < 3) return 1.0;
@@ -88,9 +88,9 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
   }
 }
 
-/// Variances of the free parameters: the larger of what a residual of one level says, of as many independent samples
-/// as its neighbours leave, and what its blocks say, however their levels and neighbours are (Liang and Zeger,
-/// Biometrika 73, 1986, of blocks for clusters): no model is so right that all blocks ask for the same parameters.
+/// Variances of the free parameters: the larger of two estimates. One assumes a constant residual level and a number of
+/// independent samples from the correlation of neighbours. The other uses the differences between blocks (Liang and
+/// Zeger, Biometrika 73, 1986, with blocks as clusters): even a good model does not fit all blocks equally.
 Eigen::VectorXd variances_of(const VariableProjection& projection, const IdentificationProblem& problem,
                              const Linearisation& linear, const Eigen::VectorXd& residual) {
   const Eigen::Index count = linear.columns.cols();
@@ -171,7 +171,7 @@ std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effect
 
 enum class Look { from_start, everywhere };
 
-/// @param start   where to look first; empty: nowhere in particular.
+/// @param start   first point of the search; empty: none.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
   const VariableProjection projection{problem, plan_search(problem, effects), with_nuisance};

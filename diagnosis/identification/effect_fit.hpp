@@ -13,12 +13,12 @@ struct ParameterEstimate {
   bool at_bound = false;        // of its search range
 };
 
-/// How well a fit does on one segment, in its averaged samples.
+/// Residuals of a fit on one segment, in its averaged samples.
 struct SegmentResult {
   bool touched = false;
   double mean_square = 0.0;              // of the residual, parameters fitted to it
   std::vector<double> held_out_squares;  // per block: sum over a block that was not fitted
-  Eigen::VectorXd change;                // what the effects change of the baseline; empty when not touched
+  Eigen::VectorXd change;                // change of the baseline by the effects; empty if they do not act here
 
   [[nodiscard]] double held_out_mean_square(const FitSegment& segment) const;
 };
@@ -32,9 +32,9 @@ struct FitOutcome {
   std::vector<SegmentResult> segments;  // as in the problem
 };
 
-/// Fits `effects` together to every segment they touch, in free simulation: what is linear by least
-/// squares inside (variable projection; Golub and Pereyra, 1973), the rest by a bounded
-/// trust-region search outside (Ceres) from the best of several starts. Deterministic.
+/// Fits `effects` together to every segment they change, in free simulation. Linear parameters are solved by
+/// least squares (variable projection; Golub and Pereyra, 1973), the others by a bounded
+/// trust-region search (Ceres) from the best of several starts. Deterministic.
 ///
 /// Held-out blocks: the fit's linearisation gives what each block's residual is when that block is left
 /// out, exact where parameters are linear.
@@ -42,12 +42,12 @@ struct FitOutcome {
 [[nodiscard]] FitOutcome fit_effects(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects, bool with_nuisance);
 
-/// The same from known values, as where a second effect is added to a first.
-/// @param start   one setting per effect; its searched parameters are where the search begins.
+/// The same from known values, for example when a second effect is added to a first.
+/// @param start   one setting per effect; the search begins at its parameters.
 [[nodiscard]] FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                                        bool with_nuisance);
 
-/// The same from known values and from several starts, as where a second effect may move a first one far.
+/// The same from known values and from several starts, in case a second effect changes the first one much.
 /// @param start   one setting per effect.
 [[nodiscard]] FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                                         bool with_nuisance);

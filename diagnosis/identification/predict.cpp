@@ -72,7 +72,7 @@ class LawFromMemory final : public Law {
 
   std::function<std::unique_ptr<Law>()> make_;
   std::shared_ptr<const LawMemory> memory_;
-  std::unique_ptr<Law> law_;  // once the path has been left
+  std::unique_ptr<Law> law_;  // after the path differs from the remembered one
   std::size_t next_ = 0;
 };
 
@@ -88,7 +88,7 @@ std::unique_ptr<Law> from_memory(std::function<std::unique_ptr<Law>()> make, std
 
 namespace {
 
-/// The displacement stages that lie between the channels of a segment, one behind the other.
+/// The displacement stages between the channels of a segment, in order.
 class DisplacementChain {
  public:
   DisplacementChain(const SiteModel& model, const Segment& segment) {
@@ -154,7 +154,7 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   return predicted;
 }
 
-/// Of an end that is not judged nothing else is predicted than what was measured.
+/// At an end that is not judged, the prediction is set to the measured value.
 void leave_out_ends(const Segment& segment, std::vector<double>& predicted) {
   const auto end = static_cast<std::ptrdiff_t>(segment.unjudged);
   std::copy_n(segment.measured.begin(), end, predicted.begin());

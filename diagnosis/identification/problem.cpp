@@ -54,7 +54,7 @@ namespace {
 
 using enum EffectInterface;
 
-/// Longest time from one upward crossing of the mean to the next, which a held-out block has to exceed.
+/// Longest time between two upward crossings of the mean; a held-out block must be longer.
 double longest_cycle_s(const Segment& segment) {
   double mean_m = 0.0;
   for (const Motion& motion : segment.input) mean_m += motion.displacement_m;
@@ -147,7 +147,7 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) 
   return fit;
 }
 
-/// No force, or one proportional to the displacement, within rounding, up to the largest one either way.
+/// Whether the force is zero or proportional to the displacement, within rounding, in the whole range.
 bool is_spring(const SiteModel& model, double largest_m) {
   if (!model.make_law) return true;
   const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
@@ -157,7 +157,7 @@ bool is_spring(const SiteModel& model, double largest_m) {
   });
 }
 
-/// A floor is an estimate: what exceeds it a little beside a clear gap elsewhere is no gap.
+/// A floor is an estimate: a small excess does not count as a gap when another interface has a clear one.
 void mark_suspects(std::vector<FitSegment>& segments) {
   const auto is_clear = [](const FitSegment& fit) {
     return root_mean_square(fit.measured - fit.baseline) > tuning::kSuspectOverFloor / fit.weight;

@@ -19,14 +19,14 @@ struct SignalScales {
   double force_n = 0.0;  // 0 where no force was measured
   double duration_s = 0.0;
 
-  /// What one unit of a parameter of that scale is, in its own unit; 1 where the recording has no such signal.
+  /// The size of one unit of this scale, in SI; 1 if the recording has no such signal.
   [[nodiscard]] double of(ParameterScale scale) const noexcept;
 };
 
 [[nodiscard]] SignalScales scales_of(std::span<const Segment> segments);
 
-/// A segment as fits see it: averaged over `averaged` neighbouring samples, which keeps what a
-/// hybrid test excites and leaves out noise above.
+/// A segment for fits: averaged over `averaged` neighbouring samples, which keeps the frequencies that a
+/// hybrid test excites and removes noise above them.
 struct FitSegment {
   Segment segment;
   std::size_t averaged = 1;
@@ -34,10 +34,10 @@ struct FitSegment {
   Eigen::VectorXd baseline;                       // likewise, of the model as the user gave it
   Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
   std::vector<const EffectType*> nuisance_types;  // one per column
-  double weight = 1.0;                            // one over what counts as a standard deviation here
-  double floor = 0.0;         // what noise leaves of a right model [standard deviation], after averaging
+  double weight = 1.0;                            // inverse of the standard deviation used here
+  double floor = 0.0;         // residual of a correct model from noise [standard deviation], after averaging
   double sample_floor = 0.0;  // the same per sample
-  // What it leaves unexplained counts as part of the gap: a residual well above the floor, or all where none is.
+  // Whether its residual counts as part of the gap: it is well above the floor, or no residual is.
   bool is_suspect = true;
   std::shared_ptr<const LawMemory> law;    // of the specimen, along the recorded motion; null where there is none
   std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
@@ -45,18 +45,18 @@ struct FitSegment {
   [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
 };
 
-/// What every candidate is fitted to.
+/// The data to which every candidate is fitted.
 struct IdentificationProblem {
   SiteModel model;
   std::vector<FitSegment> segments;
   SignalScales scales;
-  bool law_is_spring = false;  // linear, as far as the recordings move it, or none
+  bool law_is_spring = false;  // linear in the range of the recordings, or there is no law
 };
 
 /// @param segments   of recordings of the role fit.
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
 
-/// A number of the user's model that is a little off, as every model's are.
+/// A slightly wrong number of the user's model.
 [[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;
 
 /// Averaged prediction with effects added; the baseline where none touches the segment.

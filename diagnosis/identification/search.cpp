@@ -25,15 +25,15 @@ bool touches_several(const IdentificationProblem& problem, const EffectType& eff
   return force && effect.interface == EffectInterface::displacement_sensor;
 }
 
-/// Damping of a specimen's law at rest in the middle, which an effect may take off.
+/// Damping of a specimen's law at zero displacement, which an effect may remove.
 double damping_of_law(const IdentificationProblem& problem) {
   if (!problem.model.make_law) return 0.0;
   const double velocity_m_per_s = problem.scales.of(ParameterScale::velocity_m_per_s);
   return problem.model.make_law()->trial(0.0, velocity_m_per_s) / velocity_m_per_s;
 }
 
-/// The least that real sites have of a linear parameter: what is searched for above zero only, none; of an amount, none
-/// together with what the model has.
+/// Lower limit of a linear parameter: zero if it is searched above zero only; for an amount, the value at which the
+/// real site has none of it, the model's own part included.
 double least_of(const IdentificationProblem& problem, const EffectType& effect, std::size_t index,
                 const SearchRange& range) {
   const EffectParameter& parameter = effect.parameters[index];
@@ -137,7 +137,7 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::Vector
   return matrix.partialPivLu().solve(vector);
 }
 
-/// Least squares within bounds: what leaves its bounds is held there, one after the other.
+/// Least squares within bounds: parameters that leave their bounds are held there, one after the other.
 Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& right,
                                       const std::vector<Bounds>& bounds, std::vector<bool>& held) {
   Eigen::VectorXd scale = columns.colwise().norm().transpose();
@@ -367,7 +367,7 @@ Start refine(const VariableProjection& projection, const Start& start) {
   return cost < start.cost ? Start{places, cost} : start;
 }
 
-/// The nearer an instant is to the right one, the less of the record it gets wrong.
+/// The error of the prediction decreases as an instant comes nearer to the correct one.
 Start settle_instants(const VariableProjection& projection, Start best) {
   const std::vector<SearchedParameter>& searched = projection.plan().searched;
   const auto improves = [&](Eigen::Index i, double step) {

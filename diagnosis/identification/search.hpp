@@ -16,7 +16,7 @@ struct SearchedParameter {
   double low = 0.0;
   double high = 0.0;
   bool logarithmic = false;
-  // A time in the record: it is felt in one place only, which derivatives do not see from afar.
+  // A time in the recording: it acts in one place only, so derivatives far from it are zero.
   bool is_instant = false;
 
   [[nodiscard]] double at(double place) const noexcept;
@@ -27,7 +27,7 @@ struct SearchedParameter {
 struct LinearParameter {
   std::size_t effect = 0;
   std::size_t parameter = 0;
-  double unit = 1.0;  // a change that the recording would show
+  double unit = 1.0;  // a change that is visible in the recording
   double low = 0.0;
   double high = 0.0;
 };
@@ -43,17 +43,17 @@ struct SearchPlan {
 [[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects);
 
-/// Nothing to search for in a parameter: its fallback is used.
+/// The parameter is not searched: its fallback is used.
 [[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,
                             const EffectParameter& parameter);
 
-/// Residual of effects at given places of their searched parameters, what is linear solved for.
+/// Residual of effects at given places of their searched parameters; linear parameters are solved.
 /// Rows: the averaged samples of the touched segments, one segment behind the other, weighted.
 struct Projected {
   Eigen::VectorXd residual;
   Eigen::MatrixXd columns;       // of the linear parameters, then of the nuisances
   Eigen::VectorXd coefficients;  // likewise; linear ones in their `unit`
-  std::vector<bool> held;        // likewise: at the end of what the parameter may be
+  std::vector<bool> held;        // likewise: at the limit of the parameter
 };
 
 class VariableProjection {
@@ -67,7 +67,7 @@ class VariableProjection {
   VariableProjection(const IdentificationProblem& problem, SearchPlan plan, bool with_nuisance);
 
   /// @param places   of the searched parameters, 0 to 1.
-  /// @throws ConfigError for parameters that an effect refuses.
+  /// @throws ConfigError for parameters that an effect does not accept.
   [[nodiscard]] Projected solve(const Eigen::VectorXd& places) const;
   /// The weighted prediction with the linear parameters fixed.
   [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Projected& solution) const;
@@ -99,8 +99,8 @@ class VariableProjection {
 
 /// Places of the searched parameters with the least squared residual: from the best few of several
 /// starts spread evenly over the range (Halton, 1960), by Ceres' trust region between 0 and 1.
-/// @param first   where to look first; empty: nowhere in particular.
-/// @param starts  how many of the spread ones to try besides.
+/// @param first   first point of the search; empty: none.
+/// @param starts  number of spread starts in addition.
 [[nodiscard]] Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first,
                                           int starts);
 

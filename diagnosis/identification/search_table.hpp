@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// What one unit of a search range is: a friction force is searched in units of the measured force, a clearance in
+/// The scale of a search range: a friction force is searched in units of the measured force, a clearance in
 /// units of the measured displacement.
 enum class ParameterScale : std::uint8_t {
   one,             // a ratio or exponent: no scale
@@ -32,19 +32,19 @@ enum class LawUse : std::uint8_t { any, spring_or_none, with_strength };
 /// A limit of the range that the user's model sets.
 enum class SearchLimit : std::uint8_t {
   none,
-  removable_delay,      // at most the delay of the model's own transfer system is taken off
-  compensator_setting,  // the compensator's delay stays between zero and the most it can make up for
+  removable_delay,      // at most the delay of the model's own transfer system is removed
+  compensator_setting,  // the compensator's delay stays between zero and its maximum
 };
 
-/// What narrows a range beside its ends.
+/// Further limits of a range.
 struct SearchRestriction {
   LawUse beside = LawUse::any;
-  // A real site has no less than none of it: the search takes off at most what the model has.
+  // The value of the real site cannot be negative: the search removes at most the model's own value.
   bool is_amount = false;
   SearchLimit limit = SearchLimit::none;
 };
 
-/// Where the search looks for one parameter of one effect.
+/// The search range of one parameter of one effect.
 struct SearchRange {
   EffectInterface interface {};
   std::string_view effect;

@@ -29,8 +29,8 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// One draw of what is wrong in readings: white noise of that level or, with a coarse converter, its error along a
-/// motion half a step beside the one that was read.
+/// One random error of readings: white noise of this level or, for a coarse converter, its error for a
+/// motion that is shifted by half a step.
 std::vector<double> drawn_error(std::span<const Motion> motion, double level, double step) {
   Random random{tuning::kNoiseSeed};
   std::vector<double> error(motion.size());
@@ -41,7 +41,7 @@ std::vector<double> drawn_error(std::span<const Motion> motion, double level, do
   return error;
 }
 
-/// Smooths the measured displacement, and once more over half the window, which tells what the whole one takes off.
+/// Smooths the measured displacement, and also over half the window: the difference shows what smoothing removes.
 void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
   const LocalPolynomial polynomial{half_width, segment.period_s};
   segment.input = polynomial.motion(displacement_m);
@@ -87,7 +87,7 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
   }
   segment.measured_noise = white_noise_level(segment.measured);
   if (to >= Channel::measured_displacement) {
-    // Of an even error between half a step each way.
+    // Of an error uniformly distributed over plus or minus half a step.
     segment.step_noise = steps_of_readings(segment.measured).step / std::sqrt(12.0);
   }
   return segment;
@@ -179,7 +179,7 @@ bool is_modelled(const SiteModel& model, const Segment& segment) {
 
 namespace {
 
-/// Of inertia and damping, and of nothing else that a model has beside its law.
+/// Of inertia and damping only, of all that a model has in addition to its law.
 bool follows_derivatives(const SiteModel& model) {
   return std::ranges::any_of(model.effects, [](const EffectSetting& effect) {
     return effect.type->interface == EffectInterface::specimen && effect.type->traits.follows_derivatives;

@@ -13,12 +13,12 @@
 
 namespace hybridtest {
 
-/// The part of the chain between two neighbouring recorded channels of one degree of freedom: driven
-/// with what was measured in front of it, so that an error does not travel downstream.
+/// The part of the chain between two consecutive recorded channels of one degree of freedom. Its input is the
+/// measured one, so that an error does not propagate to the next segment.
 struct Segment {
   Channel from = Channel::command_displacement;
   Channel to = Channel::measured_displacement;
-  EffectInterface interface {};  // that a gap here is put down to until an effect says otherwise
+  EffectInterface interface {};  // to which a gap here is attributed until an effect shows another one
   std::size_t recording = 0;     // position in the list that was given
   double period_s = 0.0;
   std::vector<Motion> input;     // quiet motion of `from`, one per sample
@@ -31,8 +31,8 @@ struct Segment {
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
   bool is_smoothed = false;  // `measured`, see smoothed_alike()
-  // Samples at either end of which the motion is not known well enough to judge by; what is predicted of them is what
-  // was measured.
+  // Samples at both ends where the motion is not known well enough to judge; their prediction is set to the measured
+  // value.
   std::size_t unjudged = 0;
   // Standard deviation of the noise of `measured`, and over how many samples it is one and the same.
   double measured_noise = 0.0;
@@ -44,7 +44,7 @@ struct Segment {
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
 };
 
-/// Everything that one degree of freedom of a recording can judge, along the chain.
+/// All segments of the chain that one degree of freedom of a recording contains.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
 /// The specimen's segment with force and motion smoothed by the same weights (FlatSmoother), the motion's
@@ -53,17 +53,17 @@ struct Segment {
 /// @param deviation   of the weights, in samples.
 [[nodiscard]] Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation);
 
-/// The same at a lower rate, as a first look at it: every so many samples that no more than `rate_hz` is
-/// left. A segment with a compensator between its channels, whose command depends on its own rate,
+/// The same at a lower rate, for a first search: samples are skipped so that the rate is at most
+/// `rate_hz`. A segment with a compensator between its channels, whose command depends on its own rate,
 /// stays as it is.
 [[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
 
-/// The model says something of `to`: of a force it does only with a law or an effect of the specimen.
+/// Whether the model predicts `to`; a force only with a law or an effect of the specimen.
 [[nodiscard]] bool is_modelled(const SiteModel& model, const Segment& segment);
 
-/// What the site predicts for `to`, in free simulation over the whole segment.
+/// Prediction of `to`, in free simulation over the whole segment.
 /// @param added   effects beyond the model's own, behind them.
-/// @throws ConfigError for parameters that an effect refuses.
+/// @throws ConfigError for parameters that an effect does not accept.
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
 
@@ -74,7 +74,7 @@ struct Segment {
 [[nodiscard]] double input_floor(const SiteModel& model, const Segment& segment,
                                  const std::function<double(std::span<const double>)>& root_mean_square);
 
-/// Standard deviation of the residual that noise in both channels leaves of a right model, per sample.
+/// Standard deviation per sample of the residual of a correct model, from noise in both channels.
 [[nodiscard]] double noise_floor(const SiteModel& model, const Segment& segment);
 
 /// The segments of one degree of freedom that a model says something of, along the chain. Where it says that the force

@@ -21,7 +21,7 @@ double difference_variance(std::span<const double> values, std::size_t lag) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-/// Samples whose input was the same `lag` before, in place and in what came around it.
+/// Samples whose input, and its neighbourhood, was the same `lag` samples before.
 std::vector<std::size_t> repeated(std::span<const double> input_m, std::size_t lag, double tolerance_m) {
   std::vector<std::size_t> samples;
   for (std::size_t i = lag; i < input_m.size(); ++i) {
@@ -30,7 +30,7 @@ std::vector<std::size_t> repeated(std::span<const double> input_m, std::size_t l
   return samples;
 }
 
-/// The lag of whole cycles at which the input comes back best; 0 when there are no cycles.
+/// The lag of whole cycles at which the input repeats best; 0 if there are no cycles.
 std::size_t best_lag(std::span<const double> input_m) {
   const std::vector<Reversal> turns = reversals_of(input_m, tuning::kCycleThreshold * reversal_threshold_m(input_m));
   if (turns.size() < tuning::kCycleReversalsMin) return 0;

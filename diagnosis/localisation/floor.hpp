@@ -11,17 +11,17 @@
 namespace hybridtest {
 
 enum class FloorSource : std::uint8_t { repeated_recordings, repeated_cycles, rest, high_frequencies };
-/// In plain words: `repeated cycles`.
+/// As text: `repeated cycles`.
 [[nodiscard]] std::string_view name_of(FloorSource source) noexcept;
 
-/// What no model could reproduce: the part of a residual that does not come back.
+/// The part of a residual that does not repeat: no model can reproduce it.
 struct RepeatabilityFloor {
   double rms = 0.0;  // in the unit of the residual
   FloorSource source = FloorSource::high_frequencies;
 };
 
-/// Of two recordings of the same test: half the variance of the difference of their residuals is what
-/// either has alone. Nothing when their inputs differ by more than a hundredth (root mean square).
+/// From two recordings of the same test: each has half the variance of the difference of their
+/// residuals. Nothing when their inputs differ by more than a hundredth (root mean square).
 [[nodiscard]] std::optional<RepeatabilityFloor> floor_of_repetition(const GapSignals& first, const GapSignals& second);
 
 /// Of cycles that repeat their input: the spread of the residual around the mean cycle, taken from

@@ -34,7 +34,7 @@ struct Spectra {
 
   [[nodiscard]] double frequency_hz(std::size_t i) const noexcept { return static_cast<double>(i) * resolution_hz; }
   /// Share of the output's power that goes linearly with the input, 0 to 1. With n averages it is
-  /// about 1/n for signals that have nothing to do with each other.
+  /// about 1/n for uncorrelated signals.
   [[nodiscard]] double coherence(std::size_t i) const noexcept;
 };
 

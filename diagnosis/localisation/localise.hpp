@@ -26,14 +26,14 @@ struct WindowParameters {
 
 enum class InterfaceKind : std::uint8_t { displacement_out, force_out };
 
-/// @param count   stretches of equal length; those that all but rest (under a twentieth of the largest
-///                amplitude), or in which nothing can be fitted, are left out.
+/// @param count   stretches of equal length; those almost at rest (under a twentieth of the largest
+///                amplitude), or without a possible fit, are omitted.
 [[nodiscard]] std::vector<WindowParameters> parameters_over_time(const GapSignals& signals, InterfaceKind kind,
                                                                  std::size_t count);
 
-/// How a parameter that a linear model holds constant goes with something: rank correlations (Spearman) over
-/// the windows, so that only the order counts. With amplitude it is a missing nonlinearity, with time a degradation,
-/// with frequency a missing dynamic.
+/// Rank correlations (Spearman) over the windows of a parameter that a linear model assumes constant. A correlation
+/// with amplitude is a sign of a missing nonlinearity, with time of degradation, with frequency of missing
+/// dynamics.
 struct ParameterDrift {
   std::string parameter;  // `stiffness_n_per_m`
   double mean = 0.0;
@@ -43,7 +43,7 @@ struct ParameterDrift {
   double with_frequency = 0.0;
   std::size_t windows = 0;
 
-  /// Whether a coefficient is more than chance gives one window in a hundred (Fisher's z, two-sided).
+  /// Whether a coefficient is significant at the 1 % level (Fisher's z, two-sided).
   [[nodiscard]] bool is_significant(double correlation) const noexcept;
 };
 
@@ -57,7 +57,7 @@ struct GapRegion {
   double velocity_low_m_per_s = 0.0;
   double velocity_high_m_per_s = 0.0;
   double share = 0.0;
-  double time_share = 0.0;  // of the recording that is spent there
+  double time_share = 0.0;  // of the duration of the recording
 };
 
 /// Where inside one interface its gap lies.
@@ -73,7 +73,7 @@ struct Localisation {
   std::vector<ParameterDrift> drifts;
   std::optional<FrequencyEvaluation> tracking;  // of the output against the input, where both are displacements
 
-  // What holds the better part, half of the energy, in few words.
+  // The windows, bands and regions that contain half of the energy.
   std::vector<TimeWindow> main_windows;
   std::vector<BandShare> main_bands;
 };

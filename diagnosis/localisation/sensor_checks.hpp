@@ -9,15 +9,15 @@
 
 namespace hybridtest {
 
-/// What one channel tells of its sensor alone.
+/// Sensor checks of one channel.
 struct ChannelCheck {
   double quantum = 0.0;         // smallest step between neighbours; 0 for a channel that never changes
   double repeated_share = 0.0;  // of samples that equal the one before
-  double clipped_share = 0.0;   // of samples that sit, three or more in a row, at the very extremes
+  double clipped_share = 0.0;   // of samples at the extreme values, three or more in a row
 };
 [[nodiscard]] ChannelCheck check_channel(std::span<const double> values);
 
-/// What a channel reads while the motion rests.
+/// Readings of a channel while the motion is at rest.
 struct RestReading {
   double first = 0.0;        // mean over the first stretch at rest: the tare
   double last = 0.0;         // mean over the last one
@@ -29,14 +29,14 @@ struct RestReading {
 [[nodiscard]] std::optional<RestReading> read_at_rest(std::span<const double> values, std::span<const double> motion_m,
                                                       double period_s);
 
-/// By how much the force is behind the displacement: the lag at which their changes (dF against dx) go
-/// together best, in magnitude, refined by a parabola through three lags. A specimen that resists with
-/// velocity or mass leads or lags by itself: only with a stiff specimen is this the sensors' skew.
+/// Lag of the force behind the displacement: the lag with the largest correlation magnitude of their changes (dF
+/// against dx), refined by a parabola through three lags. A specimen with damping or mass also leads or lags: only
+/// with a stiff specimen is this the time offset of the sensors.
 /// @return [s]; nothing when the best correlation is under 0.5 or lies at the end of the search of ± 50 ms.
 [[nodiscard]] std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
                                                 double period_s);
 
-/// What the measured channels of one degree of freedom tell of their sensors by themselves.
+/// Sensor checks of the measured channels of one degree of freedom.
 void add_sensor_facts(const Recording& recording, std::size_t dof, report::DiagnosisReport& report);
 
 }  // namespace hybridtest

@@ -6,8 +6,8 @@
 
 namespace hybridtest {
 
-/// What the field looks at first when an actuator and its command disagree. They show that, and roughly
-/// how; none of them names a cause.
+/// The usual first checks of actuator tracking in the field. They show that there is an error and roughly its
+/// kind; none of them shows the cause.
 
 /// Tracking indicator: half the difference between the areas that command against measured
 /// displacement encloses seen from either axis (Mercan and Ricles, Earthquake Engineering and
@@ -31,18 +31,18 @@ namespace hybridtest {
 [[nodiscard]] std::vector<double> error_monitor(std::span<const double> command_m, std::span<const double> measured_m,
                                                 std::span<const double> force_n, double stiffness_n_per_m);
 
-/// What a late force does to the structure, to first order: damping of -k tau (Horiuchi et al., 1999).
+/// Effect of a delayed force on the structure, to first order: damping of -k tau (Horiuchi et al., 1999).
 struct DelayConsequence {
   double delay_s = 0.0;
   double stiffness_n_per_m = 0.0;             // secant of the specimen over the recording
   double equivalent_damping_n_s_per_m = 0.0;  // -k tau
-  /// The delay at which a structure with this damping at the interface turns unstable: c / k.
+  /// The delay at which a structure with this damping at the interface becomes unstable: c / k.
   [[nodiscard]] double critical_delay_s(double structure_damping_n_s_per_m) const noexcept {
     return structure_damping_n_s_per_m / stiffness_n_per_m;
   }
 };
-/// @return nothing where less than half of the force's variance goes with the displacement, so that the specimen
-///         is no spring, where it has no positive stiffness, or the delay cannot be told.
+/// @return nothing if displacement explains less than half of the force variance (the specimen is not a spring), if
+///         the stiffness is not positive, or if the delay cannot be estimated.
 [[nodiscard]] std::optional<DelayConsequence> delay_consequence(std::span<const double> command_m,
                                                                 std::span<const double> measured_m,
                                                                 std::span<const double> force_n, double period_s);

@@ -10,12 +10,12 @@
 
 namespace hybridtest {
 
-/// What is known of one interface at every sample: evenly spaced, all of one length, finite.
+/// The signals of one interface: constant sample period, all of the same length, finite.
 struct GapSignals {
   double period_s = 0.0;
-  std::span<const double> input_m;   // displacement that drove the interface
-  std::span<const double> measured;  // what came out [m] or [N]
-  std::span<const double> residual;  // measured less modelled, in the unit of `measured`
+  std::span<const double> input_m;   // input displacement of the interface
+  std::span<const double> measured;  // output [m] or [N]
+  std::span<const double> residual;  // measured minus modelled, in the unit of `measured`
 
   [[nodiscard]] std::size_t size() const noexcept { return residual.size(); }
   [[nodiscard]] double duration_s() const noexcept { return static_cast<double>(size()) * period_s; }
@@ -26,7 +26,7 @@ struct GapSignals {
 /// Mean square about the mean.
 [[nodiscard]] double variance(std::span<const double> values) noexcept;
 
-/// A turn of the motion, found once it has come back by a threshold.
+/// A reversal of the motion: it is found after the motion has come back by a threshold.
 struct Reversal {
   std::size_t sample = 0;  // of the extreme
   double displacement_m = 0.0;
@@ -35,7 +35,7 @@ struct Reversal {
 /// Extremes between which the motion goes by more than `threshold_m`, in order; maxima and minima in turn.
 [[nodiscard]] std::vector<Reversal> reversals_of(std::span<const double> displacement_m, double threshold_m);
 
-/// A threshold above what noise does: a fiftieth of the whole span.
+/// A threshold above the noise: a fiftieth of the whole range.
 [[nodiscard]] double reversal_threshold_m(std::span<const double> displacement_m);
 
 /// |displacement - displacement at the last reversal| at every sample; before the first, from the start.
@@ -88,14 +88,14 @@ class LocalPolynomial {
 [[nodiscard]] double white_noise_level(std::span<const double> values);
 
 /// The widest window whose polynomials still leave no more than white noise of that level, so that
-/// derivatives are as quiet as the motion allows.
+/// derivatives have as little noise as the motion allows.
 [[nodiscard]] std::size_t widest_faithful_half_width(std::span<const double> values);
 
 /// Weighted mean of the samples around each one. The weights are those of a normal distribution of deviation s, applied
 /// again to what they leave, and once more (twicing: Tukey, Exploratory Data Analysis, 1977): the gain at a frequency
 /// f, 1 - (1 - g)^3 with g = exp(-(2 pi f s)^2 / 2), is flat to the sixth order at low ones and falls so steeply at
-/// high ones that the noise of a second derivative does not survive it. Zero phase; at the ends the weights of the
-/// samples that there are.
+/// high ones that it removes the noise of a second derivative. Zero phase; at the ends only the existing samples are
+/// weighted.
 class FlatSmoother {
  public:
   /// @param deviation   s in samples; 0 changes nothing.

@@ -30,7 +30,7 @@ Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const 
   for (Eigen::Index i = 0; i < recording.steps(); ++i) {
     displacement_m.col(i) = integrator->current().displacement_m;
     force_n = recording.restoring_force_n.col(i);
-    // Where model and record agree this adds nothing at all.
+    // If model and recording agree, this adds exactly zero.
     if (recording.has_numerical_forces()) {
       force_n +=
           (1.0 + errors.stiffness) * recording.modelled_numerical_force_n.col(i) - recording.numerical_force_n.col(i);
@@ -51,7 +51,7 @@ const SearchRange& range_of(const FittedRatio& ratio) {
   return *range;
 }
 
-/// The record and what the ratios make of it.
+/// The recording, and the displacements recomputed with the ratios.
 class RatioProblem {
  public:
   RatioProblem(const ComputedStructure& model, const StructureRecording& recording)
@@ -73,7 +73,7 @@ class RatioProblem {
     const double whole = recording_.displacement_m.norm();
     return whole > 0.0 ? residual_m.norm() / whole : 0.0;
   }
-  /// Of the samples of a remainder, how many are worth one: it does not change from step to step.
+  /// Number of neighbouring samples of the remaining gap that count as one independent sample.
   [[nodiscard]] double samples_per_independent(Eigen::Index samples) const {
     const double duration_s = recording_.step_s * static_cast<double>(recording_.steps());
     const double independent = tuning::kIndependentPerSecond * duration_s;
@@ -177,7 +177,7 @@ StructureFit with_another(const ComputedStructure& model, const StructureRecordi
   return best;
 }
 
-/// By how much each cause alone is missed.
+/// The gap added when each cause is removed alone.
 std::vector<double> shares_of(const ComputedStructure& model, const StructureRecording& recording,
                               const StructureFit& fit) {
   std::vector<double> shares;
@@ -203,9 +203,9 @@ Verdict together(Verdict site, Verdict structure) {
 
 double excess(double nrmse, double floor) { return std::max(0.0, nrmse * nrmse - floor * floor); }
 
-/// Its share of the whole gap; those of the others become less by it.
+/// Its share of the whole gap; the other shares are reduced accordingly.
 double add_where(const StructureDiagnosis& structure, report::DiagnosisReport& report) {
-  // In place of what says that it is not judged.
+  // Replaces the entry that says it is not judged.
   std::erase_if(report.where, [](const report::InterfaceGap& other) {
     return other.interface == name_of(EffectInterface::numerical_substructure);
   });
@@ -302,7 +302,7 @@ void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis) {
   report.verdict = together(site, structure.verdict);
   if (site == Verdict::none || site == Verdict::not_excited) {
     report.next_experiment.clear();
-    report.ranking.clear();  // what was considered there competes with nothing here
+    report.ranking.clear();  // the candidates of the site do not compete with these causes
   }
   if (structure.verdict == Verdict::unknown) {
     report.notes.emplace_back(

@@ -13,14 +13,14 @@
 
 namespace hybridtest {
 
-/// The part of a hybrid test that the coordinator computes, as the user's scenario has it.
+/// The part of a hybrid test that the coordinator computes, as described by the scenario of the user.
 struct ComputedStructure {
   LinearStructure structure;
   double step_s = 0.0;  // of the integrator
   std::function<std::unique_ptr<Integrator>(const LinearStructure& structure, double step_s)> make_integrator;
 };
 
-/// What that part received and made of it in a test: one column per step; rows are degrees of freedom of the
+/// Input and output of that part in a test: one column per step; rows are degrees of freedom of the
 /// structure, positive as displacements are.
 struct StructureRecording {
   double step_s = 0.0;                 // of the test
@@ -36,7 +36,7 @@ struct StructureRecording {
   [[nodiscard]] bool has_numerical_forces() const noexcept { return numerical_force_n.cols() == steps(); }
 };
 
-/// What the effects of the numerical substructure change of a structure: ratios, real over model less 1.
+/// The changes that the effects of the numerical substructure make: ratios, real over model, minus 1.
 struct StructureErrors {
   double mass = 0.0;       // with the load of the ground motion
   double stiffness = 0.0;  // of the numerical substructures' forces
@@ -58,9 +58,9 @@ inline constexpr std::array kStructureEffects{StructureEffect{&StructureErrors::
                                               StructureEffect{&StructureErrors::damping, ModelNumber::damping},
                                               StructureEffect{&StructureErrors::step, ModelNumber::step}};
 
-/// The displacements that the structure would have commanded: the same integrator, driven over the whole record by
-/// the forces that were received, not by those that its own displacements would have met. With the structure that
-/// ran, and no errors, equal to those recorded bit for bit.
+/// The displacements recomputed with the same integrator over the whole recording, using the recorded forces (not
+/// forces computed from its own displacements). With the structure of the test, and without errors, they are equal to
+/// the recorded ones bit for bit.
 /// @throws ConfigError as the integrator, for ratios that leave no mass.
 [[nodiscard]] Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model,
                                                         const StructureRecording& recording,
@@ -81,8 +81,8 @@ struct StructureFit {
   [[nodiscard]] StructureErrors errors() const;
 };
 
-/// Ratios with which the recomputed displacements come closest to the recorded ones, least squares over the whole
-/// record and every degree of freedom, within the effects' search ranges. Gauss-Newton with differences of 1e-6,
+/// Ratios that fit the recomputed displacements to the recorded ones, by least squares over the whole
+/// recording and every degree of freedom, within the effects' search ranges. Gauss-Newton with differences of 1e-6,
 /// halved while it does not descend.
 /// @param start   the effects to fit, and from where.
 [[nodiscard]] StructureFit fit_structure(const ComputedStructure& model, const StructureRecording& recording,
@@ -99,14 +99,14 @@ struct StructureDiagnosis {
   double gap_left = 1.0;                            // share of the gap's energy that the causes leave
 };
 
-/// Effects are taken one by one, the best first, for as long as each leaves a good part less. What is computed has
-/// no noise: a right set of ratios leaves rounding and nothing else. Several wrong ones together come near many a
-/// gap; they are not named.
+/// Effects are selected one by one, the best first, as long as each reduces the gap clearly. Computed signals have
+/// no noise: a correct set of ratios leaves only rounding. Several wrong ratios together can explain most of a gap;
+/// they are not named.
 [[nodiscard]] StructureDiagnosis diagnose_structure(const ComputedStructure& model,
                                                     const StructureRecording& recording);
 
-/// Puts the interface `numerical_substructure` into a site's diagnosis: its place among the others, its causes, and
-/// what both say together. Its effects do not go into Diagnosis::causes, which are of the site's model.
+/// Adds the interface `numerical_substructure` to the diagnosis of a site: its entry, its causes, and the combined
+/// verdict. Its effects are not added to Diagnosis::causes, which belong to the model of the site.
 void add_structure(const StructureDiagnosis& structure, Diagnosis& diagnosis);
 
 /// The causes as effects of a scenario.

@@ -25,7 +25,7 @@ int lag_at(std::span<const double> sent_m, double received_m, std::size_t i, std
   return -1;
 }
 
-/// Mean square of what was received less what was sent, over that of what was received.
+/// Mean square of received minus sent values, over that of the received values.
 double gap_share(std::span<const double> sent_m, std::span<const double> received_m) {
   double gap = 0.0;
   double all = 0.0;
@@ -89,7 +89,7 @@ std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<
   const EffectType* const type =
       find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
   if (type == nullptr) return {};
-  // Even lateness up to J is J / 2 on average.
+  // A uniformly distributed delay up to J has the mean J / 2.
   const double value = is_loss ? lags.held : 2.0 * lags.mean * period_s;
   Trace trace{.effect = {.type = type, .values = {}}, .in = Channel::target_displacement};
   for (const EffectParameter& parameter : type->parameters) {
@@ -103,7 +103,7 @@ namespace {
 
 constexpr Eigen::Index kPadded = tuning::kStepPadding * tuning::kStepBins;
 
-/// The way between neighbouring samples, smoothed: how much each reading counts.
+/// The smoothed distance between neighbouring samples: the weight of each reading.
 std::vector<double> ways_of(std::span<const double> values, double period) {
   const LocalPolynomial polynomial{widest_faithful_half_width(values), period};
   std::vector<double> ways;
@@ -192,10 +192,10 @@ ReadingSteps steps_of_readings(std::span<const double> values) {
       std::find_if(begin, end, [best](double coherence) { return coherence >= tuning::kStepAsCoherent * *best; });
   const auto peak = std::max_element(coarsest, std::min(end, coarsest + tuning::kStepPadding));
   const double rough = static_cast<double>(peak - found.begin()) / kPerStep;
-  // A way from one reversal to the next leaves at most q / pi.
+  // The path from one reversal to the next contributes at most q / pi.
   const double reversals = 1.0 + static_cast<double>(reversals_of(values, reversal_threshold_m(values)).size());
   const double by_chance = reversals * readings.span / (std::numbers::pi * rough * readings.way);
-  // A way that few samples make up, as of a spike, keeps to some step or other: the largest of so many random sums.
+  // A path of few samples, such as a spike, fits some step by chance: the largest of many random sums.
   const double tried = static_cast<double>(end - begin);
   const double by_few = std::sqrt(std::log(tried + 2.0) / readings.samples_that_count());
   if (*peak < std::max(tuning::kStepCoherenceMin, tuning::kStepOverChance * std::max(by_chance, by_few))) return {};
@@ -210,7 +210,7 @@ bool has(const SiteModel& model, const EffectType* type) {
   return std::ranges::any_of(model.effects, [type](const EffectSetting& effect) { return effect.type == type; });
 }
 
-/// Coarse steps of one sensor, unless they are finer than what no model is expected to reproduce.
+/// Coarse steps of one sensor, unless they are too small to matter for a model.
 std::optional<Trace> trace_of_sensor(EffectInterface sensor, Channel channel, const std::vector<double>& values) {
   const double step = steps_of_readings(values).step;
   const EffectType* const type = find_effect(sensor, DigitTrace::rounding);

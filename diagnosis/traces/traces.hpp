@@ -9,22 +9,22 @@
 
 namespace hybridtest {
 
-/// An effect that shows in the digits of a recording: no fit can follow it, sample by sample, and none is needed.
+/// An effect found directly in the recorded values; it needs no fit, and no fit could follow it sample by sample.
 struct Trace {
   EffectSetting effect;
-  Channel in{};            // whose gap it makes
+  Channel in{};            // the channel whose gap it causes
   double gap_share = 0.0;  // mean square of that gap over the channel's own, summed over recordings
 };
 
-/// Of a kind that find_traces() looks for: it draws its course from a seed, or coarsens readings.
+/// Whether find_traces() searches this kind of effect: a random one with a seed, or a coarse converter.
 [[nodiscard]] bool shows_in_digits(const EffectType& effect) noexcept;
 
 /// What the recordings of the role fit show of lost and late packets and of coarse converters, beyond what the model
-/// has already. An effect that several show is listed once, as the first one shows it.
+/// has already. An effect in several recordings is listed once, with the values of the first one.
 [[nodiscard]] std::vector<Trace> find_traces(const SiteModel& model, std::span<const Recording> recordings,
                                              std::size_t dof);
 
-/// How late each target was that a site received, in samples: where nothing but the network lies between, every one
+/// Delay of each target that a site received, in samples. With only the network in between, every received target
 /// equals one that was sent.
 struct NetworkLags {
   std::vector<int> lag;         // per sample; -1: not found, or at rest
@@ -34,7 +34,7 @@ struct NetworkLags {
   double held = 0.0;            // share of moving samples that repeat the target before
   double mean = 0.0;            // samples
 
-  /// They go up and down, which a delay or a drift does not.
+  /// Whether the lags go up and down; those of a delay or a drift do not.
   [[nodiscard]] bool fluctuate() const noexcept;
 };
 
@@ -42,15 +42,15 @@ struct NetworkLags {
 [[nodiscard]] NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m,
                                        double period_s);
 
-/// `jitter` or `loss`, where the lags fluctuate. With loss, what arrives fresh is always equally late; with jitter it
-/// is not.
+/// `jitter` or `loss`, if the lags fluctuate. With loss, new targets always have the same delay; with jitter they do
+/// not.
 [[nodiscard]] std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<const double> received_m,
                                                     double period_s);
 
-/// What a coarse converter left in readings.
+/// The steps of a coarse converter in readings.
 struct ReadingSteps {
   double step = 0.0;       // q; 0: none found
-  double coherence = 0.0;  // 0 to 1: how far readings keep to multiples of it, up to an offset; 1: all do
+  double coherence = 0.0;  // 0 to 1; 1: all readings are multiples of the step plus an offset
 };
 
 /// The characteristic function of quantized readings repeats at 1 / q (Widrow and Kollar, Quantization Noise, 2008,

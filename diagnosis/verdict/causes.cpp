@@ -27,7 +27,7 @@ std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
   return probabilities;
 }
 
-/// The middle one, or the mean of the two in the middle; of none the fallback.
+/// The median; the fallback if there are no values.
 double median(std::vector<double> values, double fallback) {
   if (values.empty()) return fallback;
   std::ranges::sort(values);
@@ -35,7 +35,7 @@ double median(std::vector<double> values, double fallback) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-/// Excess energy of each recording, all its suspect segments together, or those that one effect acts on.
+/// Energy above the floor of each recording: of all its suspect segments, or of those that one effect acts on.
 std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
                                                    const EffectType* effect = nullptr) {
   std::map<std::size_t, GapEnergy> sums;
@@ -52,10 +52,10 @@ std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& 
   return excess;
 }
 
-/// What a further effect does to a typical recording: a single odd one, of which no effect explains much, does
-/// not decide.
+/// What a further effect changes in a typical (median) recording, so that a single unusual recording does not
+/// decide.
 struct Typical {
-  double leaves = 1.0;    // of what was left
+  double leaves = 1.0;    // share of the gap that remained before it
   double explains = 0.0;  // of the whole gap where it acts
 };
 
@@ -74,9 +74,9 @@ Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline
   return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
 }
 
-/// Another effect has to earn its place on data that was not fitted, and to matter: a wrong number for what it
-/// leaves, anything else for the whole gap where it acts as well, of which the shape of a right effect is never quite
-/// the real one, unless it leaves hardly anything.
+/// A further effect is accepted only if it improves the score on held-out blocks and explains enough. A wrong number
+/// of the model is judged by the gap that it leaves; any other effect also by the whole gap where it acts, unless it
+/// leaves hardly anything: even the right effect never has exactly the shape of the real one.
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
@@ -92,8 +92,8 @@ bool is_more_left(const GapEnergy& left, double total) {
   return left.excess() > tuning::kNothingLeft * total && left.total > kVariance * left.floor;
 }
 
-/// The best of `beside` that earns its place; null when there is none.
-/// A wrong number of the model that explains nearly as much goes first, so that it is not called a missing effect.
+/// The best of `beside` that is accepted; null when there is none.
+/// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
 const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
                                   const FitOutcome& without, const std::vector<Candidate>& beside) {
   const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); };
@@ -108,7 +108,7 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
   return number == beside.end() ? &*best : &*number;
 }
 
-/// The best pair that one of the leading effects is part of.
+/// The best pair that contains one of the leading effects.
 FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                       const Selection& selection, std::size_t threads) {
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
@@ -204,7 +204,7 @@ namespace {
 
 using report::Verdict;
 
-/// Some gap exceeds that multiple of its interface's floor.
+/// Whether a gap exceeds this multiple of the floor of its interface.
 bool stands_above_floor(const IdentificationProblem& problem, const Selection& selection, double multiple) {
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
@@ -221,13 +221,13 @@ Verdict verdict_by_remainder(double left) noexcept {
   return left <= tuning::kPartialLeaves ? Verdict::partial : Verdict::unknown;
 }
 
-/// Several effects that only together come near a gap, and leave part of it, are a curve through it and no cause.
+/// Several effects that explain a gap only together, and leave part of it, are a curve fit and not a cause.
 bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total) {
   return selection.chosen.effects.size() > 1 &&
          gap_energy(problem, selection.library.front().fit).excess() > tuning::kPartialLeaves * total;
 }
 
-/// Most probable first, until together they are probable enough.
+/// The most probable effects, until their sum of probabilities is large enough.
 std::vector<std::size_t> credible(const Selection& selection) {
   std::vector<std::size_t> members;
   double sum = 0.0;
@@ -312,7 +312,7 @@ Verdict verdict_with(std::span<const Trace> traces, const Judgement& judgement, 
   switch (judgement.verdict) {
     case Verdict::none: return Verdict::named;
     case Verdict::set:
-      // Which of the set it is stays open, unless hardly anything depends on it.
+      // The set is kept, unless the choice between its members changes hardly anything.
       return parts.traced < (1.0 - tuning::kNamedLeaves) * parts.all() ? Verdict::set : Verdict::named;
     default: return parts.left <= tuning::kNamedLeaves * parts.all() ? Verdict::named : Verdict::partial;
   }

@@ -23,7 +23,7 @@ std::vector<double> displacements(const std::vector<Motion>& motion) {
 
 std::string_view unit_of(Channel channel) { return channel == Channel::measured_force ? "N" : "m"; }
 
-/// How many times above its limit a signal stands; of two, the worse.
+/// Ratio of a signal to its limit; the smaller of input and output.
 double margin(const Excitation& excitation) {
   const auto over = [](double size, double noise) {
     return size <= 0.0 ? 0.0 : noise > 0.0 ? size / noise : std::numeric_limits<double>::max();

@@ -55,8 +55,8 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
   return candidates;
 }
 
-/// A stiffness that is far from the model's is no slightly wrong number any more: with it a hysteretic element beside
-/// the specimen turns into a specimen that yields, which is another effect.
+/// A stiffness far from that of the model is not a slightly wrong number: together with it a hysteretic element beside
+/// the specimen would become a yielding specimen, which is another effect.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
   const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
   // A spring beside another one, else the ratio of a law's stiffness.
@@ -76,7 +76,7 @@ bool is_of_sensor(const EffectType& effect) {
   return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
 }
 
-/// A scenario may leave it out, and this fit may as well.
+/// Whether a parameter is optional in a scenario and this fit is at its default.
 bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, const ParameterEstimate& estimate) {
   const double off = std::abs(estimate.value - parameter.fallback);  // NaN where it has to be given
   const double resolved = (range.high - range.low) * tuning::kRangeUnresolved;
@@ -84,8 +84,8 @@ bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, 
          std::max(tuning::kTwoSided95 * estimate.standard_error, range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
-/// Of two fits that a recording cannot tell apart the one without an effect of a sensor comes first, and the one of
-/// fewer parameters.
+/// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
+/// parameters.
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
   double sum = 0.0;
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
@@ -108,7 +108,7 @@ std::optional<Candidate> fit_one(const IdentificationProblem& problem, const Eff
   Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
   const double score = held_out_score(problem, beside.fit);
   beside.score = score - tuning::kNuisanceCost + prior(problem, beside.fit);
-  // Beside the nuisances an effect has to explain something that they do not.
+  // An effect must explain something that the nuisance parameters do not.
   const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
   return needed && beside.score > alone.score ? beside : alone;
 } catch (const ConfigError&) {
@@ -221,7 +221,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     start.push_back(promising[i].fit.effects.front());
     together[i] = fit_together(coarse, promising[i].type, start, search_effects);
   });
-  // What is far behind on the coarse record is not looked at again.
+  // Candidates with a much lower score on the coarse record are dropped.
   promising = best_first(std::move(together));
   std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
     return candidate.score < best - tuning::kFarBehind;

@@ -10,9 +10,9 @@ namespace hybridtest {
 
 /// Held-out log predictive density of a fit, up to a constant that all fits share [nats].
 ///
-/// Gaussian residuals whose variance is that of the held-out blocks, over as many independent samples
-/// as the tuning grants a second of recording: neighbouring samples of a structured
-/// residual say the same thing.
+/// Gaussian residuals with the variance of the held-out blocks. The number of independent samples per second is
+/// given in tuning.hpp, because neighbouring samples of a structured residual contain the same
+/// information.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Energy of the residual over all suspect segments, each relative to the variance of its output, held out.
@@ -20,7 +20,7 @@ struct GapEnergy {
   double total = 0.0;
   double floor = 0.0;
 
-  /// What is left above the floor.
+  /// The remaining gap above the floor.
   [[nodiscard]] double excess() const noexcept { return total > floor ? total - floor : 0.0; }
 };
 [[nodiscard]] GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& outcome);
@@ -30,21 +30,21 @@ struct GapEnergy {
 /// An effect of the library, fitted.
 struct Candidate {
   const EffectType* type = nullptr;
-  FitOutcome fit;      // by itself or, where that is what it needs, beside a slightly wrong model
-  double score = 0.0;  // held out, less what leaving the nuisances free costs
+  FitOutcome fit;      // alone or, if needed, together with slightly wrong parameters of the model
+  double score = 0.0;  // on held-out blocks, minus the penalty for free nuisance parameters
 };
 
-/// Told of done and all fits; called from any thread, one call at a time.
+/// Receives the number of finished fits and of all fits; called from any thread, one call at a time.
 using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Runs `work(i)` for every i below `count` on `threads` threads; which thread does what changes nothing.
+/// Runs `work(i)` for every i below `count` on `threads` threads; the result does not depend on the threads.
 void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
                           const FitProgress& progress = {});
 
 /// The effects that a diagnosis can judge on these segments.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
-/// Every judged effect fitted, best score first; what an effect refuses to be fitted to is left out.
+/// Every judged effect fitted, best score first; effects that cannot be fitted are omitted.
 /// @param coarse   the same problem at a lower rate, where every effect is searched over its whole range; those
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,

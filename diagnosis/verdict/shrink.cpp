@@ -30,8 +30,8 @@ struct BlockEnergy {
   }
 };
 
-/// The prediction with the causes. What arrives at random no seed repeats: there the lags found say what of it they
-/// explain, sample by sample.
+/// The prediction with the causes. Random network faults cannot be repeated by a seed: for them the lags that were
+/// found show sample by sample what they explain.
 std::vector<double> predicted_with(const SiteModel& model, std::span<const EffectSetting> causes,
                                    const Segment& segment) {
   std::vector<double> predicted = predict(model, segment, causes);
@@ -115,7 +115,7 @@ using report::Verdict;
 
 namespace {
 
-/// It acts, and surely leaves most of what there is, or more of what could be explained than a cause in part may.
+/// Whether the causes act, but certainly leave most of the gap, or more of its explainable part than is accepted.
 bool contradicts(const Shrink& held_out) {
   if (!held_out.ci95 || !(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return false;
   const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kInterfaces = static_cast<std::size_t>(EffectInterface::numerical_substructure) + 1;
 using Shares = std::array<double, kInterfaces>;
 
-/// The interface that a segment's gap is put down to.
+/// The interface to which the gap of a segment is attributed.
 EffectInterface blamed(const Segment& segment, const FitOutcome& chosen) {
   for (const EffectSetting& effect : chosen.effects) {
     if (segment.touched_by(*effect.type)) return effect.type->interface;
@@ -55,7 +55,7 @@ Shares shares_of(const IdentificationProblem& problem, const FitOutcome& baselin
   return shares;
 }
 
-/// 95 % of what resampled blocks give.
+/// 95 % interval of the resampled blocks.
 std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem& problem, const FitOutcome& baseline,
                                                     const FitOutcome& chosen, std::uint64_t seed) {
   Random random{seed};
@@ -97,7 +97,7 @@ std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, c
   for (const FitSegment& fit : problem.segments) {
     const EffectInterface at = blamed(fit.segment, chosen);
     add(at, fit, predict(problem.model, fit.segment));
-    // The stage itself is judged with what was found of its neighbour.
+    // The stage itself is judged with the effect of its neighbour added.
     if (at != fit.segment.interface)
       add(fit.segment.interface, fit, predict(problem.model, fit.segment, chosen.effects));
   }
@@ -122,7 +122,7 @@ namespace {
 
 using enum EffectInterface;
 
-/// The channels in front of and behind an interface.
+/// The input and output channels of an interface.
 struct Ends {
   Channel in;
   Channel out;
@@ -159,7 +159,7 @@ std::string why_not(const SiteModel& model, std::span<const Recording> recording
   }
   std::string missing = missing_columns(recordings, dof, ends_of(interface));
   if (!missing.empty()) return missing;
-  return interface == specimen && !model.make_law ? "the model has no specimen"
+  return interface == specimen && !model.make_law ? "the model has no law for the force of the specimen"
                                                   : "no recording has all columns of this interface";
 }
 

@@ -154,7 +154,7 @@ using Json = nlohmann::ordered_json;
   throw std::runtime_error{path.string() + ": " + why};
 }
 
-/// Reads and takes apart; what is missing in it is found by `take`.
+/// Reads and parses; `take` reports missing fields.
 template <class Take>
 auto from_json(const fs::path& path, Take take) {
   const std::string text = read_whole_file(path);
@@ -316,7 +316,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The answer appears under its name when it is whole: what an interrupted run left is done again.
+/// The answer gets its final name when it is complete; an incomplete answer of an interrupted run is repeated.
 void answer_case(const CaseFiles& files, const fs::path& answers, const DiagnoseCase& diagnose) {
   const fs::path unfinished = answers / (files.name + ".unfinished");
   fs::remove_all(unfinished);
@@ -333,7 +333,7 @@ RunOutcome run_batch(const fs::path& batch, const fs::path& answers, const Diagn
   fs::create_directories(answers);
   std::vector<std::string> names;
   for (const CaseFiles& files : cases) names.push_back(files.name);
-  // Answers that a run sealed are not added to unless they are still what was sealed.
+  // Answers are added to a sealed set only if the sealed answers are unchanged.
   static_cast<void>(open_answers(batch, answers, names, digest));
   std::vector<std::string> failures(cases.size());
   for_each(cases.size(), [&](std::size_t i) {

@@ -11,7 +11,7 @@
 
 #include "validation/blind_batches/plant/blind_case.hpp"
 
-/// What a batch looks like in files: docs/blind_batches.md.
+/// Files of a batch; see docs/blind_batches.md.
 namespace hybridtest::blind {
 
 /// SHA-256 of a text, hexadecimal.
@@ -33,7 +33,7 @@ using Digest = std::function<std::string(std::string_view)>;
 
 [[nodiscard]] std::string_view name_of(TruthClass kind) noexcept;
 
-/// A case as whoever diagnoses it gets it.
+/// A case as given to the diagnosis.
 struct CaseFiles {
   std::string name;
   std::filesystem::path site;
@@ -44,12 +44,12 @@ struct CaseFiles {
 /// The whole of a file. @throws std::runtime_error where it cannot be read.
 [[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
 
-/// The cases of a batch, after its files were found to be those that batch.json names. The key is not needed.
+/// The cases of a batch, after its files were checked against batch.json. The key is not needed.
 /// @throws std::runtime_error for a batch that is incomplete or changed.
 [[nodiscard]] std::vector<CaseFiles> open_batch(const std::filesystem::path& batch, const Digest& digest);
 
 /// Writes ANSWERS/answers.json: the SHA-256 of each answer that is there, and of the batch.
-/// @returns how many there are.
+/// @returns the number of answers.
 std::size_t seal_answers(const std::filesystem::path& batch, const std::filesystem::path& answers,
                          const Digest& digest);
 
@@ -58,7 +58,7 @@ std::size_t seal_answers(const std::filesystem::path& batch, const std::filesyst
                                    const Digest& digest);
 
 struct GivenAnswers {
-  bool are_sealed = false;                        // there is an answers.json, and it fits
+  bool are_sealed = false;                        // answers.json exists and matches the answers
   std::vector<std::optional<std::string>> texts;  // of diagnosis.json, one per name
 };
 
@@ -82,7 +82,7 @@ using ForEach = std::function<void(std::size_t count, const std::function<void(s
 /// @throws std::runtime_error when the directory holds something already or cannot be written.
 void make_batch(const MakeSettings& settings, const Digest& digest, const ForEach& for_each);
 
-/// Diagnoses a case into a directory: diagnosis.json and whatever else. Throws where it cannot.
+/// Diagnoses a case and writes diagnosis.json and other files into a directory. Throws on failure.
 using DiagnoseCase = std::function<void(const CaseFiles& files, const std::filesystem::path& out)>;
 
 struct RunOutcome {
@@ -91,7 +91,7 @@ struct RunOutcome {
 };
 
 /// Diagnoses every case of a batch that ANSWERS does not answer yet, then seals the answers. A
-/// case that fails stays without an answer, which is scored as a wrong one; the others go on. No key is needed.
+/// case that fails has no answer, which is scored as a wrong one; the other cases continue. No key is needed.
 /// @throws std::runtime_error for a changed batch, and for answers that were sealed and changed.
 [[nodiscard]] RunOutcome run_batch(const std::filesystem::path& batch, const std::filesystem::path& answers,
                                    const DiagnoseCase& diagnose, const Digest& digest, const ForEach& for_each);

@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 csv.rows.push_back(fmt::format("{},{}", 0.001 * i, 3.0 * std::sin(6.2832 * 0.001 * i)));
                               }
                             },
-                            "in metres it would move at 18.8 m/s"}),
+                            "read in metres its speed is 18.8 m/s"}),
     [](const auto& param_info) { return param_info.param.name; });
 
 TEST(CsvRecording, NamesRowsOfInvalidTimeStamps) {

@@ -47,7 +47,7 @@ TEST(Unjudged, ReportsMissingModel) {
   SiteModel actuator = made_model();
   actuator.make_law = nullptr;
   EXPECT_EQ(why_not(actuator, made_recording(made_motion_m, spring_n), "specimen"),
-            "the model says nothing of the specimen's force");
+            "the model has no law for the force of the specimen");
 }
 
 constexpr double kCycle_hz = 1.0;

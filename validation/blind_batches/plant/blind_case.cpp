@@ -107,7 +107,7 @@ CaseSetting draw_case_setting(std::uint64_t seed, std::uint64_t index) {
 
 namespace {
 
-/// Above this no motion is asked for: straight lines between samples would show.
+/// Highest frequency of a motion: above it the straight lines between samples would be visible.
 constexpr double kFrequency_hz_max = 12.0;
 
 double highest_hz(const ExcitationSettings& settings, double share) {
@@ -151,7 +151,7 @@ History sweep(const ExcitationSettings& settings, std::size_t samples, RandomStr
     const double share = static_cast<double>(i) / static_cast<double>(samples);
     const double frequency_hz = low_hz * std::exp(rate * share);
     const double phase = kTwoPi * low_hz * length_s / rate * (std::exp(rate * share) - 1.0);
-    // At constant velocity where the stroke would ask for more.
+    // At constant velocity if the stroke would require a higher one.
     motion[i] = std::min(1.0, steady_hz / frequency_hz) * std::sin(phase);
   }
   return motion;
@@ -229,10 +229,10 @@ History draw_excitation(const ExcitationSettings& settings, RandomStream& random
 
 namespace {
 
-/// A foreign effect of which a single library effect explains more is no unknown one.
+/// If one library effect explains more than this share of a foreign effect, it does not count as unknown.
 constexpr double kExplainedOfUnknownMax = 0.5;
 constexpr int kAttempts = 20;
-/// Digital stages have no noise; this stands for their rounding.
+/// Digital stages have no noise; this value represents their rounding.
 constexpr double kFloorMin = 1e-6;
 
 /// Of a recording against the true and the user's model, driven by what was measured.
@@ -259,7 +259,7 @@ Residuals residuals_of(Residual residual, const Site& site, const PlantEffects& 
     case Residual::transfer_system: return less(recording.measured_m, recording.command_m, recording.command_m);
     case Residual::specimen: break;
   }
-  // The true model knows what the displacement sensor did besides its noise.
+  // The true model contains the effects of the displacement sensor, but not its noise.
   History moved = difference(recording.measured_m, signals.read_m);
   add(moved, sampled(signals.motion.displacement_m));
   return less(recording.measured_n, moved, recording.measured_m);
@@ -273,7 +273,7 @@ double variance_removed(const Residuals& residuals) {
 PlantEffect draw_from(const std::vector<CatalogueEntry>& catalogue, const CaseSetting& setting, RandomStream& random,
                       double amount) {
   const std::vector<CatalogueEntry> entries = fitting(catalogue, setting);
-  // The network is seen by few columns; where it is, its effects get more of a share.
+  // Few recordings have the columns that show the network; in those its effects are drawn more often.
   std::vector<double> weights;
   for (const CatalogueEntry& entry : entries) weights.push_back(entry.interface == "network" ? 2.5 : 1.0);
   const CatalogueEntry& entry = entries[random.weighted(weights)];
@@ -305,7 +305,7 @@ PlantEffects draw_pair(const CaseSetting& setting, RandomStream& random) {
   return pair;
 }
 
-/// Gap that an effect alone makes, over the floor, under one excitation.
+/// Gap caused by one effect alone, over the floor, under one excitation.
 double gap_to_floor(const Site& site, const PlantEffect& effect, Residual residual, const History& sent, double floor) {
   return rms(true_gap(residual, site, run_plant(site, {effect}, sent))) / floor;
 }
@@ -319,7 +319,7 @@ std::optional<Cause> twin_of(const PlantEffect& effect) {
   return {};
 }
 
-/// Fills in where the gap is largest and how large, and the acceptable causes.
+/// Fills in the interface and size of the largest gap, and the acceptable causes.
 void judge(BlindCase& blind_case, const TrueSignals& first, const TrueSignals& held_out, RandomStream random) {
   const CaseSetting& setting = blind_case.setting;
   const Site& site = setting.site;

@@ -15,7 +15,7 @@ struct RecordedColumns {
   bool command = false;
 };
 
-/// By what an effect is scaled to a site: largest values under the first fit excitation without any effect.
+/// Scales of effects at a site: largest values under the first fit excitation without any effect.
 struct Scales {
   double displacement_m = 0.0;
   double velocity_m_per_s = 0.0;
@@ -60,7 +60,7 @@ struct Cause {
   friend bool operator==(const Cause&, const Cause&) = default;
 };
 
-/// What is sealed in the key.
+/// The sealed truth in the key.
 struct Truth {
   TruthClass kind = TruthClass::none;
   PlantEffects effects;
@@ -68,12 +68,12 @@ struct Truth {
   /// of this recording as well as the truth does. Empty for none and unknown.
   std::vector<Cause> acceptable;
   Residual residual = Residual::specimen;  // where the gap is measured
-  double gap_to_floor = 0.0;               // rms of the true gap over that of what noise leaves; first fit recording
+  double gap_to_floor = 0.0;               // rms of the true gap over the rms of the noise floor; first fit recording
   double held_out_gap_to_floor = 0.0;
   double variance_removed = 0.0;  // by the true model, of the user model's residual, held out
 };
 
-/// One case: what the diagnosis is given, and the truth.
+/// One case: the input of the diagnosis, and the truth.
 struct BlindCase {
   CaseSetting setting;
   std::vector<PlantRecording> fit;
@@ -88,12 +88,12 @@ struct BlindCase {
 /// Draws all of it; the same for the same seed and index anywhere.
 [[nodiscard]] BlindCase draw_case(std::uint64_t seed, std::uint64_t index);
 
-// Which other causes would have left the same trace in this very recording.
+// Other causes that would give the same gap in this recording.
 
 /// Where a cause shows: a displacement sensor at the transfer system when the command was recorded.
 [[nodiscard]] Residual residual_of(const std::string& interface, const RecordedColumns& columns);
 
-/// What a stage puts out with the effects less what the user's model says, without noise.
+/// Output of a stage with the effects minus that of the user's model, without noise.
 [[nodiscard]] History true_gap(Residual residual, const Site& site, const TrueSignals& signals);
 
 /// Causes of the catalogue whose signature, as large as fits best, leaves less than 0.3 of the

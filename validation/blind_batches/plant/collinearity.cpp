@@ -10,7 +10,7 @@
 namespace hybridtest::blind {
 namespace {
 
-/// As much as two signatures may differ, of the floor's rms, to count as the same.
+/// Two signatures count as equal if they differ by less than this share of the rms of the floor.
 constexpr double kSeparableShare = 0.3;
 constexpr double kProbeAmount = 0.05;
 
@@ -60,8 +60,8 @@ void strengthen(PlantEffect& effect, double factor) {
   }
 }
 
-/// What of the cause shows at the residual when the actuator is commanded, or the specimen
-/// moves, as it did.
+/// The part of the residual that the cause gives for the recorded command of the actuator, or the recorded
+/// motion of the specimen.
 History signature(const CaseSetting& setting, Residual residual, const PlantEffect& effect) {
   return true_gap(residual, setting.site, run_plant(setting.site, {effect}, setting.fit_m.front()));
 }
@@ -91,14 +91,14 @@ std::vector<CatalogueEntry> candidates(const CaseSetting& setting, Residual resi
   return entries;
 }
 
-/// The least that the cause leaves of the gap, its amount adjusted twice.
+/// The smallest gap that the cause can leave, after its amount is adjusted twice.
 double left_by(const CaseSetting& setting, Residual residual, const History& gap, PlantEffect effect, double enough) {
   double least = rms(gap);
   for (int round = 0; round < 3; ++round) {
     const Fit found = fit(gap, signature(setting, residual, effect));
     if (found.factor == 0.0 || (found.factor < 0.0 && !may_be_negative(effect))) break;
     if (round > 0 && std::abs(found.factor - 1.0) < 0.02) return std::min(least, found.left_rms);
-    // The linear fit of a small cause says whether an adjustment can help at all.
+    // The linear fit of a small cause shows whether an adjustment can help.
     if (found.left_rms > 0.5 * rms(gap) && found.left_rms > enough) break;
     if (round > 0) least = std::min(least, found.left_rms);
     strengthen(effect, found.factor);

@@ -15,7 +15,7 @@ bool actuator_is_seen(Setting s) { return s.columns.command; }
 bool has_spring(Setting s) { return s.site.specimen.kind != LawKind::none; }
 bool is_elastic(Setting s) { return s.site.specimen.kind == LawKind::elastic; }
 bool is_hysteretic(Setting s) { return has_spring(s) && !is_elastic(s); }
-/// Where nothing springs back while the play is crossed: slip or damping holds the specimen.
+/// If slip or damping holds the specimen, nothing springs back while the backlash is crossed.
 bool stays_in_play(Setting s) { return has_spring(s) ? is_hysteretic(s) : s.site.known_mass_kg == 0.0; }
 bool is_bilinear(Setting s) { return s.site.specimen.kind == LawKind::bilinear; }
 bool loads_frame(Setting s) { return actuator_is_seen(s) && has_spring(s); }

@@ -7,11 +7,11 @@
 
 namespace hybridtest::blind {
 
-/// What may be wrong at a site, and how its parameters are drawn.
+/// A possible effect at a site, and the random choice of its parameters.
 struct CatalogueEntry {
   std::string interface;
   std::string name;
-  bool (*fits)(const CaseSetting& setting);  // to this site, and seen by these columns
+  bool (*fits)(const CaseSetting& setting);  // to this site, and visible in these columns
   /// @param amount   about the share of the signal that the effect makes up.
   Parameters (*draw)(RandomStream& random, const CaseSetting& setting, double amount);
 };
@@ -20,7 +20,7 @@ struct CatalogueEntry {
 [[nodiscard]] const std::vector<CatalogueEntry>& wrong_numbers();
 /// The effects of the library, by their names there.
 [[nodiscard]] const std::vector<CatalogueEntry>& named_effects();
-/// What no library has; the names are the plant's own.
+/// Effects that are not in the library; the plant has its own names for them.
 [[nodiscard]] const std::vector<CatalogueEntry>& foreign_effects();
 
 /// Those of a catalogue that fit.

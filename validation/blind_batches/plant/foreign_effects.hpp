@@ -2,8 +2,8 @@
 
 #include "validation/blind_batches/plant/plant.hpp"
 
-/// Effects that are in no library: what a diagnosis must answer with `unknown`. On the fine grid;
-/// an effect of another stage changes nothing.
+/// Effects outside the library: a diagnosis must answer `unknown`. On the fine grid;
+/// an effect of another stage is ignored.
 namespace hybridtest::blind {
 
 void apply_foreign_to_actuator(const PlantEffect& effect, double period_s, History& displacement_m);

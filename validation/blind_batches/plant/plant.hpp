@@ -35,8 +35,8 @@ class RandomStream {
   std::mt19937_64 engine_;
 };
 
-/// Whole signals in equal intervals, and what is done to them. The plant works on histories, not
-/// sample by sample: what follows what is the order of the calls.
+/// Whole signals with equal intervals, and operations on them. The plant works on whole histories, not
+/// sample by sample: the order of the calls is the order of the stages.
 
 using History = std::vector<double>;
 
@@ -108,7 +108,7 @@ struct CompensatorModel {
   double delay_s = 0.0;
 };
 
-/// What the user believes of the site.
+/// The model of the site that the user has.
 struct Site {
   TransferModel transfer_system;
   LawModel specimen;
@@ -122,7 +122,7 @@ struct Site {
 
 using Parameters = std::map<std::string, double>;
 
-/// Something that the real site has and the user's model has not. Units are part of the names of
+/// A property of the real site that the user's model lacks. Units are part of the names of
 /// its parameters, which docs/blind_batches.md describes.
 struct PlantEffect {
   std::string interface;
@@ -134,18 +134,18 @@ struct PlantEffect {
 
 using PlantEffects = std::vector<PlantEffect>;
 
-/// What happened at the real site, without sensor noise.
+/// The true signals of the real site, without sensor noise.
 struct TrueSignals {
   History sent_m;  // at the recording's rate, as the next two
   History target_m;
   History command_m;
   MotionHistory motion;  // fine
   History force_n;       // fine
-  History read_m;        // what the sensors say, at the recording's rate
+  History read_m;        // readings of the sensors, at the recording's rate
   History read_n;
 };
 
-/// What was recorded of it.
+/// The recorded signals.
 struct PlantRecording {
   History sent_m;
   History target_m;
@@ -160,7 +160,7 @@ struct PlantRecording {
 /// Adds the sensors' noise, normal and white.
 [[nodiscard]] PlantRecording record(const Site& site, const TrueSignals& signals, RandomStream& random);
 
-/// Where the residual of a model is looked at.
+/// The output at which the residual of a model is computed.
 enum class Residual { network, compensator, transfer_system, specimen };
 
 /// A model (the user's, or one with effects) driven by given inputs of one stage.

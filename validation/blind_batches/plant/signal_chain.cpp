@@ -164,7 +164,7 @@ History rate_limited(const History& x, double period_s, double velocity_m_per_s)
 }
 
 /// Seals hold the piston after each stop until the demand is `breakaway_m` ahead; then it catches
-/// up within milliseconds and follows until the demand turns.
+/// up within milliseconds and follows until the next reversal of the demand.
 History stuck(const History& x, double period_s, double breakaway_m) {
   const double catching_up = 1.0 - std::exp(-kTwoPi * 150.0 * period_s);
   History result(x.size());
@@ -186,7 +186,7 @@ History stuck(const History& x, double period_s, double breakaway_m) {
 
 void apply(const PlantEffect& effect, double period_s, History& x) {
   if (effect.name == "delay") {
-    // Negative: the user believes in more delay than there is.
+    // Negative: the model of the user has more delay than the real site.
     x = delayed(x, effect.of("delay_s") / period_s);
   } else if (effect.name == "bandwidth") {
     if (effect.parameters.contains("true_natural_frequency_hz")) return;  // in the base itself
@@ -210,7 +210,7 @@ void apply(const PlantEffect& effect, double period_s, History& x) {
   }
 }
 
-/// The frame gives way under the specimen's force: x = piston - F(x) / k, by repeated
+/// The frame deforms under the force of the specimen: x = piston - F(x) / k, by repeated
 /// substitution, which shrinks the error by the ratio of specimen to frame stiffness each time.
 MotionHistory on_frame(const History& piston, double period_s, double frame_stiffness, const LoadOf& load) {
   MotionHistory motion = motion_of(piston, period_s);

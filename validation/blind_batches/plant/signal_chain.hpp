@@ -4,7 +4,7 @@
 
 #include "validation/blind_batches/plant/plant.hpp"
 
-/// What happens to the displacement before it reaches the actuator; at the recording's rate.
+/// The stages of the displacement before the actuator; at the rate of the recording.
 namespace hybridtest::blind {
 
 /// Sent by the coordinator -> received at the site, which holds the newest that has arrived.
@@ -24,7 +24,7 @@ using LoadOf = std::function<History(const MotionHistory&)>;
 
 /// True -> read values on the fine grid, without noise.
 /// @param interface   "force_sensor" or "displacement_sensor".
-/// @param motion      of the sensor's place: only effects that no library has look at it.
+/// @param motion      of the sensor's place: only effects outside the library use it.
 [[nodiscard]] History reading(const char* interface, const PlantEffects& effects, const MotionHistory& motion,
                               const History& truth);
 

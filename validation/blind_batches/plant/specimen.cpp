@@ -186,7 +186,7 @@ History iwan_stack(const StackParameters& stack, const History& displacement_m) 
 
 namespace {
 
-/// Way travelled, in m.
+/// Path length, in m.
 History travel(const History& x) {
   History way(x.size(), 0.0);
   for (std::size_t i = 1; i < x.size(); ++i) way[i] = way[i - 1] + std::abs(x[i] - x[i - 1]);
@@ -233,7 +233,7 @@ History spring_force(const Site& site, const PlantEffects& effects, const Motion
       deformation);
 }
 
-/// What weakens the spring's force as the test goes on, or where.
+/// Factor that reduces the force of the spring with time or with place.
 void weaken(const PlantEffect& effect, const MotionHistory& motion, History& force) {
   const History& x = motion.displacement_m;
   if (effect.name == "stiffness_degradation") {

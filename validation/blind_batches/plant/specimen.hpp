@@ -7,7 +7,7 @@ namespace hybridtest::blind {
 /// Restoring force of a law that a user can name in a model, over a whole displacement history.
 /// Written from docs/scenario.md and the literature: elastic; bilinear with kinematic hardening;
 /// Giuffre-Menegotto-Pinto (Filippou, Popov and Bertero, EERC 83-19, 1983); Bouc-Wen with n = 1,
-/// whose differential equation has a closed solution along a path that does not turn.
+/// whose differential equation has a closed solution between two reversals.
 /// Zero for none.
 /// @param yield_share   empty, or what is left of the yield force of a bilinear law at every step.
 [[nodiscard]] History law_force(const LawModel& law, const History& displacement_m, const History& yield_share = {});
@@ -37,7 +37,7 @@ struct StackParameters {
 [[nodiscard]] History iwan_stack(const StackParameters& stack, const History& displacement_m);
 
 /// True force of the specimen under a motion, fine grid, positive when it resists a positive
-/// displacement: the user's law with what the real specimen has besides.
+/// displacement: the user's law with the effects of the real specimen.
 [[nodiscard]] History specimen_force(const Site& site, const PlantEffects& effects, const MotionHistory& motion);
 
 }  // namespace hybridtest::blind

@@ -73,7 +73,7 @@ std::optional<Estimate> median(const std::vector<double>& values) {
 
 std::optional<Estimate> calibration_error(const std::vector<Forecast>& forecasts) {
   return bootstrap(forecasts.size(), [&](const std::vector<std::size_t>& drawn) {
-    std::array<double, kBins> excess{};  // probabilities less what came true, per bin
+    std::array<double, kBins> excess{};  // sum of probabilities minus number of right answers, per bin
     for (const std::size_t i : drawn) {
       const auto bin = static_cast<std::size_t>(forecasts[i].probability * static_cast<double>(kBins));
       excess[std::min(bin, kBins - 1)] += forecasts[i].probability - (forecasts[i].came_true ? 1.0 : 0.0);
@@ -196,7 +196,7 @@ std::vector<KeyCase> read_key(std::string_view text) {
 namespace {
 
 constexpr double kClearGapToFloor = 2.0;
-/// An effect that noise hides is rightly not seen.
+/// An effect below the noise floor is correctly not found.
 constexpr double kHiddenGapToFloor = 1.0;
 
 bool is_acceptable(const KeyCase& key, const AnsweredCause& cause) {
@@ -211,7 +211,7 @@ std::set<std::string> right_interfaces(const KeyCase& key) {
   std::set<std::string> interfaces;
   for (const PlantEffect& effect : key.effects) interfaces.insert(effect.interface);
   for (const Cause& cause : key.acceptable) interfaces.insert(cause.interface);
-  // Where nothing of the library acts, the place of the residual is as much as can be said.
+  // If no effect of the library acts, the right answer can only name the interface of the residual.
   if (key.truth == TruthClass::unknown) interfaces.insert(key.gap_at);
   return interfaces;
 }
@@ -238,7 +238,7 @@ bool cause_is_right(const KeyCase& key, const Answer& answer) {
   return std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is_acceptable(key, cause); });
 }
 
-/// The probability that what is named holds: of a set, that one of its members does.
+/// The probability that the named effect is right; of a set, that one of its members is.
 Forecast forecast_of(const KeyCase& key, const Answer& answer) {
   double probability = answer.causes.front().probability;
   if (answer.is_set()) {

@@ -12,12 +12,12 @@
 
 namespace hybridtest::blind {
 
-/// A figure with its 95 % interval.
+/// A result with its 95 % interval.
 struct Estimate {
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;
-  std::size_t count = 0;  // what it is made from
+  std::size_t count = 0;  // number of values
 };
 
 /// Share of successes with Wilson's score interval (J. Am. Stat. Assoc. 22, 1927). Nothing for no trials.
@@ -33,7 +33,7 @@ using Statistic = std::function<double(const std::vector<std::size_t>& drawn)>;
 [[nodiscard]] std::optional<Estimate> mean(const std::vector<double>& values);
 [[nodiscard]] std::optional<Estimate> median(const std::vector<double>& values);
 
-/// A probability that was given, and whether it came true.
+/// A given probability, and whether the answer was right.
 struct Forecast {
   double probability = 0.0;
   bool came_true = false;
@@ -54,7 +54,7 @@ struct AnsweredCause {
   std::map<std::string, AnsweredParameter> parameters;
 };
 
-/// What a scoring looks at in a diagnosis.json (hybridtest/diagnosis/1).
+/// The fields of a diagnosis.json (hybridtest/diagnosis/1) that scoring uses.
 struct Answer {
   std::string verdict;
   std::vector<AnsweredCause> causes;       // most probable first
@@ -84,7 +84,7 @@ struct KeyCase {
   double variance_removed = 0.0;
 };
 
-/// @throws std::runtime_error for what is no key.
+/// @throws std::runtime_error if the text is not a key.
 [[nodiscard]] std::vector<KeyCase> read_key(std::string_view json);
 
 struct ParameterError {
@@ -93,7 +93,7 @@ struct ParameterError {
   std::optional<bool> is_in_interval;
 };
 
-/// An answer beside the truth. What a case says nothing about is left empty.
+/// An answer compared with the truth. Fields that do not apply to a case are empty.
 struct MarkedCase {
   KeyCase key;
   Answer answer;
@@ -108,7 +108,7 @@ struct MarkedCase {
   std::optional<double> variance_short;        // true model's variance removed less the answer's, effect right
   std::vector<ParameterError> parameter_errors;
 
-  /// Twice the floor or more in the first fit recording and the held-out one; or nothing to be found.
+  /// Twice the floor or more in the first fit recording and the held-out one; or no effect is present.
   [[nodiscard]] bool is_clear() const;
   [[nodiscard]] bool is_wrong() const;
 };

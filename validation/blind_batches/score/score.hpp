@@ -13,10 +13,10 @@
 
 namespace hybridtest::blind {
 
-/// A figure of a score, and what is asked of it.
+/// One result of a score, and its target.
 struct Figure {
   std::string name;                  // words_with_underscores
-  std::optional<Estimate> estimate;  // nothing where no case says anything about it
+  std::optional<Estimate> estimate;  // empty if no case applies to it
   std::optional<double> at_least;    // targets; judged by the estimate itself
   std::optional<double> at_most;
 
@@ -32,7 +32,7 @@ struct Score {
   ConfusionMatrix confusion;                                  // of all; `hidden`: effects below the floor
   ConfusionMatrix clear_confusion;                            // at twice the floor or above
   std::vector<Figure> overall;                                // without targets
-  std::vector<Figure> clear;                                  // the figures that the targets are for
+  std::vector<Figure> clear;                                  // the results that have targets
   std::map<std::string, std::array<std::size_t, 2>> effects;  // clear ones: right, of how many
   std::vector<MarkedCase> wrong;                              // clear ones, largest gap first
 };
@@ -46,13 +46,13 @@ struct Score {
 [[nodiscard]] nlohmann::ordered_json score_json(const Score& score);
 
 struct BatchScore {
-  std::string text;  // for a person
+  std::string text;  // for the terminal
   std::string json;  // hybridtest/blind_score/1
 };
 
 /// Opens the key of a batch and scores the answers to it.
 /// @throws std::runtime_error for a key or sealed answers that have changed, and for an answer that is
-///         no diagnosis.json, by the name of its case.
+///         not a diagnosis.json; the message names the case.
 [[nodiscard]] BatchScore score_batch(const std::filesystem::path& batch, const std::filesystem::path& answers,
                                      const std::filesystem::path& key, const Digest& digest);
 
