@@ -103,9 +103,10 @@ class SafetySections {
     rule.action = static_cast<SafetyAction>(section.choice("action", kActions, kActions[fallback]) + 1);
     rule.clears = static_cast<ClearCondition>(section.choice("clears", kClears, "never"));
     if (kind == InterlockKind::not_finite && rule.action == SafetyAction::warn) {
-      section.error("action",
-                    "what is no number can be neither commanded nor sent: expected hold, ramp_to_zero or "
-                    "release");
+      section.error(
+          "action",
+          "warn is not possible here, because NaN or infinity cannot be commanded; expected hold, ramp_to_zero "
+          "or release");
     }
     if (rule.clears != ClearCondition::never && rule.action > SafetyAction::hold) {
       section.error("clears", "a site that returns or releases has left the test: expected never");

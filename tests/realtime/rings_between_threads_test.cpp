@@ -31,7 +31,7 @@ class Supply {
  public:
   /// @return whether there is a next number; `number` is then that.
   [[nodiscard]] bool next(std::int64_t& number) {
-    if (sent_ == kMost || (sent_ > 0 && Clock::now() > end_)) return false;
+    if (sent_ == kSentMax || (sent_ > 0 && Clock::now() > end_)) return false;
     number = sent_++;
     return true;
   }
@@ -39,7 +39,7 @@ class Supply {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::int64_t kMost = 50'000;
+  static constexpr std::int64_t kSentMax = 50'000;
 
   Clock::time_point end_ = Clock::now() + std::chrono::seconds{1};
   std::int64_t sent_ = 0;

@@ -32,7 +32,7 @@
 #include "compensation/two_stage_adaptive.hpp"
 #include "compensation/upper_bound_delay.hpp"
 #include "core/random.hpp"
-#include "tests/unit/compensation/allocation_count.hpp"
+#include "tests/support/allocation_count.hpp"
 
 namespace hybridtest {
 namespace {

@@ -16,7 +16,7 @@
 #include "compensation/delay_estimators/recursive_least_squares.hpp"
 #include "compensation/delay_estimators/zero_crossing_slope.hpp"
 #include "core/config_error.hpp"
-#include "tests/unit/compensation/allocation_count.hpp"
+#include "tests/support/allocation_count.hpp"
 #include "tests/unit/compensation/delayed_motion.hpp"
 
 namespace hybridtest {

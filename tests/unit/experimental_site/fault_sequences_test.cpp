@@ -128,7 +128,7 @@ class FaultSequence {
     if (status == RigStatus::fault) demand(InterlockKind::rig_status);
     const bool is_finite = feedback.displacement_m.allFinite() && feedback.force_n.allFinite();
     if (!is_finite) demand(InterlockKind::not_finite);
-    // Comparisons with what is no number are false.
+    // Comparisons with NaN are false.
     const auto is_beyond = [](double value, double limit) { return std::isfinite(value) && std::abs(value) > limit; };
     for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
       if (is_beyond(feedback.displacement_m[k], limits.displacement_m)) demand(InterlockKind::displacement);

@@ -116,7 +116,7 @@ TEST_F(LoopSectionsTest, RejectsInconsistentSettings) {
   one_error("command_age: {limit_s: 0.5, action: stop}", "ramp_to_zero");
   one_error("forse: {action: hold}", "force");
   one_error("energy_error: {action: hold}", "limit_ratio");
-  one_error("not_finite: {action: warn}", "neither commanded nor sent");
+  one_error("not_finite: {action: warn}", "NaN or infinity cannot be commanded");
   one_error("force: {clears: when_cleared}", "expected never");
   one_error("tracking_indicator: {limit_lag_sine: 1.5}", "limit_lag_sine");
   EXPECT_THAT(errors("    limits: {displacement_m: 0.2, velocity_m_per_s: 1.5}\n"), SizeIs(1)) << "no force limit";
