@@ -31,5 +31,5 @@ target_link_libraries(simulate_digest_unoptimised PRIVATE Eigen3::Eigen yaml-cpp
 target_compile_options(simulate_digest_unoptimised PRIVATE -O0 -UNDEBUG -g0)
 set_target_properties(simulate_digest_unoptimised PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
-  UNITY_BUILD ${HYBRIDTEST_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 16 UNITY_BUILD_UNIQUE_ID hybridtest_unity_id)
+  UNITY_BUILD ${HYBRIDTEST_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 4 UNITY_BUILD_UNIQUE_ID hybridtest_unity_id)
 add_dependencies(system simulate_digest simulate_digest_unoptimised)
