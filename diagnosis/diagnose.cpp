@@ -41,12 +41,12 @@ bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
 
 /// The causes of the verdict first, then the other candidates.
 std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
-                              const Judgement& judgement) {
+                              const Judgement& judgement, const PartProgress& progress) {
   std::vector<RankedCause> ranking;
   const bool has_causes = report::names_a_cause(judgement.verdict);
   std::vector<const EffectType*> listed;
   if (has_causes) {
-    const std::vector<double> shares = cause_shares(problem, selection.baseline, selection.chosen);
+    const std::vector<double> shares = cause_shares(problem, selection.baseline, selection.chosen, progress);
     for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
       RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
       cause.is_cause = true;
@@ -225,6 +225,9 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   report::DiagnosisReport& report = diagnosis.report;
   report.site = settings.site;
   report.model_file = settings.model_file;
+  report.model_part = settings.model_part;
+  report.made_at_utc = settings.made_at_utc;
+  report.made_by = settings.made_by;
   for (const Recording& recording : recordings) {
     report.recordings.push_back({recording.file, recording.sha256, recording.role,
                                  recording.sample_period_s * static_cast<double>(recording.samples),
@@ -233,6 +236,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   for (const Recording& recording : recordings) {
     if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
   }
+  const PartProgress& progress = settings.progress;
+  progress.report("recordings examined", 0, 1);
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
   std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
   // Random network faults are found by their traces only.
@@ -250,7 +255,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   std::vector<Segment> thin;
   for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
   const IdentificationProblem coarse = make_problem(model, std::move(thin));
-  const Selection selection = select_effects(problem, coarse, settings.threads, settings.progress);
+  const Selection selection =
+      select_effects(problem, coarse, settings.threads, progress.part(tuning::kPrepared, tuning::kSelected));
   Judgement judgement = judge(problem, selection);
   diagnosis.causes = causes_of(selection, judgement, traces);
   const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
@@ -267,7 +273,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
   const GapParts parts = gap_parts(problem, selection, judgement, traces);
   report.verdict = verdict_with(traces, judgement, parts);
-  report.ranking = rank(problem, selection, judgement);
+  report.ranking = rank(problem, selection, judgement, progress.part(tuning::kSelected, tuning::kRanked));
   report.where =
       locate(problem, selection.baseline,
              report::names_a_cause(judgement.verdict) ? selection.chosen : selection.baseline, settings.seed);
@@ -285,6 +291,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   }
 
   for (const Segment& segment : judged) {
+    progress.part(tuning::kRanked, 1.0).report("curves computed", report.series.size(), judged.size());
     report.series.push_back(series_of(model, segment, recordings[segment.recording], diagnosis, settings.dof));
   }
   worst_first(report.series);

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/localisation/localise.hpp"
+#include "diagnosis/progress.hpp"
 #include "diagnosis/recording.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
 #include "plant/site_model.hpp"
@@ -20,7 +20,10 @@ struct DiagnoseSettings {
   std::size_t dof = 0;      // of the recordings, 0-based
   std::string site;         // names for the report
   std::string model_file;
-  std::function<void(std::size_t done, std::size_t all)> progress;  // one call at a time, from any thread
+  std::string model_part;
+  std::string made_at_utc;  // likewise; empty: the report has no date
+  std::string made_by;
+  PartProgress progress;  // of the whole diagnosis of one degree of freedom
 };
 
 /// The times, frequencies and motions in which the gap of one interface is.

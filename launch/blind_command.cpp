@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/exit_code.hpp"
-#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "launch/commands.hpp"
 #include "scenario/scenario_digest.hpp"

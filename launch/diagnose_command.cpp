@@ -6,11 +6,13 @@
 
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
-#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/rerun.hpp"
 #include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/tuning.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
+#include "runtime/run_directory.hpp"
 
 namespace hybridtest {
 namespace {
@@ -42,7 +44,9 @@ int run_diagnosis(const DiagnoseOptions& options) {
         "--scenario: only CSV files are given; expected a run directory as --recording or --held-out, because a CSV "
         "file does not contain the commands and forces of the structure"};
   }
-  const SiteModelFile model = read_site_model(options.model, options.site);
+  std::vector<std::filesystem::path> files = options.recordings;
+  files.insert(files.end(), options.held_out.begin(), options.held_out.end());
+  const SiteModelFile model = read_model_for(files, options.model, options.site);
   std::vector<Recording> recordings;
   for (const std::filesystem::path& file : options.recordings) {
     recordings.push_back(read_recording(file, RecordingRole::fit, options.site));
@@ -53,14 +57,22 @@ int run_diagnosis(const DiagnoseOptions& options) {
   DiagnoseSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  settings.progress = show_fits;
-  SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
-  if (run) {
-    const std::filesystem::path scenario = options.scenario.empty() ? *run / "scenario.yaml" : options.scenario;
-    diagnose_structure_of(diagnosis, *run, scenario);
-    add_response(diagnosis, model, *run, options.site, scenario, show_rerun);
+  settings.made_at_utc = time_utc();
+  SiteDiagnosis diagnosis;
+  {
+    DiagnosisProgress display{stderr};
+    const PartProgress progress = display.whole();
+    settings.progress = progress.part(0.0, tuning::kSiteDiagnosed);
+    diagnosis = diagnose_site(model, recordings, settings);
+    if (run) {
+      const std::filesystem::path scenario = options.scenario.empty() ? *run / "scenario.yaml" : options.scenario;
+      diagnose_structure_of(diagnosis, *run, scenario,
+                            progress.part(tuning::kSiteDiagnosed, tuning::kStructureDiagnosed));
+      add_response(diagnosis, model, *run, options.site, scenario,
+                   progress.part(tuning::kStructureDiagnosed, tuning::kTestRerun));
+    }
+    write_diagnosis(diagnosis, model, options.out, progress.part(tuning::kTestRerun, 1.0));
   }
-  write_diagnosis(diagnosis, model, options.out);
   fmt::print("{}\n  written to {}\n", summary_of(diagnosis), options.out.string());
   return diagnosis.diagnosis.report.verdict == report::Verdict::not_excited ? kExitDataInvalid : kExitCompleted;
 }

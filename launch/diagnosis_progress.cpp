@@ -3,18 +3,42 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <sstream>
+
+#include "diagnosis/runs/diagnose_run.hpp"
+#include "runtime/run_directory.hpp"
 
 namespace hybridtest {
 
-void show_fits(std::size_t done, std::size_t all) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{} of {} effects fitted{}", done, all, done == all ? "\n" : "");
+std::string progress_line(const ProgressReport& report) {
+  const std::string count = report.all > 1 ? fmt::format(", {} of {}", report.done, report.all) : "";
+  return fmt::format("diagnosis {:3.0f} %: {}{}", 100.0 * report.share, report.stage, count);
 }
 
-void show_rerun(double done) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\rrunning the whole test again: {:3.0f} %{}", 100.0 * done, done >= 1.0 ? "\n" : "");
+DiagnosisProgress::DiagnosisProgress(std::FILE* out) : out_{out} {}
+
+DiagnosisProgress::~DiagnosisProgress() {
+  if (!shown_.empty()) fmt::print(out_, "\n");
+}
+
+PartProgress DiagnosisProgress::whole() {
+  if (isatty(fileno(out_)) == 0) return {};
+  return PartProgress{[this](const ProgressReport& report) {
+    std::string line = progress_line(report);
+    if (line == shown_) return;
+    fmt::print(out_, "\r{}\033[K", line);
+    std::fflush(out_);
+    shown_ = std::move(line);
+  }};
+}
+
+void show_diagnosis(const Scenario& scenario, const std::filesystem::path& run) {
+  std::ostringstream results;
+  {
+    DiagnosisProgress display{stderr};
+    diagnose_run(scenario, run, time_utc(), display.whole(), results);
+  }
+  fmt::print("{}", results.str());
 }
 
 }  // namespace hybridtest

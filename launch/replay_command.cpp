@@ -6,7 +6,7 @@
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "diagnosis/replay.hpp"
-#include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "launch/commands.hpp"
 #include "scenario/site_model_file.hpp"
@@ -33,7 +33,7 @@ void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
 }
 
 int replay_recording(const ReplayOptions& options) {
-  const SiteModelFile model = read_site_model(options.model, options.site);
+  const SiteModelFile model = read_model_for({&options.recording, 1}, options.model, options.site);
   const Recording recording = read_recording(options.recording, RecordingRole::held_out, options.site);
   require_match(model, {&recording, 1});
   std::vector<std::vector<ReplayedChannel>> replays;

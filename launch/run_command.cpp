@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iostream>
 
 #include "core/config_error.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
@@ -98,7 +97,7 @@ int run(RunOptions options) {
     }
   }
   const int exit_code = finish_run(options.directory, coordinator_exit);
-  if (options.diagnose) diagnose_run(scenario, options.directory, {.fits = show_fits, .rerun = show_rerun}, std::cout);
+  if (options.diagnose) show_diagnosis(scenario, options.directory);
   return exit_code;
 }
 

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <fstream>
-#include <iostream>
 #include <map>
 
 #include "core/config_error.hpp"
@@ -168,7 +167,7 @@ int simulate_scenario(SimulateOptions options) {
   }
   recording.close(result);
   const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason));
-  if (options.diagnose) diagnose_run(scenario, options.directory, {.fits = show_fits, .rerun = show_rerun}, std::cout);
+  if (options.diagnose) show_diagnosis(scenario, options.directory);
   return exit_code;
 }
 

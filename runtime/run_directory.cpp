@@ -35,6 +35,8 @@ void copy_ground_motion(const std::filesystem::path& directory, const Scenario& 
 
 }  // namespace
 
+std::string time_utc() { return utc_text("%Y-%m-%dT%H:%M:%SZ"); }
+
 std::filesystem::path default_run_directory(std::string_view test_name) {
   return std::filesystem::path{"runs"} / (std::string{test_name} + "_" + utc_text("%Y%m%dT%H%M%SZ"));
 }
@@ -70,7 +72,7 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
   header.test_name = scenario.name;
   header.scenario_digest = scenario.digest;
   header.incarnation = incarnation;
-  header.start_time_utc = utc_text("%Y-%m-%dT%H:%M:%SZ");
+  header.start_time_utc = time_utc();
   header.software_version = software_version();
   header.structure_dofs = scenario.dofs;
   for (const SubstructureScenario& substructure : scenario.substructures) {

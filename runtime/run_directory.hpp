@@ -12,6 +12,9 @@
 
 namespace hybridtest {
 
+/// The time of the wall clock: `2026-11-22T10:15:00Z`.
+[[nodiscard]] std::string time_utc();
+
 /// `runs/<test name>_<UTC time>` below the working directory.
 [[nodiscard]] std::filesystem::path default_run_directory(std::string_view test_name);
 

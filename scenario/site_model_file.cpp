@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <ranges>
 
 #include "core/config/section.hpp"
 #include "core/text/scalar.hpp"
@@ -108,32 +109,112 @@ std::string longer_by(std::span<const ListedEffect> effects, std::string text, b
 
 constexpr double kUsualControlRate_hz = 1024.0;
 
+std::string indented(std::string_view lines, std::string_view first, std::string_view others) {
+  std::string text;
+  for (const auto line : std::views::split(lines, '\n')) {
+    if (line.empty()) continue;
+    text.append(text.empty() ? first : others).append(line.begin(), line.end()) += '\n';
+  }
+  return text;
+}
+
+/// What effects add to the settings of the compensators, one per degree of freedom; those effects leave the list.
+std::vector<double> take_setting_changes(std::vector<ListedEffect>& effects, const std::vector<SiteModel>& dofs) {
+  std::vector<double> change_s(dofs.size(), 0.0);
+  std::erase_if(effects, [&](const ListedEffect& effect) {
+    const auto concerns = [&](std::size_t dof) { return !effect.dof || *effect.dof == static_cast<int>(dof); };
+    if (effect.setting.type != find_effect(EffectInterface::compensator, "setting_mismatch")) return false;
+    for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
+      if (concerns(dof) && dofs[dof].compensator_delay.most_s <= 0.0) return false;
+    }
+    for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
+      if (concerns(dof)) change_s[dof] += effect.setting.values[0];
+    }
+    return true;
+  });
+  return change_s;
+}
+
+/// The list of compensators with other settings; `none` becomes what read_compensator() makes of it.
+std::string corrected(const std::string& compensators, const std::vector<SiteModel>& dofs,
+                      const std::vector<double>& change_s) {
+  std::string list = compensators;
+  if (list.find("\n- ") == std::string::npos) {  // one for all
+    for (std::size_t dof = 1; dof < dofs.size(); ++dof) list += compensators;
+  }
+  std::vector<std::string> overrides;
+  for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
+    if (change_s[dof] == 0.0) continue;
+    const std::string entry = "compensator[" + std::to_string(dof) + "].";
+    const DelaySetting& setting = dofs[dof].compensator_delay;
+    if (setting.set_s == 0.0) overrides.push_back(entry + "type=polynomial_displacement");
+    overrides.push_back(entry + "delay_s=" + written_number(setting.set_s + change_s[dof]));
+  }
+  config::Document document = config::Document::parse("compensator:\n" + list, "compensator", overrides);
+  std::string result = written_compensators(document.root());
+  document.throw_if_errors();
+  return result;
+}
+
 }  // namespace
 
-std::string SiteModelFile::with_effects(std::span<const ListedEffect> effects) const {
-  return longer_by(effects, text, has_effects);
+SiteModelText SiteModelFile::with_effects(std::span<const ListedEffect> effects) const {
+  SiteModelText result = *this;
+  std::vector<ListedEffect> rest(effects.begin(), effects.end());
+  const std::vector<double> change_s = take_setting_changes(rest, dofs);
+  if (std::ranges::any_of(change_s, [](double change) { return change != 0.0; })) {
+    result.compensators = corrected(compensators, dofs, change_s);
+    const std::string key = "compensator:\n";
+    const auto written = [&](const std::string& list) { return key + indented(list, "  ", "  "); };
+    result.text.replace(text.find(written(compensators)), written(compensators).size(), written(result.compensators));
+  }
+  result.text = longer_by(rest, std::move(result.text), has_effects);
+  result.rig = longer_by(rest, std::move(result.rig), has_effects);
+  return result;
 }
 
-std::string SiteModelFile::rig_with_effects(std::span<const ListedEffect> effects) const {
-  return longer_by(effects, rig, has_effects);
+std::string written_compensators(Section section) {
+  std::string list;
+  if (!section.has("compensator")) return list;
+  for (const Section& entry : section.sections("compensator", true)) {
+    static_cast<void>(read_compensator(entry));
+    list += indented(entry.effective(), "- ", "  ");
+  }
+  return list;
 }
 
-SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure) {
+std::string compensators_of_site(const std::filesystem::path& scenario, std::string_view substructure) {
+  config::Document document = config::Document::load(scenario);
+  Section root = document.root();
+  const std::string list = written_compensators(site_in(root, substructure).beside);
+  document.throw_if_errors();
+  return list;
+}
+
+SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
+                              const std::string& compensators) {
   config::Document document = config::Document::load(file);
   Section root = document.root();
-  SitePlace place = site_in(root, substructure);
   const bool is_scenario = root.has("substructures");
+  const bool takes_given = !compensators.empty() && !is_scenario && !root.has("compensator");
+  if (takes_given) {
+    document = config::Document::load(file, {"compensator=\n" + compensators});
+    root = document.root();
+  }
+  SitePlace place = site_in(root, substructure);
   SiteModelFile model;
   model.file = file;
+  model.compensators_were_given = takes_given;
   if (is_scenario) {
     model.name = id_of(place.beside);
+    model.part = (place.beside.has("model") ? "the model beside the rig of " : "the rig of ") + model.name;
   } else if (place.beside.has_optional("name")) {
     model.name = place.beside.text("name");
   }
   if (place.beside.has_optional("control_rate_hz")) {
     model.control_rate_hz = place.beside.number("control_rate_hz", {.low = 1.0, .high = 20e3});
   }
-  const std::vector<CompensatorReading> compensators = read_compensators(place.beside);
+  const std::vector<CompensatorReading> readings = read_compensators(place.beside);
   if (place.rig.has("type")) static_cast<void>(place.rig.choice("type", {"simulated"}));
   const int dofs = place.dofs ? *place.dofs : count_dofs(place.rig);
   const SimulatedSiteReading site = read_simulated_site(place.rig, dofs, AbsentPart::ideal);
@@ -141,7 +222,8 @@ SiteModelFile read_site_model(const std::filesystem::path& file, std::string_vie
     place.rig.error("specimen", "a stiffness matrix couples degrees of freedom; a model of a site has a law for each");
   }
   model.dofs = site.dofs;
-  give_compensators(compensators, place.beside, model.dofs);
+  give_compensators(readings, place.beside, model.dofs);
+  model.compensators = written_compensators(place.beside);
   for (const SiteModel& dof : model.dofs) model.has_effects = model.has_effects || !dof.effects.empty();
   if (!is_scenario) {
     place.rig.finish();

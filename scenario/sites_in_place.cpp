@@ -1,5 +1,6 @@
 #include "scenario/sites_in_place.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "core/config/section.hpp"
@@ -29,6 +30,21 @@ std::optional<std::string> file_of_model(Section& substructure) {
   return substructure.text("model");
 }
 
+/// The setting of one compensator cannot be corrected by what was found beside another: it would be counted twice.
+void require_its_compensator(const SiteModelFile& model, const std::string& file, Section substructure) {
+  const EffectType* const mismatch = find_effect(EffectInterface::compensator, "setting_mismatch");
+  const bool is_corrected = std::ranges::any_of(model.dofs, [&](const SiteModel& dof) {
+    return std::ranges::find(dof.effects, mismatch, &EffectSetting::type) != dof.effects.end();
+  });
+  if (!is_corrected) return;
+  const auto or_none = [](const std::string& list) { return list.empty() ? "- type: none\n" : list; };
+  if (or_none(written_compensators(substructure)) == or_none(model.compensators)) return;
+  substructure.error("rig", file +
+                                ": the effect setting_mismatch in this file corrects the compensator that the file "
+                                "names (without the key: none), and the site has another one. Expected the same "
+                                "`compensator` in both, or a file without this effect");
+}
+
 }  // namespace
 
 std::vector<std::string> with_sites_in_place(const std::filesystem::path& scenario,
@@ -39,16 +55,21 @@ std::vector<std::string> with_sites_in_place(const std::filesystem::path& scenar
   Section root = document.root();
   if (!root.has("substructures")) return overrides;
   std::vector<std::string> in_place;
-  const auto put = [&](const std::string& path, const std::string& file) {
-    in_place.push_back(path + "=" + read_site_model(document.directory() / file).rig);
+  const auto put = [&](const std::string& path, const SiteModelFile& model) {
+    in_place.push_back(path + "=" + model.rig);
   };
   for (Section& substructure : root.sections("substructures")) {
     const std::string path = substructure.path();
     const std::optional<std::string> rig = file_of_rig(substructure);
     const std::optional<std::string> model = file_of_model(substructure);
     document.throw_if_errors();
-    if (rig) put(path + ".rig", *rig);
-    if (model) put(path + ".model", *model);
+    if (rig) {
+      const SiteModelFile site = read_site_model(document.directory() / *rig);
+      require_its_compensator(site, *rig, substructure);
+      put(path + ".rig", site);
+    }
+    if (model) put(path + ".model", read_site_model(document.directory() / *model));
+    document.throw_if_errors();
   }
   overrides.insert(overrides.end(), in_place.begin(), in_place.end());
   return overrides;

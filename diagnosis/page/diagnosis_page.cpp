@@ -7,6 +7,7 @@
 
 #include "diagnosis/page/page_parts.hpp"
 #include "diagnosis/page/wording.hpp"
+#include "report/plotting/page.hpp"
 #include "report/plotting/svg_canvas.hpp"
 
 namespace hybridtest::report {
@@ -100,12 +101,12 @@ std::string causes_part(const DiagnosisReport& report) {
   std::string html;
   if (!report.ranking.empty()) {
     html +=
-        "<h2>Effects that explain the gap</h2>\n<table "
+        "<h2>Effects that explain the gap</h2>\n<div class=\"scroll\"><table "
         "class=\"causes\"><tr><th>effect</th><th>probability</th><th>parameters (95 "
         "%)</th>"
         "<th></th></tr>\n";
     for (std::size_t i = 0; i < std::min(kRowsMax, report.ranking.size()); ++i) html += row(report.ranking[i]);
-    html += "</table>\n";
+    html += "</table></div>\n";
     if (report.ranking.size() > kRowsMax) {
       html += fmt::format("<p class=\"fine\">diagnosis.json lists {} more.</p>\n", report.ranking.size() - kRowsMax);
     }
@@ -152,13 +153,15 @@ std::string facts_part(const DiagnosisReport& report) {
   std::string html = interfaces.empty() && report.notes.empty() ? "" : "<h2>Results by interface</h2>\n";
   if (!interfaces.empty()) {
     html +=
-        "<table><tr><th>interface</th><th>gap, NRMSE</th><th>noise floor</th><th>difference between "
+        "<div class=\"scroll\"><table><tr><th>interface</th><th>gap, NRMSE</th><th>noise floor</th><th>difference "
+        "between "
         "repetitions</th><th>share of the gap</th><th>95 %</th></tr>\n" +
-        interfaces + "</table>\n";
+        interfaces + "</table></div>\n";
   }
   for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
-  html +=
-      "<h2>Model and recordings</h2>\n<p>Model: " + escaped(report.model_file) + "</p>\n<div class=\"scroll\"><table>";
+  const std::string of = report.model_part.empty() ? "" : report.model_part + ", in the scenario ";
+  html += "<h2>Model and recordings</h2>\n<p>Model: " + escaped(of + report.model_file) +
+          "</p>\n<div class=\"scroll\"><table>";
   html += "<tr><th>recording</th><th>used for</th><th>length</th><th>sample period</th><th>SHA-256</th></tr>\n";
   return html + recording_rows(report) + "</table></div>\n";
 }
@@ -259,10 +262,11 @@ std::string shrink_part(const DiagnosisReport& report) {
   if (shrink.explainable_fraction)
     html += fmt::format(", {} of what a perfect model could remove", percent(*shrink.explainable_fraction));
   html += ".</p>\n" + energy_bar(shrink);
-  html += "<table class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
+  html += "<div class=\"scroll\"><table class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
   html += before_after("at the interface, NRMSE", shrink.nrmse_before, shrink.nrmse_after);
   if (report.response_shrink) html += response_rows(*report.response_shrink);
-  html += "</table>\n<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
+  html +=
+      "</table></div>\n<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
   if (!report.response_shrink && !report.why_no_response.empty()) {
     html += " Response of the whole test not compared: " + escaped(report.why_no_response) + ".";
   }
@@ -282,13 +286,13 @@ body { font: 15px/1.45 'DejaVu Sans', Verdana, sans-serif; color: var(--ink); ba
   max-width: 1180px; margin: 24px auto; padding: 0 18px; }
 h1 { font-size: 17px; font-weight: normal; color: var(--soft); margin: 0; }
 h2 { font-size: 17px; margin: 34px 0 8px; }
-svg { width: 100%; height: auto; display: block; margin: 6px 0; }
+svg { width: 100%; display: block; margin: 6px 0; }
 small, .fine { color: var(--soft); font-size: 13px; }
 .verdict { font-size: 22px; line-height: 1.35; margin: 8px 0 20px; padding: 14px 18px; background: var(--panel);
   border-left: 6px solid var(--bad); }
 .verdict.none { border-color: var(--good); } .verdict.not_excited, .verdict.unknown { border-color: var(--orange); }
-.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(420px, 1fr)); gap: 0 20px; max-width: 1180px; }
-.pair svg:only-child { max-width: 640px; }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(560px, 100%), 1fr)); gap: 0 20px; }
+.pair > * { min-width: 0; } .pair > :only-child { max-width: 640px; }
 .chain { list-style: none; display: flex; flex-wrap: wrap; gap: 10px 20px; padding: 0; }
 .chain li { flex: 1 1 118px; max-width: 210px; position: relative; border: 1.5px solid var(--line); border-radius: 6px;
   padding: 8px 9px; display: flex; flex-direction: column; background: var(--panel); }
@@ -313,9 +317,9 @@ td small { display: block; } td .par { display: block; } td .par small { display
 .eq { font-family: 'DejaVu Sans Mono', monospace; font-size: 12px; }
 .causes { width: 100%; } .cause td { background: var(--panel); } .causes td:first-child { padding-left: 8px; }
 .prob { min-width: 100px; } .shrink { width: 100%; } .wide { width: 45%; }
-.warn, .note { color: var(--bad); } .note { font-size: 14px; }
+.warn { color: var(--bad); } .note { font-size: 14px; padding-left: 10px; border-left: 3px solid var(--line); }
 .next { padding: 10px 14px; border: 1.5px solid var(--blue); border-radius: 6px; }
-.scroll { overflow-x: auto; } code { font-size: 11.5px; overflow-wrap: anywhere; }
+code { font-size: 11.5px; overflow-wrap: anywhere; }
 @media print { .verdict, .chain li, svg { break-inside: avoid; } }
 )css";
 
@@ -324,8 +328,16 @@ std::string head(const DiagnosisReport& report) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Diagnosis: "
-      "{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-      plot::escaped(report.site), kStyle);
+      "{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
+      plot::escaped(report.site), plot::kScrollStyle, kStyle);
+}
+
+/// When and by what the page was made.
+std::string imprint(const DiagnosisReport& report) {
+  std::string text;
+  if (!report.made_at_utc.empty()) text += "made at " + report.made_at_utc;
+  if (!report.made_by.empty()) text += (text.empty() ? "made" : "") + std::string{" by hybridtest "} + report.made_by;
+  return text.empty() ? text : "<p class=\"fine\">" + plot::escaped(text) + "</p>\n";
 }
 
 }  // namespace
@@ -336,8 +348,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
              "<h1>Diagnosis of {}: where the test differs from its model, and why</h1>\n<p class=\"verdict "
              "{}\">{}</p>\n",
              plot::escaped(report.site), name_of(report.verdict), plot::escaped(verdict_sentence(report))) +
-         chain_part(report) + shrink_part(report) + causes_part(report) + curves_part(report) + location_part(report) +
-         sensors_part(report) + facts_part(report) + "</body>\n</html>\n";
+         imprint(report) + chain_part(report) + shrink_part(report) + causes_part(report) + curves_part(report) +
+         location_part(report) + sensors_part(report) + facts_part(report) + "</body>\n</html>\n";
 }
 
 }  // namespace hybridtest::report

@@ -12,6 +12,7 @@
 #include "diagnosis/tuning.hpp"
 #include "report/plotting/heat_figure.hpp"
 #include "report/plotting/line_figure.hpp"
+#include "report/plotting/page.hpp"
 #include "report/plotting/svg_canvas.hpp"
 
 namespace hybridtest::report {
@@ -139,7 +140,7 @@ std::string histories(const SeriesView& view) {
       .columns = 1,
       .panel_width = kWide,
       .panel_height = 210.0};
-  return to_svg(figure);
+  return plot::scrolling(to_svg(figure));
 }
 
 /// Force over displacement of a specimen, measured over commanded of a transfer system.
@@ -157,8 +158,9 @@ std::string loops(const SeriesView& view) {
                       {view.output_label()},
                       {measured, view.over_input(kAugmented, series.augmented, range)}});
   }
-  return to_svg(LineFigure{
-      .panels = panels, .columns = static_cast<int>(panels.size()), .panel_width = kHalfWidth, .panel_height = 360.0});
+  const std::string figure = plot::scrolling(to_svg(LineFigure{
+      .panels = panels, .columns = static_cast<int>(panels.size()), .panel_width = kHalfWidth, .panel_height = 360.0}));
+  return panels.size() > 1 ? figure : "<div class=\"pair\">" + figure + "</div>\n";
 }
 
 std::string tracking(const SeriesView& view) {
@@ -169,11 +171,11 @@ std::string tracking(const SeriesView& view) {
     line.x.push_back(static_cast<double>(i) * series.sample_period_s);
     line.y.push_back(kMillimetres * kMillimetres * indicator[i]);
   }
-  return to_svg(LineFigure{
+  return plot::scrolling(to_svg(LineFigure{
       .panels = {{"tracking indicator (it rises while the actuator lags)", {"time [s]"}, {"TI [mm²]"}, {line}}},
       .columns = 1,
       .panel_width = kWide,
-      .panel_height = 190.0});
+      .panel_height = 190.0}));
 }
 
 std::string screens_text(const SeriesView& view) {
@@ -331,7 +333,7 @@ std::string motion_map(const Localisation& where, const std::string& title) {
                           .y_edges = edges(kMillimetres * map.peak_m_per_s, map.velocity_bins),
                           .shares = {}};
   for (const GapBin& cell : map.cells) figure.shares.push_back(cell.samples > 0 ? cell.share : -1.0);
-  return to_svg(figure);
+  return plot::scrolling(to_svg(figure));
 }
 
 std::string maps(const Located& located) {
@@ -396,7 +398,7 @@ std::string location_part(const DiagnosisReport& report) {
       .panel_width = kHalfWidth,
       .panel_height = 230.0};
   return "<h2>The gap at the " + plain(view.series().interface) + " by time, frequency and motion</h2>\n" +
-         in_words(located.before) + drift_text(located.before) + to_svg(figure) + maps(located);
+         in_words(located.before) + drift_text(located.before) + plot::scrolling(to_svg(figure)) + maps(located);
 }
 
 }  // namespace hybridtest::report

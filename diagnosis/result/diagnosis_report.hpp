@@ -132,6 +132,9 @@ struct InterfaceSeries {
 struct DiagnosisReport {
   std::string site;  // name of the model, for the heading
   std::string model_file;
+  std::string model_part{};   // of a scenario as the model's file: `the rig of storey_1`; empty for a site file
+  std::string made_at_utc{};  // empty where the diagnosis must not depend on the time
+  std::string made_by{};      // version of the software
   std::vector<ReportedRecording> recordings;
   Verdict verdict = Verdict::not_excited;
   std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share

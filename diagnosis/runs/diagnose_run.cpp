@@ -11,6 +11,7 @@
 #include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/rerun.hpp"
 #include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/tuning.hpp"
 #include "runtime/run_directory.hpp"
 #include "scenario/site_model_file.hpp"
 
@@ -25,19 +26,23 @@ std::vector<const SubstructureScenario*> sites_of(const Scenario& scenario) {
   return sites;
 }
 
-void diagnose_one(const std::string& id, const std::filesystem::path& run, const std::filesystem::path& directory,
-                  const DiagnosisProgress& progress, std::ostream& out) {
+std::string diagnose_one(const std::string& id, const std::filesystem::path& run,
+                         const std::filesystem::path& directory, const std::string& made_at_utc,
+                         const PartProgress& progress) {
   SiteModelFile model = read_site_model(run / "scenario.yaml", id);
   model.name = id;
   const std::vector<Recording> recordings{read_recording(run, RecordingRole::fit, id)};
   DiagnoseSettings settings;
   settings.threads = std::max(1U, std::thread::hardware_concurrency());
-  settings.progress = progress.fits;
+  settings.made_at_utc = made_at_utc;
+  settings.progress = progress.part(0.0, tuning::kSiteDiagnosed);
   SiteDiagnosis diagnosis = diagnose_site(model, recordings, settings);
-  diagnose_structure_of(diagnosis, run, run / "scenario.yaml");
-  add_response(diagnosis, model, run, id, run / "scenario.yaml", progress.rerun);
-  write_diagnosis(diagnosis, model, directory);
-  out << "\ndiagnosis of " << id << ": " << summary_of(diagnosis) << "  written to " << directory.string() << "\n";
+  diagnose_structure_of(diagnosis, run, run / "scenario.yaml",
+                        progress.part(tuning::kSiteDiagnosed, tuning::kStructureDiagnosed));
+  add_response(diagnosis, model, run, id, run / "scenario.yaml",
+               progress.part(tuning::kStructureDiagnosed, tuning::kTestRerun));
+  write_diagnosis(diagnosis, model, directory, progress.part(tuning::kTestRerun, 1.0));
+  return "\ndiagnosis of " + id + ": " + summary_of(diagnosis) + "  written to " + directory.string() + "\n";
 }
 
 }  // namespace
@@ -53,23 +58,26 @@ void require_models(const Scenario& scenario) {
       listed(without)};
 }
 
-void diagnose_run(const Scenario& scenario, const std::filesystem::path& run, const DiagnosisProgress& progress,
-                  std::ostream& out) {
+void diagnose_run(const Scenario& scenario, const std::filesystem::path& run, const std::string& made_at_utc,
+                  const PartProgress& progress, std::ostream& out) {
   const std::vector<const SubstructureScenario*> sites = sites_of(scenario);
-  for (const SubstructureScenario* site : sites) {
-    const std::filesystem::path directory = sites.size() == 1 ? run / "diagnosis" : run / "diagnosis" / site->id;
-    if (!std::filesystem::exists(run_file(run, site->id))) {
-      out << "\n"
-          << site->id << " is not diagnosed: its recording is not in " << run.string()
-          << ". Copy it from the host of the site into this directory and use `hybridtest diagnose`\n";
+  std::string results;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const std::string& id = sites[i]->id;
+    const std::filesystem::path directory = sites.size() == 1 ? run / "diagnosis" : run / "diagnosis" / id;
+    if (!std::filesystem::exists(run_file(run, id))) {
+      results += "\n" + id + " is not diagnosed: its recording is not in " + run.string() +
+                 ". Copy it from the host of the site into this directory and use `hybridtest diagnose`\n";
       continue;
     }
     try {
-      diagnose_one(site->id, run, directory, progress, out);
+      results += diagnose_one(id, run, directory, made_at_utc, progress.round(i, sites.size()));
     } catch (const ConfigError& error) {
-      out << "\n" << site->id << " is not diagnosed: " << error.what() << "\n";
+      results += "\n" + id + " is not diagnosed: " + error.what() + "\n";
     }
   }
+  progress.report("sites diagnosed", sites.size(), sites.size());
+  out << results;
 }
 
 }  // namespace hybridtest

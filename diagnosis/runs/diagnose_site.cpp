@@ -14,6 +14,7 @@
 #include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
 #include "recording/error.hpp"
+#include "runtime/version.hpp"
 
 namespace hybridtest {
 namespace {
@@ -115,24 +116,32 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
 
 SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                             DiagnoseSettings settings) {
-  settings.site = model.name;
+  settings.site = model.name.empty() ? model.file.stem().string() : model.name;
   settings.model_file = model.file.string();
+  settings.model_part = model.part;
+  settings.made_by = software_version();
   const std::size_t dofs = model.dofs.size();
   require_match(model, recordings);
   SiteDiagnosis worst;
+  const PartProgress whole = settings.progress;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;
+    settings.progress = whole.round(dof, dofs);
     Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
     if (dofs > 1)
       diagnosis.report.notes.push_back(
           fmt::format("This diagnosis is of degree of freedom {} of {}, which has the largest gap.", dof + 1, dofs));
     if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
   }
+  if (model.compensators_were_given) {
+    worst.diagnosis.report.notes.emplace_back("The model names no compensator. That of the run was used.");
+  }
   return worst;
 }
 
 void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
-                           const std::filesystem::path& scenario) {
+                           const std::filesystem::path& scenario, const PartProgress& progress) {
+  progress.report("structure recomputed", 0, 1);
   report::DiagnosisReport& report = diagnosis.diagnosis.report;
   try {
     const StructureRecord record = structure_record(run, read_scenario(scenario, {}));
@@ -150,14 +159,16 @@ void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path
   }
 }
 
-void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
-                     const std::filesystem::path& directory) {
+void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& directory,
+                     const PartProgress& progress) {
+  progress.report("pages written", 0, 1);
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
   write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
   write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
-  write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)));
+  write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)).text);
+  progress.report("pages written", 1, 1);
 }
 
 std::string summary_of(const SiteDiagnosis& site) {

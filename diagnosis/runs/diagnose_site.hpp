@@ -26,7 +26,7 @@ struct SiteDiagnosis {
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
 /// Diagnoses every degree of freedom; returns the diagnosis with the largest gap.
-/// @param settings   its `dof`, `site` and `model_file` are filled in here.
+/// @param settings   what it says of model and version is filled in here.
 /// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                                           DiagnoseSettings settings);
@@ -36,12 +36,12 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
 /// @param scenario   of the same test: the scenario of the run, or one with the values that the user expects.
 /// @throws ConfigError for a scenario of another test.
 void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
-                           const std::filesystem::path& scenario);
+                           const std::filesystem::path& scenario, const PartProgress& progress = {});
 
 /// Writes diagnosis.json, diagnosis.html and augmented_model.yaml: the model with the causes, if there are any.
 /// @throws ConfigError when the directory cannot be written to.
-void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
-                     const std::filesystem::path& directory);
+void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& directory,
+                     const PartProgress& progress = {});
 
 /// The result as text for the terminal.
 [[nodiscard]] std::string summary_of(const SiteDiagnosis& diagnosis);

@@ -43,7 +43,7 @@ struct SimulatedTest {
   StopReason reason = StopReason::none;
 };
 
-SimulatedTest simulated_test(const Scenario& scenario, const std::function<void(double done)>& progress) {
+SimulatedTest simulated_test(const Scenario& scenario, const PartProgress& progress) {
   StepsTable steps{Coordinator::steps_layout(scenario.dofs)};
   NoRecord nothing;
   SimulationObserver observer;
@@ -52,7 +52,9 @@ SimulatedTest simulated_test(const Scenario& scenario, const std::function<void(
     return nothing;
   };
   observer.progress = [&](const CoordinatorReport& report) {
-    progress(static_cast<double>(report.completed_steps) / static_cast<double>(scenario.time.last_step + 1));
+    const auto steps_in_all = static_cast<std::size_t>(scenario.time.last_step + 1);
+    progress.report("steps of the whole test, simulated again",
+                    std::min(steps_in_all, static_cast<std::size_t>(report.completed_steps)), steps_in_all);
     return false;
   };
   // The network of `hybridtest simulate`: a lockstep test does not depend on it.
@@ -75,11 +77,15 @@ std::string longer_effects(const std::filesystem::path& file, std::span<const Ef
   return list;
 }
 
-/// The scenario with the rig of the site replaced by `rig`, effects of the structure added, and the laboratory rigs
-/// of other sites replaced by their models.
-Scenario scenario_with(const std::filesystem::path& file, const std::string& site, const std::string& rig,
+/// The scenario with compensator and rig of the site replaced by those of the model, effects of the structure added,
+/// and the laboratory rigs of other sites replaced by their models. The compensator is the model's because causes
+/// found beside it correct it.
+Scenario scenario_with(const std::filesystem::path& file, const std::string& site, const SiteModelText& model,
                        std::span<const EffectSetting> structure_causes) {
-  std::vector<std::string> overrides{"substructures[" + site + "].rig=" + rig};
+  const std::string place = "substructures[" + site + "].";
+  std::vector<std::string> overrides{
+      place + "compensator=" + (model.compensators.empty() ? "{type: none}" : "\n" + model.compensators),
+      place + "rig=" + model.rig};
   if (!structure_causes.empty()) overrides.push_back("effects=\n" + longer_effects(file, structure_causes));
   for (const SubstructureScenario& other : read_scenario(file, {}).substructures) {
     if (other.id == site || !other.site.rig_is_elsewhere) continue;
@@ -119,7 +125,7 @@ report::ResponseShrink shrink_of(const TestResponse& recorded, const TestRespons
 }  // namespace
 
 void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& run,
-                  std::string_view site, const std::filesystem::path& scenario, const RerunProgress& progress) {
+                  std::string_view site, const std::filesystem::path& scenario, const PartProgress& progress) {
   report::DiagnosisReport& report = diagnosis.diagnosis.report;
   const std::vector<ListedEffect> causes = diagnosis.listed_causes(model);
   if (causes.empty() && diagnosis.structure_causes.empty()) {
@@ -128,12 +134,11 @@ void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const st
   }
   try {
     const std::string id = site_of_run(run, site);
-    const Scenario before = scenario_with(scenario, id, model.rig, {});
-    const Scenario after = scenario_with(scenario, id, model.rig_with_effects(causes), diagnosis.structure_causes);
+    const Scenario before = scenario_with(scenario, id, model, {});
+    const Scenario after = scenario_with(scenario, id, model.with_effects(causes), diagnosis.structure_causes);
     const TestResponse recorded = recorded_response(run, before);
-    const SimulatedTest as_given = simulated_test(before, [&](double done) { progress(0.5 * done); });
-    const SimulatedTest augmented = simulated_test(after, [&](double done) { progress(0.5 + 0.5 * done); });
-    progress(1.0);
+    const SimulatedTest as_given = simulated_test(before, progress.round(0, 2));
+    const SimulatedTest augmented = simulated_test(after, progress.round(1, 2));
     note_early_end("as given", as_given, recorded, report.notes);
     note_early_end("with the causes added", augmented, recorded, report.notes);
     report.response_shrink = shrink_of(recorded, as_given.response, augmented.response);

@@ -160,6 +160,24 @@ std::string site_of_run(const std::filesystem::path& run, std::string_view site)
   return site_of(scenario, run, site).id;
 }
 
+SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings, const std::filesystem::path& model,
+                             std::string_view site) {
+  SiteModelFile given = read_site_model(model, site);
+  if (!given.compensators.empty()) return given;
+  std::optional<std::string> of_runs;
+  for (const std::filesystem::path& run : recordings) {
+    if (!std::filesystem::is_directory(run)) continue;
+    const std::string of_run = compensators_of_site(run / "scenario.yaml", site_of_run(run, site));
+    if (of_runs && *of_runs != of_run) {
+      throw ConfigError{model.string() +
+                        ": this model names no compensator, and the sites of the runs have different ones; expected "
+                        "`compensator` in the model, or runs with the same one"};
+    }
+    of_runs = of_run;
+  }
+  return of_runs && !of_runs->empty() ? read_site_model(model, site, *of_runs) : given;
+}
+
 std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
   return run_file(run, site_of_run(run, site));
 }

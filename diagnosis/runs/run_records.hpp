@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,12 +12,21 @@
 #include "diagnosis/structure/structure_diagnosis.hpp"
 #include "diagnosis/test_response.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/site_model_file.hpp"
 
 namespace hybridtest {
 
 /// The id of the requested site: `site`, or the only site of the run if `site` is empty.
 /// @throws ConfigError as raw_recording_of_run().
 [[nodiscard]] std::string site_of_run(const std::filesystem::path& run, std::string_view site);
+
+/// The model of a site, to be compared with these recordings of it. A site file that names no compensator takes that of
+/// the run directories among them: a run directory says which compensator made the recorded commands, and a diagnosis
+/// without it would find it as a cause.
+/// @param site   id of the substructure; empty where scenario and run have one site.
+/// @throws ConfigError as read_site_model() and site_of_run(), and when the compensators of the runs differ.
+[[nodiscard]] SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings,
+                                           const std::filesystem::path& model, std::string_view site);
 
 /// The run file of a site. @throws ConfigError as raw_recording_of_run().
 [[nodiscard]] std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site);

@@ -110,7 +110,7 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
 
 /// The best pair that contains one of the leading effects.
 FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                      const Selection& selection, std::size_t threads) {
+                      const Selection& selection, std::size_t threads, const PartProgress& progress) {
   const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
   FitOutcome best = first;
   double best_score = -std::numeric_limits<double>::infinity();
@@ -120,7 +120,7 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
   for (std::size_t i = 0; i < leaders; ++i) {
     if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
     const std::vector<Candidate> beside =
-        fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads);
+        fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads, progress.round(i, leaders));
     const Candidate* const second = first_that_earns(problem, selection.baseline, first, beside);
     if (second != nullptr && second->score > best_score) {
       best = second->fit;
@@ -133,21 +133,24 @@ FitOutcome best_start(const IdentificationProblem& problem, const Identification
 }  // namespace
 
 Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, std::size_t threads,
-                         const FitProgress& progress) {
+                         const PartProgress& progress) {
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
-  selection.library = fit_library(problem, coarse, threads, progress);
+  selection.library = fit_library(problem, coarse, threads, progress.part(0.0, tuning::kLibraryFitted));
   if (selection.library.empty()) return selection;
   selection.probabilities = probabilities_of(selection.library);
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
     return selection;
   }
-  selection.chosen = best_start(problem, coarse, selection, threads);
+  selection.chosen =
+      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const double total = gap_energy(problem, selection.baseline).excess();
   while (selection.chosen.effects.size() > 1 && selection.chosen.effects.size() < tuning::kEffectsMax &&
          is_more_left(gap_energy(problem, selection.chosen), total)) {
-    const std::vector<Candidate> beside = fit_beside(problem, coarse, selection.chosen.effects, threads);
+    const std::vector<Candidate> beside = fit_beside(
+        problem, coarse, selection.chosen.effects, threads,
+        progress.part(tuning::kPairsFitted, 1.0).round(selection.chosen.effects.size() - 2, tuning::kEffectsMax - 2));
     const Candidate* const next = first_that_earns(problem, selection.baseline, selection.chosen, beside);
     if (next == nullptr) break;
     selection.chosen = next->fit;
@@ -159,12 +162,13 @@ namespace {
 
 /// Gap explained by the effects whose bits are set.
 std::vector<double> explained_by_subset(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                        const FitOutcome& chosen) {
+                                        const FitOutcome& chosen, const PartProgress& progress) {
   const std::size_t subsets = std::size_t{1} << chosen.effects.size();
   const double total = gap_energy(problem, baseline).total;
   std::vector<double> explained(subsets, 0.0);
   explained.back() = std::max(0.0, total - gap_energy(problem, chosen).total);
   for (std::size_t subset = 1; subset + 1 < subsets; ++subset) {
+    progress.report("combinations of the causes", subset - 1, subsets - 2);
     std::vector<EffectSetting> effects;
     for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
       if ((subset >> i & 1U) != 0) effects.push_back(chosen.effects[i]);
@@ -179,11 +183,11 @@ double factorial(int n) { return std::tgamma(n + 1.0); }
 }  // namespace
 
 std::vector<double> cause_shares(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                 const FitOutcome& chosen) {
+                                 const FitOutcome& chosen, const PartProgress& progress) {
   const auto n = static_cast<int>(chosen.effects.size());
   std::vector<double> shares(chosen.effects.size(), 1.0 / std::max(1, n));
   if (n < 2) return shares;
-  const std::vector<double> explained = explained_by_subset(problem, baseline, chosen);
+  const std::vector<double> explained = explained_by_subset(problem, baseline, chosen, progress);
   if (explained.back() <= 0.0) return shares;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     double value = 0.0;

@@ -22,12 +22,12 @@ struct Selection {
 /// remaining gap on held-out blocks.
 /// @param coarse   the same problem at a lower rate, for the searches.
 [[nodiscard]] Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                       std::size_t threads, const FitProgress& progress);
+                                       std::size_t threads, const PartProgress& progress);
 
 /// What each of several effects contributes to the gap that they explain together (Shapley, 1953): its
 /// gain on held-out blocks, averaged over all orders in which they can be added. Adds up to one.
 [[nodiscard]] std::vector<double> cause_shares(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                               const FitOutcome& chosen);
+                                               const FitOutcome& chosen, const PartProgress& progress);
 
 /// The verdict on a gap.
 struct Judgement {

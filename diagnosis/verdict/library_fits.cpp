@@ -142,17 +142,27 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
   std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
   std::mutex mutex;
+  progress(0, count);
   const auto run = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       work(i);
       const std::scoped_lock lock{mutex};
-      if (progress) progress(++done, count);
+      progress(++done, count);
     }
   };
   std::vector<std::jthread> others;
   for (std::size_t i = 1; i < std::min(threads, count); ++i) others.emplace_back(run);
   run();
 }
+
+namespace {
+
+/// Counts the fits of a stage.
+FitProgress counted(const PartProgress& progress, std::string_view stage) {
+  return [progress, stage](std::size_t done, std::size_t all) { progress.report(stage, done, all); };
+}
+
+}  // namespace
 
 std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem) {
   std::vector<const EffectType*> effects;
@@ -165,13 +175,13 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
 }
 
 std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                   std::size_t threads, const FitProgress& progress) {
+                                   std::size_t threads, const PartProgress& progress) {
   const std::vector<const EffectType*> effects = judged_effects(problem);
   const double nuisance_score = held_out_score(coarse, fit_nothing(coarse, true));
   std::vector<std::optional<Candidate>> fitted(effects.size());
   for_each_in_parallel(
       effects.size(), threads, [&](std::size_t i) { fitted[i] = fit_one(coarse, *effects[i], nuisance_score); },
-      progress);
+      counted(progress.part(0.0, tuning::kLibrarySearched), "effects fitted one by one"));
   std::vector<Candidate> candidates = best_first(std::move(fitted));
   if (candidates.empty()) return candidates;
   // The coarse record has fewer samples: scores are compared with those of the full one relative to no effect.
@@ -179,20 +189,24 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
       held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
   const double best = candidates.front().score;
   std::vector<std::optional<Candidate>> refined(candidates.size());
-  for_each_in_parallel(candidates.size(), threads, [&](std::size_t i) {
-    const Candidate& found = candidates[i];
-    if (found.score > best - tuning::kFarBehind) {
-      refined[i] = refine(problem, found);
-    } else {
-      refined[i] = found;
-      refined[i]->score += offset;
-    }
-  });
+  for_each_in_parallel(
+      candidates.size(), threads,
+      [&](std::size_t i) {
+        const Candidate& found = candidates[i];
+        if (found.score > best - tuning::kFarBehind) {
+          refined[i] = refine(problem, found);
+        } else {
+          refined[i] = found;
+          refined[i]->score += offset;
+        }
+      },
+      counted(progress.part(tuning::kLibrarySearched, 1.0), "effects fitted at the full rate"));
   return best_first(std::move(refined));
 }
 
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                  const std::vector<EffectSetting>& base, std::size_t threads) {
+                                  const std::vector<EffectSetting>& base, std::size_t threads,
+                                  const PartProgress& progress) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
     return std::ranges::any_of(base, [&](const EffectSetting& setting) { return setting.type == effect; });
@@ -201,35 +215,44 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   extended.model.effects.insert(extended.model.effects.end(), base.begin(), base.end());
   for (FitSegment& fit : extended.segments) fit.baseline = predict(coarse, fit, base);
   std::vector<std::optional<Candidate>> screened(effects.size());
-  for_each_in_parallel(effects.size(), threads, [&](std::size_t i) {
-    try {
-      Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
-      candidate.score = held_out_score(extended, candidate.fit);
-      screened[i] = std::move(candidate);
-    } catch (const ConfigError&) {
-      screened[i].reset();
-    }
-  });
+  for_each_in_parallel(
+      effects.size(), threads,
+      [&](std::size_t i) {
+        try {
+          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
+          candidate.score = held_out_score(extended, candidate.fit);
+          screened[i] = std::move(candidate);
+        } catch (const ConfigError&) {
+          screened[i].reset();
+        }
+      },
+      counted(progress.part(0.0, tuning::kPairsScreened), "further effects screened"));
   std::vector<Candidate> promising = best_first(std::move(screened));
   std::size_t position = 0;
   std::erase_if(promising, [&](const Candidate& candidate) {
     return position++ >= tuning::kRefittedPairs && !is_model_number(problem, *candidate.type);
   });
   std::vector<std::optional<Candidate>> together(promising.size());
-  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
-    std::vector<EffectSetting> start = base;
-    start.push_back(promising[i].fit.effects.front());
-    together[i] = fit_together(coarse, promising[i].type, start, search_effects);
-  });
+  for_each_in_parallel(
+      promising.size(), threads,
+      [&](std::size_t i) {
+        std::vector<EffectSetting> start = base;
+        start.push_back(promising[i].fit.effects.front());
+        together[i] = fit_together(coarse, promising[i].type, start, search_effects);
+      },
+      counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));
   // Candidates with a much lower score on the coarse record are dropped.
   promising = best_first(std::move(together));
   std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
     return candidate.score < best - tuning::kFarBehind;
   });
   std::vector<std::optional<Candidate>> refitted(promising.size());
-  for_each_in_parallel(promising.size(), threads, [&](std::size_t i) {
-    refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
-  });
+  for_each_in_parallel(
+      promising.size(), threads,
+      [&](std::size_t i) {
+        refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
+      },
+      counted(progress.part(tuning::kPairsSearched, 1.0), "effects fitted together at the full rate"));
   return best_first(std::move(refitted));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/progress.hpp"
 
 namespace hybridtest {
 
@@ -39,7 +40,7 @@ using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 
 /// Runs `work(i)` for every i below `count` on `threads` threads; the result does not depend on the threads.
 void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
-                          const FitProgress& progress = {});
+                          const FitProgress& progress);
 
 /// The effects that a diagnosis can judge on these segments.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
@@ -49,7 +50,7 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
                                                  const IdentificationProblem& coarse, std::size_t threads,
-                                                 const FitProgress& progress);
+                                                 const PartProgress& progress);
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
 /// on `coarse` with `base` as it is; the most promising ones, and the numbers of the model that may be wrong, are
@@ -57,6 +58,7 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
-                                                const std::vector<EffectSetting>& base, std::size_t threads);
+                                                const std::vector<EffectSetting>& base, std::size_t threads,
+                                                const PartProgress& progress);
 
 }  // namespace hybridtest

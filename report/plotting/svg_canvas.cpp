@@ -17,7 +17,7 @@ std::string attributes(const Stroke& stroke) {
 
 SvgCanvas::SvgCanvas(double width, double height)
     : head_{fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:g} {1:g}" width="{0:g}" )"
-                        R"(height="{1:g}" font-family="DejaVu Sans, Verdana, sans-serif">)"
+                        R"(height="{1:g}" style="min-width:{0:g}px" font-family="DejaVu Sans, Verdana, sans-serif">)"
                         "\n"
                         R"(<rect width="{0:g}" height="{1:g}" fill="#fff"/>)"
                         "\n",

@@ -34,7 +34,8 @@ struct Box {
   [[nodiscard]] double bottom() const noexcept { return top + height; }
 };
 
-/// A self-contained SVG drawing: no style sheet, no script, white background.
+/// A self-contained SVG drawing: no style sheet, no script, white background. A page may enlarge it, but not shrink it:
+/// its labels would become too small to read.
 class SvgCanvas {
  public:
   SvgCanvas(double width, double height);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -70,6 +71,11 @@ class DiagnosisLoop : public testing::Test {
     return nlohmann::json::parse(file);
   }
 
+  [[nodiscard]] std::string page_of(const std::string& run) const {
+    std::ifstream file{directory_ / run / "diagnosis" / "diagnosis.html"};
+    return {std::istreambuf_iterator<char>{file}, std::istreambuf_iterator<char>{}};
+  }
+
   TemporaryDirectory directory_;
 };
 
@@ -77,12 +83,24 @@ TEST_F(DiagnosisLoop, AddedEffectsCloseTheGap) {
   const Scenario real =
       simulate("real", {in_rig(kModel + kNoise + kFriction), "substructures[storey_1].model={" + kModel + "}"});
   std::ostringstream said;
-  diagnose_run(real, directory_ / "real", {}, said);
+  std::vector<ProgressReport> reports;
+  const auto progress = [&](const ProgressReport& report) { reports.push_back(report); };
+  diagnose_run(real, directory_ / "real", "2026-11-22T10:00:00Z", PartProgress{progress}, said);
   const std::filesystem::path diagnosis = directory_ / "real" / "diagnosis";
   ASSERT_TRUE(std::filesystem::exists(diagnosis / "augmented_model.yaml")) << said.str();
   EXPECT_TRUE(std::filesystem::exists(diagnosis / "diagnosis.json"));
   EXPECT_TRUE(std::filesystem::exists(diagnosis / "diagnosis.html"));
   EXPECT_THAT(said.str(), testing::HasSubstr("specimen: coulomb_friction"));
+
+  EXPECT_TRUE(std::ranges::is_sorted(reports, {}, &ProgressReport::share));
+  EXPECT_EQ(reports.front().share, 0.0);
+  EXPECT_EQ(reports.back().share, 1.0);
+  for (const char* stage : {"effects fitted one by one", "structure recomputed",
+                            "steps of the whole test, simulated again", "pages written", "sites diagnosed"}) {
+    EXPECT_TRUE(std::ranges::find(reports, stage, &ProgressReport::stage) != reports.end()) << stage;
+  }
+  EXPECT_THAT(page_of("real"), testing::HasSubstr("2026-11-22T10:00:00Z"));
+  EXPECT_THAT(page_of("real"), testing::HasSubstr("Model: the model beside the rig of storey_1, in the scenario"));
 
   simulate("model", {in_rig(kModel)});
   simulate("augmented", {in_rig("model: " + (diagnosis / "augmented_model.yaml").string())});
@@ -100,6 +118,67 @@ TEST_F(DiagnosisLoop, AddedEffectsCloseTheGap) {
   EXPECT_LT(response.at("peak_error_after"), 0.01 * response.at("peak_error_before").get<double>()) << response;
   EXPECT_GT(response.at("energy_error_before"), 0.02) << response;
   EXPECT_LT(response.at("energy_error_after"), 0.01 * response.at("energy_error_before").get<double>()) << response;
+}
+
+/// What `hybridtest diagnose --model MODEL --recording real` finds.
+SiteDiagnosis diagnosed(const std::filesystem::path& run, const std::filesystem::path& model_file) {
+  const SiteModelFile model = read_model_for({&run, 1}, model_file, {});
+  const std::vector<Recording> recordings{read_recording(run, RecordingRole::fit)};
+  SiteDiagnosis diagnosis = diagnose_site(model, recordings, {});
+  add_response(diagnosis, model, run, {}, run / "scenario.yaml", {});
+  return diagnosis;
+}
+
+TEST_F(DiagnosisLoop, ModelWithoutCompensatorTakesThatOfTheRun) {
+  simulate("real", {in_rig(kModel + kNoise + kFriction)});
+  std::ofstream{directory_ / "model.yaml"} << "rig: {type: simulated, " << kModel << "}\n";
+  const report::DiagnosisReport report = diagnosed(directory_ / "real", directory_ / "model.yaml").diagnosis.report;
+  ASSERT_TRUE(report::names_a_cause(report.verdict));
+  for (const report::RankedCause& cause : report.ranking) {
+    EXPECT_EQ(cause.is_cause, cause.effect == "coulomb_friction") << cause.effect;
+  }
+  EXPECT_EQ(report.site, "model") << "the name of the file, which gives no other";
+  EXPECT_THAT(report.notes, testing::Contains("The model names no compensator. That of the run was used."));
+  EXPECT_GT(report.interface_shrink.value().variance_removed, 0.99);
+  const report::ResponseShrink response = report.response_shrink.value();
+  EXPECT_GT(response.nrmse_before, 0.05);
+  EXPECT_LT(response.nrmse_after, 0.01 * response.nrmse_before);
+}
+
+TEST_F(DiagnosisLoop, CompletedModelHasEachCompensatorOnce) {
+  simulate("real", {in_rig(kModel + kNoise)});
+  for (const std::string compensator : {"{type: none}", "{type: polynomial_displacement, order: 3, delay_s: 0.018}"}) {
+    std::ofstream{directory_ / "model.yaml"} << "compensator: " << compensator << "\nrig: {type: simulated, " << kModel
+                                             << "}\n";
+    const SiteDiagnosis diagnosis = diagnosed(directory_ / "real", directory_ / "model.yaml");
+    const report::DiagnosisReport& report = diagnosis.diagnosis.report;
+    ASSERT_FALSE(report.ranking.empty());
+    EXPECT_EQ(report.ranking.front().effect, "setting_mismatch");
+    EXPECT_GT(report.interface_shrink.value().variance_removed, 0.99);
+    const report::ResponseShrink response = report.response_shrink.value();
+    EXPECT_GT(response.nrmse_before, 0.05) << compensator;
+    EXPECT_LT(response.nrmse_after, 0.01 * response.nrmse_before) << compensator;
+
+    // The completed model in the scenario of the run, whose site has the right compensator already.
+    write_diagnosis(diagnosis, read_site_model(directory_ / "model.yaml"), directory_ / "diagnosis");
+    const std::filesystem::path augmented = directory_ / "diagnosis" / "augmented_model.yaml";
+    simulate("augmented", {in_rig("model: " + augmented.string())});
+    EXPECT_LT(gap("augmented"), 0.01 * response.nrmse_before) << compensator;
+    const std::vector<SiteModel> dofs = read_site_model(augmented).dofs;
+    EXPECT_NEAR(dofs[0].compensator_delay.set_s, 0.023, 1e-4);
+    EXPECT_TRUE(dofs[0].effects.empty());
+  }
+}
+
+TEST_F(DiagnosisLoop, RunsWithTwoCompensatorsNeedOneInTheModel) {
+  simulate("real", {in_rig(kModel)});
+  simulate("other", {in_rig(kModel), "substructures[storey_1].compensator.delay_s=0.02"});
+  std::ofstream{directory_ / "model.yaml"} << "rig: {type: simulated, " << kModel << "}\n";
+  const std::vector<std::filesystem::path> runs{directory_ / "real", directory_ / "other"};
+  EXPECT_THAT([&] { static_cast<void>(read_model_for(runs, directory_ / "model.yaml", {})); },
+              testing::ThrowsMessage<ConfigError>(testing::HasSubstr("this model names no compensator")));
+  std::ofstream{directory_ / "model.yaml"} << "compensator: {type: none}\nrig: {type: simulated, " << kModel << "}\n";
+  EXPECT_EQ(read_model_for(runs, directory_ / "model.yaml", {}).compensators, "- type: none\n");
 }
 
 TEST_F(DiagnosisLoop, RecomputedCommandsAreBitIdentical) {
@@ -132,7 +211,7 @@ TEST_F(DiagnosisLoop, NamesWrongMassAndClosesTheTestGap) {
   EXPECT_GT(report.where.front().nrmse, 0.05);
 
   const SiteModelFile model = read_site_model(directory_ / "real" / "scenario.yaml", "storey_1");
-  add_response(diagnosis, model, directory_ / "real", "storey_1", taken, [](double) {});
+  add_response(diagnosis, model, directory_ / "real", "storey_1", taken, {});
   ASSERT_TRUE(report.response_shrink.has_value()) << report.why_no_response;
   EXPECT_GT(report.response_shrink->nrmse_before, 0.05);
   // The same test; only the last digits of the mass differ.
@@ -157,16 +236,16 @@ TEST_F(DiagnosisLoop, TestWithoutSimulationHasNoResponse) {
   diagnosis.diagnosis.causes = {{find_effect(EffectInterface::specimen, "viscous_damping"), {6000.0}}};
   std::filesystem::remove(directory_ / "real" / "coordinator.h5");
   const SiteModelFile model = read_site_model(scenario, "storey_1");
-  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, [](double) {});
+  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, {});
   EXPECT_FALSE(diagnosis.diagnosis.report.response_shrink.has_value());
   EXPECT_THAT(diagnosis.diagnosis.report.why_no_response, testing::HasSubstr("the recorded response cannot be read"));
 
   std::filesystem::remove(scenario);
-  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, [](double) {});
+  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, {});
   EXPECT_THAT(diagnosis.diagnosis.report.why_no_response, testing::HasSubstr("the test cannot be simulated"));
 
   diagnosis.diagnosis.causes.clear();
-  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, [](double) {});
+  add_response(diagnosis, model, directory_ / "real", "storey_1", scenario, {});
   EXPECT_EQ(diagnosis.diagnosis.report.why_no_response, "nothing was added to the model");
 }
 
@@ -184,7 +263,7 @@ TEST_F(DiagnosisLoop, SkipsSiteRecordedOnAnotherHost) {
   const Scenario scenario = shipped_scenario("two_storey_one_site", {});
   prepare_run_directory(directory_ / "empty", scenario);
   std::ostringstream said;
-  diagnose_run(scenario, directory_ / "empty", {}, said);
+  diagnose_run(scenario, directory_ / "empty", {}, {}, said);
   EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its recording is not in"));
 }
 

@@ -154,6 +154,43 @@ TEST(Diagnose, ForceAloneIsNotSufficient) {
   EXPECT_EQ(diagnosis_of(recording).report.verdict, Verdict::not_excited);
 }
 
+TEST(Diagnose, ReportsProgressOfEveryStage) {
+  const Recording recording = made_recording(made_motion_m, [](double t) {
+    return 1.2 * spring_n(t) + (made_motion_m(t + 1e-4) > made_motion_m(t) ? 3000.0 : -3000.0);
+  });
+  for (const std::size_t threads : {1U, 2U}) {
+    std::vector<ProgressReport> reports;
+    DiagnoseSettings settings;
+    settings.threads = threads;
+    settings.progress = PartProgress{[&](const ProgressReport& report) { reports.push_back(report); }};
+    EXPECT_GT(diagnose(made_model(), {&recording, 1}, settings).causes.size(), 1U);
+    ASSERT_FALSE(reports.empty());
+    EXPECT_EQ(reports.front().share, 0.0);
+    EXPECT_LE(reports.back().share, 1.0);
+    EXPECT_TRUE(std::ranges::is_sorted(reports, {}, &ProgressReport::share));
+    std::vector<std::string_view> stages;
+    for (const ProgressReport& report : reports) {
+      EXPECT_LE(report.done, report.all) << report.stage;
+      if (std::ranges::find(stages, report.stage) == stages.end()) stages.push_back(report.stage);
+    }
+    EXPECT_THAT(stages, testing::ElementsAre("recordings examined", "effects fitted one by one",
+                                             "effects fitted at the full rate", "further effects screened",
+                                             "effects searched together", "effects fitted together at the full rate",
+                                             "combinations of the causes", "curves computed"));
+  }
+}
+
+TEST(PartProgress, SharesOfPartsLieInTheWhole) {
+  double share = -1.0;
+  const PartProgress whole{[&](const ProgressReport& report) { share = report.share; }};
+  whole.part(0.2, 0.6).round(1, 2).report("fits", 1, 4);
+  EXPECT_DOUBLE_EQ(share, 0.45);
+  whole.part(0.2, 0.6).report("fits", 0, 0);  // nothing to do is done
+  EXPECT_DOUBLE_EQ(share, 0.6);
+  PartProgress{}.round(0, 2).report("fits", 1, 1);  // to nobody
+  EXPECT_DOUBLE_EQ(share, 0.6);
+}
+
 TEST(Diagnose, ResultIsIndependentOfThreadCount) {
   const Recording recording = made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); });
   EXPECT_EQ(diagnosis_json(diagnosis_of(recording, 1)), diagnosis_json(diagnosis_of(recording, 2)));

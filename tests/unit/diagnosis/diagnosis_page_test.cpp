@@ -132,6 +132,43 @@ TEST(DiagnosisPage, ShowsSensorFactsAndRepeatability) {
   EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("Sensor checks")));
 }
 
+TEST(DiagnosisPage, NamesDateVersionAndPartOfTheScenario) {
+  DiagnosisReport report = example();
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("<p>Model: site.yaml</p>"));
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("made at")));
+  report.made_at_utc = "2026-11-22T10:00:00Z";
+  report.made_by = "0.1.0 (commit 1a2b3c4d5e6f)";
+  report.model_file = "run/scenario.yaml";
+  report.model_part = "the model beside the rig of storey_1";
+  const std::string page = diagnosis_page(report);
+  EXPECT_THAT(page, HasSubstr("made at 2026-11-22T10:00:00Z by hybridtest 0.1.0 (commit 1a2b3c4d5e6f)"));
+  EXPECT_THAT(page, HasSubstr("Model: the model beside the rig of storey_1, in the scenario run/scenario.yaml"));
+}
+
+/// Red is for what is wrong. Most notes are not: "agree bit for bit".
+TEST(DiagnosisPage, NotesAreNotRed) {
+  const std::string page = diagnosis_page(example());
+  const std::size_t rule = page.find(".note {");
+  ASSERT_NE(rule, std::string::npos);
+  EXPECT_THAT(page.substr(rule, page.find('}', rule) - rule), Not(HasSubstr("--bad")));
+  EXPECT_THAT(page, Not(HasSubstr(".warn, .note")));
+}
+
+/// Every figure and every table is in a box that scrolls, so that a telephone shows them at their size.
+TEST(DiagnosisPage, FiguresAndTablesScrollInTheirOwnBox) {
+  const std::string page = diagnosis_page(example());
+  std::size_t boxes = 0;
+  for (const std::string what : {"<svg", "<table"}) {
+    for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1), ++boxes) {
+      const std::size_t box = page.rfind("<div class=\"scroll\">", at);
+      ASSERT_NE(box, std::string::npos);
+      EXPECT_LT(at - box, std::string{"<div class=\"scroll\">\n<svg"}.size()) << page.substr(at, 80);
+    }
+  }
+  EXPECT_GT(boxes, 8U);
+  EXPECT_THAT(page, HasSubstr(".scroll { overflow-x: auto;"));
+}
+
 TEST(DiagnosisPage, EscapesUserText) {
   const std::string page = diagnosis_page(example());
   EXPECT_THAT(page, HasSubstr("storey &lt;1&gt;"));

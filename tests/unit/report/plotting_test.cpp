@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <regex>
 
 #include "report/plotting/axis.hpp"
 #include "report/plotting/dot_figure.hpp"
@@ -85,6 +86,30 @@ TEST(Page, IsSelfContainedAndEscapesText) {
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("href=")));
+}
+
+/// On a telephone a figure scrolls in its own box at its natural size: all its labels have at least 10 px.
+TEST(Page, FiguresAreNotMadeSmallerThanTheirLabelsAllow) {
+  const LineFigure figure{.panels = {{.title = "t", .x = {"x"}, .y = {"y"}, .lines = {{"a", {0, 1}, {0, 1}}}}},
+                          .columns = 1,
+                          .panel_width = 900.0};
+  const std::string page = html_page("title", "lead", {{"h", "t", to_svg(figure)}});
+  EXPECT_THAT(page, HasSubstr("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"));
+  EXPECT_THAT(page, HasSubstr("<div class=\"scroll\">\n<svg"));
+  EXPECT_THAT(page, HasSubstr("style=\"min-width:900px\""));
+  EXPECT_THAT(page, HasSubstr(".scroll { overflow-x: auto;"));
+  const std::regex size{"font-size=\"([0-9.]+)\""};
+  int labels = 0;
+  for (std::sregex_iterator at{page.begin(), page.end(), size}, end; at != end; ++at, ++labels) {
+    EXPECT_GE(std::stod((*at)[1]), 10.0);
+  }
+  EXPECT_GT(labels, 5);
+}
+
+TEST(Page, TableHasItsRowsInOrder) {
+  EXPECT_EQ(html_table({"method", "error"}, {{"<a>", "1"}, {"b", "2"}}),
+            "<table>\n<tr><th>method</th><th>error</th></tr>\n<tr><td>&lt;a&gt;</td><td>1</td></tr>\n"
+            "<tr><td>b</td><td>2</td></tr>\n</table>\n");
 }
 
 }  // namespace

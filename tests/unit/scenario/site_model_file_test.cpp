@@ -46,6 +46,64 @@ TEST_F(SiteFile, OmitsIdealParts) {
   EXPECT_FALSE(site.dofs[0].make_compensator);
 }
 
+TEST_F(SiteFile, GivenCompensatorsReplaceMissingOnesOnly) {
+  const std::string given = "- type: none\n";
+  const auto read_with = [&](const std::string& text) {
+    std::ofstream{directory_ / "site.yaml"} << text;
+    return read_site_model(directory_ / "site.yaml", {}, given);
+  };
+  const std::string parts = "specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n";
+  for (const std::string& text : {parts, std::string{"rig: {specimen: {type: elastic, stiffness_n_per_m: 4.0e6}}\n"}}) {
+    const SiteModelFile site = read_with(text);
+    EXPECT_EQ(site.compensators, given);
+    EXPECT_TRUE(site.compensators_were_given);
+    EXPECT_TRUE(site.dofs[0].make_compensator);
+    EXPECT_EQ(read(site.text).compensators, given) << site.text;
+  }
+  const SiteModelFile own = read_with("compensator: {type: newmark_kinematics, delay_s: 0.01}\n" + parts);
+  EXPECT_THAT(own.compensators, testing::StartsWith("- type: newmark_kinematics\n  delay_s: 0.01\n"));
+  EXPECT_FALSE(own.compensators_were_given);
+  EXPECT_EQ(read(own.text).compensators, own.compensators);
+}
+
+/// A completed model has one compensator with the right setting, and not a wrong one with a correction.
+TEST_F(SiteFile, WrongSettingIsCorrectedInTheCompensator) {
+  const std::vector<ListedEffect> causes{
+      {{find_effect(EffectInterface::compensator, "setting_mismatch"), {0.0125}}, {}},
+      {{find_effect(EffectInterface::compensator, "bias"), {1.0e-3}}, {}}};
+  for (const std::string& parts : {std::string{"specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n"},
+                                   std::string{"rig: {specimen: {type: elastic, stiffness_n_per_m: 4.0e6}}\n"}}) {
+    const SiteModelFile set = read("compensator: {type: newmark_kinematics, delay_s: 0.0105}\n" + parts);
+    const SiteModelFile corrected = read(set.with_effects(causes).text);
+    EXPECT_EQ(corrected.compensators, set.with_effects(causes).compensators);
+    EXPECT_EQ(corrected.dofs[0].compensator_delay.set_s, 0.0105 + 0.0125);
+    EXPECT_EQ(setting_change_s(corrected.dofs[0]), 0.0);
+    ASSERT_EQ(corrected.dofs[0].effects.size(), 1U) << corrected.text;
+    EXPECT_EQ(corrected.dofs[0].effects[0].type->name, "bias");
+
+    const SiteModelFile none = read(read("compensator: {type: none}\n" + parts).with_effects(causes).text);
+    EXPECT_THAT(none.compensators, testing::HasSubstr("polynomial_displacement"));
+    EXPECT_EQ(none.dofs[0].compensator_delay.set_s, 0.0125);
+
+    // Without a setting that could be changed, the effect stays an effect.
+    for (const std::string beside : {"", "compensator: {type: adaptive_time_series}\n"}) {
+      const SiteModelFile other = read(beside + parts);
+      EXPECT_EQ(other.with_effects(causes).compensators, other.compensators);
+      EXPECT_EQ(read(other.with_effects(causes).text).dofs[0].effects.size(), 2U);
+    }
+  }
+}
+
+TEST_F(SiteFile, WrongSettingIsCorrectedAtItsDegreeOfFreedom) {
+  const SiteModelFile site = read(
+      "compensator: {type: newmark_kinematics, delay_s: 0.01}\n"
+      "specimen: [{type: elastic, stiffness_n_per_m: 1.0}, {type: elastic, stiffness_n_per_m: 2.0}]\n");
+  const ListedEffect cause{{find_effect(EffectInterface::compensator, "setting_mismatch"), {0.005}}, 1};
+  const SiteModelFile corrected = read(site.with_effects({&cause, 1}).text);
+  EXPECT_EQ(corrected.dofs[0].compensator_delay.set_s, 0.01);
+  EXPECT_EQ(corrected.dofs[1].compensator_delay.set_s, 0.015);
+}
+
 TEST_F(SiteFile, IsTheSameAtTopUnderRigAndInScenario) {
   const std::string parts =
       "transfer_system: {type: delay, delay_s: 0.002}\n"
@@ -63,6 +121,7 @@ TEST_F(SiteFile, IsTheSameAtTopUnderRigAndInScenario) {
   }
   const SiteModelFile site = read(kScenarioText);
   EXPECT_EQ(site.name, "storey_1");
+  EXPECT_EQ(site.part, "the rig of storey_1");
   EXPECT_EQ(site.dofs[0].noise.force_noise_n, 50.0);
   EXPECT_EQ(read(site.text).text, site.text);
   EXPECT_EQ(read(site.text).dofs[0].removable_delay_s, 0.004);
@@ -96,11 +155,11 @@ TEST_F(SiteFile, AddedEffectsFollowExistingOnes) {
     const SiteModelFile site = read(text);
     const std::vector<ListedEffect> more{{{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, -4.0}}, 0},
                                          {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, std::nullopt}};
-    const SiteModelFile longer = read(site.with_effects(more));
+    const SiteModelFile longer = read(site.with_effects(more).text);
     ASSERT_EQ(longer.dofs[0].effects.size(), site.dofs[0].effects.size() + 2);
     const double bias_n = site.dofs[0].effects.empty() ? 0.0 : 1.0;
     EXPECT_DOUBLE_EQ(force_at(longer.dofs[0], {.displacement_m = 1.0}), 1.5 * (6.0 + bias_n));
-    EXPECT_EQ(longer.with_effects({}), longer.text);
+    EXPECT_EQ(longer.with_effects({}).text, longer.text);
   }
 }
 

@@ -63,6 +63,22 @@ TEST_F(SitesInPlace, DiagnosisReadsModelBesideRig) {
   }
 }
 
+/// The site's compensator is 23 ms; a correction found beside another one would be counted in addition.
+TEST_F(SitesInPlace, CorrectionNeedsTheCompensatorItWasFoundBeside) {
+  const std::string correction =
+      "effects: [{interface: compensator, effect: setting_mismatch, delay_error_s: 0.002}]\n";
+  const auto refused = [&](const std::string& file) {
+    write_site(file);
+    return testing::Value(file_.errors(kScenarioText, {kRigOfFile}),
+                          testing::Contains(HasSubstr("corrects the compensator that the file names")));
+  };
+  EXPECT_TRUE(refused(correction));
+  EXPECT_TRUE(refused("compensator: {type: polynomial_displacement, order: 3, delay_s: 0.01}\n" + correction));
+  EXPECT_FALSE(refused("compensator: {type: polynomial_displacement, delay_s: 0.01}\n"));
+  const std::string own = compensators_of_site(file_.directory() / "scenario.yaml", "storey_1");
+  EXPECT_FALSE(refused("compensator:\n" + own + correction));
+}
+
 TEST_F(SitesInPlace, ReportsErrorsWithTheirPlace) {
   write_site("specimen: {type: elastic, stiffness_n_per_m: -1}\n");
   EXPECT_THAT(file_.errors(kScenarioText, {kRigOfFile}), testing::Contains(HasSubstr("site.yaml:1")));
