@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "validation/studies/founding_study/findings.hpp"
+#include "validation/studies/founding_study/founding_report.hpp"
 
 namespace hybridtest::founding {
 namespace {
@@ -66,6 +67,24 @@ TEST_F(FoundingStudy, EveryCompensatedTestIsCompleted) {
     const bool is_expected_to = run.name != "uncompensated";
     EXPECT_EQ(run.reason == StopReason::completed, is_expected_to) << run.name << ": " << run.interlock;
   }
+}
+
+TEST_F(FoundingStudy, PageRanksMethodsByTheirError) {
+  const std::vector<std::size_t> order = best_first(runs_);
+  ASSERT_EQ(order.size(), runs_.size() - 1);
+  EXPECT_EQ(runs_[order.back()].name, "uncompensated") << "the only one that is not completed";
+  for (std::size_t i = 1; i + 1 < order.size(); ++i) {
+    EXPECT_LE(worst_rms(runs_[order[i - 1]].name), worst_rms(runs_[order[i]].name));
+  }
+  const std::string page = page_html(runs_);
+  std::size_t place = page.find("Methods, best first");
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::string row = "<td>" + std::to_string(i + 1) + ". " + runs_[order[i]].name + "</td>";
+    const std::size_t found = page.find(row, place);
+    ASSERT_NE(found, std::string::npos) << row;
+    place = found;
+  }
+  EXPECT_NE(page.find("Errors over time", place), std::string::npos);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hybridtest::founding {
 namespace {
@@ -19,8 +20,6 @@ double peak_force_n(const MethodRun& run) {
   for (const auto& force_n : run.force_n) peak = std::max(peak, largest(force_n));
   return peak;
 }
-
-double worst_rms(const Distance& distance) { return std::ranges::max(distance.rms_percent); }
 
 bool grows(const std::array<double, 4>& quarters) {
   return std::ranges::adjacent_find(quarters, std::greater_equal{}) == quarters.end();
@@ -63,6 +62,18 @@ Distance distance_of(const MethodRun& run, const MethodRun& exact) {
   return distance;
 }
 
+double worst_rms_percent(const Distance& distance) { return std::ranges::max(distance.rms_percent); }
+
+std::vector<std::size_t> best_first(std::span<const MethodRun> runs) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 1; i < runs.size(); ++i) order.push_back(i);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) {
+    const Distance distance = distance_of(runs[i], runs[0]);
+    return distance.is_complete ? std::pair{0, worst_rms_percent(distance)} : std::pair{1, -distance.lasted_s};
+  });
+  return order;
+}
+
 std::array<double, 4> error_by_quarters_m(const MethodRun& run, const MethodRun& exact, std::size_t floor) {
   std::array<double, 4> quarters{};
   const std::size_t count = std::min(run.displacement_m[floor].size(), exact.displacement_m[floor].size());
@@ -88,7 +99,7 @@ std::vector<Finding> find(std::span<const MethodRun> runs) {
   const Distance& corrected = of("force_correction");
 
   const auto quarters = error_by_quarters_m(runs[1], exact, 1);
-  const double closest_of_study = std::max(worst_rms(displacement), worst_rms(newmark));
+  const double closest_of_study = std::max(worst_rms_percent(displacement), worst_rms_percent(newmark));
   return {
       {"Without compensation the delay acts as negative damping: the motion grows until an interlock ends the test",
        fmt::format(
@@ -99,21 +110,21 @@ std::vector<Finding> find(std::span<const MethodRun> runs) {
            uncompensated.energy_error_j < 0.0},
       {"Of the four methods of the study, extrapolation of the displacement and Newmark kinematics have the smallest "
        "errors",
-       fmt::format("{:.2f} and {:.2f} % against {:.2f} and {:.2f} %", worst_rms(displacement), worst_rms(newmark),
-                   worst_rms(force), worst_rms(quadratic)),
-       displacement.is_complete && newmark.is_complete && closest_of_study < worst_rms(force) &&
-           closest_of_study < worst_rms(quadratic)},
+       fmt::format("{:.2f} and {:.2f} % against {:.2f} and {:.2f} %", worst_rms_percent(displacement),
+                   worst_rms_percent(newmark), worst_rms_percent(force), worst_rms_percent(quadratic)),
+       displacement.is_complete && newmark.is_complete && closest_of_study < worst_rms_percent(force) &&
+           closest_of_study < worst_rms_percent(quadratic)},
       {"Extrapolation of the force has larger errors than extrapolation of the displacement",
-       fmt::format("{:.2f} against {:.2f} %", worst_rms(force), worst_rms(displacement)),
-       worst_rms(force) > 2.0 * worst_rms(displacement)},
+       fmt::format("{:.2f} against {:.2f} %", worst_rms_percent(force), worst_rms_percent(displacement)),
+       worst_rms_percent(force) > 2.0 * worst_rms_percent(displacement)},
       {"Quadratic force correction jumps",
        fmt::format("{} jumps, the largest {:.0f} % of the peak force in one control period", quadratic.jumps,
                    quadratic.largest_change_percent),
        quadratic.jumps > 0},
       {"Our force correction does not jump, and the method becomes usable",
        fmt::format("{} jumps, largest change {:.2f} %; {:.2f} % error against {:.2f} %", corrected.jumps,
-                   corrected.largest_change_percent, worst_rms(corrected), worst_rms(quadratic)),
-       corrected.is_complete && corrected.jumps == 0 && worst_rms(corrected) < worst_rms(quadratic)},
+                   corrected.largest_change_percent, worst_rms_percent(corrected), worst_rms_percent(quadratic)),
+       corrected.is_complete && corrected.jumps == 0 && worst_rms_percent(corrected) < worst_rms_percent(quadratic)},
   };
 }
 

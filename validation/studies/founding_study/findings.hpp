@@ -28,6 +28,14 @@ struct Distance {
 /// @param exact   of the same scenario; complete.
 [[nodiscard]] Distance distance_of(const MethodRun& run, const MethodRun& exact);
 
+/// The larger of the errors of the floors, root mean square [%].
+[[nodiscard]] double worst_rms_percent(const Distance& distance);
+
+/// Positions of the compared methods in `runs`, best first: completed tests by worst_rms_percent(), then the others,
+/// the longest first.
+/// @param runs   as from run_founding_study(); the exact specimen, which is first, is left out.
+[[nodiscard]] std::vector<std::size_t> best_first(std::span<const MethodRun> runs);
+
 /// Largest errors of the floors in each quarter of the test of a method [m]; they show growth.
 [[nodiscard]] std::array<double, 4> error_by_quarters_m(const MethodRun& run, const MethodRun& exact,
                                                         std::size_t floor);

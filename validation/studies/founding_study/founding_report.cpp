@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <string_view>
 
 #include "report/plotting/line_figure.hpp"
 #include "report/plotting/page.hpp"
 
 namespace hybridtest::founding {
 namespace {
+
+constexpr std::string_view kOurs = "force_correction";
 
 std::vector<double> scaled(std::span<const double> values, double factor) {
   std::vector<double> result(values.begin(), values.end());
@@ -32,6 +36,56 @@ std::string method_figure(const MethodRun& run, const MethodRun& exact) {
     figure.panels.push_back(std::move(panel));
   }
   return to_svg(figure);
+}
+
+/// Largest errors are kept over this time, so that a curve shows the size of an oscillating error.
+constexpr double kEnvelope_s = 1.0;
+
+/// Largest |error| of the last second, over the exact peak of the floor [%].
+plot::Line error_line(const MethodRun& run, const MethodRun& exact, std::size_t floor) {
+  const auto& wanted = exact.displacement_m[floor];
+  double peak_m = 0.0;
+  for (const double value : wanted) peak_m = std::max(peak_m, std::abs(value));
+  plot::Line line{.name = run.name, .x = run.time_s, .y = {}, .is_emphasised = run.name == kOurs};
+  std::deque<std::size_t> largest;  // of the samples within the time, the largest first, each later than the one before
+  const auto error_m = [&](std::size_t i) { return std::abs(run.displacement_m[floor][i] - wanted[i]); };
+  line.x.resize(std::min(run.time_s.size(), wanted.size()));
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    while (!largest.empty() && error_m(largest.back()) <= error_m(i)) largest.pop_back();
+    largest.push_back(i);
+    while (run.time_s[i] - run.time_s[largest.front()] > kEnvelope_s) largest.pop_front();
+    line.y.push_back(100.0 * error_m(largest.front()) / peak_m);
+  }
+  return line;
+}
+
+/// The errors of all methods on one logarithmic scale.
+std::string error_figure(std::span<const MethodRun> runs) {
+  plot::LineFigure figure{.panels = {}, .columns = 1, .panel_width = 1200.0, .panel_height = 300.0};
+  for (std::size_t floor = kFloors; floor-- > 0;) {
+    plot::Panel panel{
+        .title = fmt::format("floor {}: largest error within {:g} s, over the exact peak", floor + 1, kEnvelope_s),
+        .x = {.label = "time [s]", .is_logarithmic = false, .low = 0.0, .high = runs[0].time_s.back()},
+        .y = {.label = "error [%]", .is_logarithmic = true, .low = 0.01, .high = 200.0},
+        .lines = {}};
+    for (const std::size_t i : best_first(runs)) panel.lines.push_back(error_line(runs[i], runs[0], floor));
+    figure.panels.push_back(std::move(panel));
+  }
+  return to_svg(figure);
+}
+
+std::string ranking_table(std::span<const MethodRun> runs) {
+  std::vector<std::vector<std::string>> rows;
+  for (const std::size_t i : best_first(runs)) {
+    const Distance d = distance_of(runs[i], runs[0]);
+    rows.push_back({fmt::format("{}. {}", rows.size() + 1, d.name), fmt::format("{:.2f}", worst_rms_percent(d)),
+                    fmt::format("{:.2f}", d.rms_percent[0]), fmt::format("{:.2f}", d.rms_percent[1]),
+                    fmt::format("{:.2f}", std::ranges::max(d.peak_percent)), std::to_string(d.jumps),
+                    d.is_complete ? "completed" : fmt::format("ended after {:.2f} s", d.lasted_s), kMethods[i].figure});
+  }
+  return plot::html_table({"method", "rms error [%]", "floor 1 [%]", "floor 2 [%]", "largest error [%]",
+                           "jumps of force", "test", "in the study"},
+                          rows);
 }
 
 const MethodRun& run_named(std::span<const MethodRun> runs, std::string_view name) {
@@ -125,8 +179,15 @@ std::string summary_markdown(std::span<const MethodRun> runs) {
 }
 
 std::string page_html(std::span<const MethodRun> runs) {
-  std::vector<plot::PageSection> sections;
-  for (std::size_t i = 1; i < runs.size(); ++i) {
+  std::vector<plot::PageSection> sections{
+      {"Methods, best first",
+       "Errors of the displacement until the test ended: root mean square over that of the exact displacement, the "
+       "largest over the exact peak. Methods are sorted by the larger rms error of the two floors; tests that ended "
+       "early come last.",
+       ranking_table(runs)},
+      {"Errors over time", "All methods on one scale. A factor of ten has the same height everywhere.",
+       error_figure(runs)}};
+  for (const std::size_t i : best_first(runs)) {
     const Distance d = distance_of(runs[i], runs[0]);
     sections.push_back(
         {fmt::format("{} ({})", runs[i].name, kMethods[i].figure),
@@ -140,7 +201,8 @@ std::string page_html(std::span<const MethodRun> runs) {
        "The figure shows the force that the integrator received, in each control period.",
        jump_figure(runs)});
   return plot::html_page("The founding study's figures 9 to 13",
-                         "Displacement of each method and of the exact specimen; two-storey test with two actuators.",
+                         "Four published methods of delay compensation, one of ours, and no compensation, against the "
+                         "exact specimen; two-storey test with two actuators.",
                          sections);
 }
 

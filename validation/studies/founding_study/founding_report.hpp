@@ -11,7 +11,8 @@ namespace hybridtest::founding {
 [[nodiscard]] std::string table_csv(std::span<const MethodRun> runs);
 /// `summary.md`: the findings and the table.
 [[nodiscard]] std::string summary_markdown(std::span<const MethodRun> runs);
-/// `plots.html`: displacement against exact, one figure per method as in the study, and the forces near a jump.
+/// `plots.html`: the methods ranked by their error, error curves, displacement against exact, one figure per method as
+/// in the study, and the forces near a jump.
 [[nodiscard]] std::string page_html(std::span<const MethodRun> runs);
 
 }  // namespace hybridtest::founding
