@@ -27,7 +27,7 @@ std::string hexadecimal_sha256(std::string_view text) {
   return digits;
 }
 
-/// BATCH/ is BATCH.
+/// `BATCH/` means `BATCH`.
 fs::path without_slash(const fs::path& directory) {
   return directory.has_filename() ? directory : directory.parent_path();
 }
@@ -104,7 +104,7 @@ CLI::App* add(CLI::App& commands, const char* name, const char* what, const std:
     action = [options, act] {
       try {
         return act(*options);
-      } catch (const std::runtime_error& error) {  // a batch, key or answer was changed after it was made
+      } catch (const std::runtime_error& error) {  // a batch, key or answer that changed or cannot be read
         fmt::print(stderr, "{}\n", error.what());
         return kExitDataInvalid;
       }

@@ -15,7 +15,7 @@ namespace {
 struct Linearisation {
   Eigen::MatrixXd columns;        // change of the prediction per searched, linear, nuisance parameter
   std::vector<std::size_t> free;  // of them, those not held at a bound
-  // Positions in `columns` of what a block can be held out from: an instant lies in one block alone.
+  // Positions in `columns` of the parameters that can be fitted without a block; an instant lies in one block only.
   std::vector<Eigen::Index> held_out_with;
 };
 
@@ -151,7 +151,7 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
   return result;
 }
 
-/// Of segments that the effects leave alone: the baseline's residual.
+/// For segments that the effects do not change: the residual of the baseline.
 SegmentResult untouched(const FitSegment& fit) {
   SegmentResult result;
   const Eigen::VectorXd residual = fit.measured - fit.baseline;

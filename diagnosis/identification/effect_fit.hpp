@@ -36,8 +36,8 @@ struct FitOutcome {
 /// least squares (variable projection; Golub and Pereyra, 1973), the others by a bounded
 /// trust-region search (Ceres) from the best of several starts. Deterministic.
 ///
-/// Held-out blocks: the fit's linearisation gives what each block's residual is when that block is left
-/// out, exact where parameters are linear.
+/// Held-out blocks: the residual of each block when it is not fitted is computed from the linearised fit. This is exact
+/// for linear parameters.
 /// @param with_nuisance   leave the segments' slightly wrong model parameters free as well.
 [[nodiscard]] FitOutcome fit_effects(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects, bool with_nuisance);

@@ -178,7 +178,7 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
     if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
   }
   if (segment.is_smoothed) {
-    // Together with the steps of its converter.
+    // Smoothing removes the steps of the converter too.
     const EffectType* const steps = find_effect(EffectInterface::force_sensor, DigitTrace::rounding);
     std::erase_if(extended.effects, [steps](const EffectSetting& effect) { return effect.type == steps; });
   }

@@ -231,7 +231,7 @@ Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
   const Eigen::VectorXd right = measured_ - base;
   result.coefficients = bounded_least_squares(result.columns, right, bounds, result.held);
   result.residual = right - result.columns * result.coefficients;
-  // An effect by itself is linear in what it says it is; several may not be together.
+  // One effect is linear in its linear parameters; several effects together may not be.
   return linear > 0 && plan_.neutral.size() > 1 ? relinearised(places, std::move(result), bounds) : result;
 }
 

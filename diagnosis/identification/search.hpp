@@ -81,8 +81,8 @@ class VariableProjection {
   [[nodiscard]] Eigen::Index rows() const noexcept { return first_rows_.back(); }
 
  private:
-  /// For effects that are not linear together, as a force gain behind a friction or a play that the force opens:
-  /// Gauss-Newton steps from a solution that took them to be, the residual that of their prediction.
+  /// For effects that are not linear together, for example the gain of a load cell and friction: Gauss-Newton steps
+  /// that start from the linear solution. The residual is that of the actual prediction.
   [[nodiscard]] Projected relinearised(const Eigen::VectorXd& places, Projected solution,
                                        const std::vector<Bounds>& bounds) const;
   [[nodiscard]] std::vector<EffectSetting> searched_at(const Eigen::VectorXd& places) const;

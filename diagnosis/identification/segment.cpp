@@ -179,7 +179,7 @@ bool is_modelled(const SiteModel& model, const Segment& segment) {
 
 namespace {
 
-/// Of inertia and damping only, of all that a model has in addition to its law.
+/// Whether the model has inertia or damping in addition to its law.
 bool follows_derivatives(const SiteModel& model) {
   return std::ranges::any_of(model.effects, [](const EffectSetting& effect) {
     return effect.type->interface == EffectInterface::specimen && effect.type->traits.follows_derivatives;

@@ -21,11 +21,11 @@ struct Segment {
   EffectInterface interface {};  // to which a gap here is attributed until an effect shows another one
   std::size_t recording = 0;     // position in the list that was given
   double period_s = 0.0;
-  std::vector<Motion> input;     // quiet motion of `from`, one per sample
+  std::vector<Motion> input;     // motion of `from` without its noise, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
-  double input_step = 0.0;       // of the converter that it came through [m]; 0: none seen
+  double input_step = 0.0;       // of the converter of the sensor [m]; 0: none found
   std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
@@ -34,10 +34,10 @@ struct Segment {
   // Samples at both ends where the motion is not known well enough to judge; their prediction is set to the measured
   // value.
   std::size_t unjudged = 0;
-  // Standard deviation of the noise of `measured`, and over how many samples it is one and the same.
+  // Standard deviation of the noise of `measured`, and number of neighbouring samples that share the same noise.
   double measured_noise = 0.0;
   double noise_span = 1.0;
-  // Standard deviation of what a coarse converter adds to `measured`; it need not be white. 0: none seen.
+  // Standard deviation of the error of a coarse converter in `measured`, which may be correlated. 0: none found.
   double step_noise = 0.0;
 
   /// An effect at that interface changes what this segment predicts.
@@ -47,9 +47,9 @@ struct Segment {
 /// All segments of the chain that one degree of freedom of a recording contains.
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
-/// The specimen's segment with force and motion smoothed by the same weights (FlatSmoother), the motion's
-/// derivatives taken over the narrowest window before: what smoothing takes off a force that is linear in the motion it
-/// takes off the prediction as well.
+/// The specimen's segment with force and motion smoothed by the same weights (FlatSmoother). The derivatives of the
+/// motion are computed before, over the narrowest window. If the force is linear in the motion, smoothing changes force
+/// and prediction equally.
 /// @param deviation   of the weights, in samples.
 [[nodiscard]] Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation);
 
@@ -67,9 +67,9 @@ struct Segment {
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
 
-/// Standard deviation of what noise of the input, and smoothing against it, make of the prediction; 0 where the input
-/// is exact. What smoothing takes off the motion shows in the change that half the window makes, beyond that window's
-/// own noise.
+/// Standard deviation of the error of the prediction due to noise of the input and due to smoothing; 0 if the input is
+/// exact. The error due to smoothing is estimated from the change of the prediction with half the window, minus the
+/// noise of that window.
 /// @param root_mean_square   of a prediction: per sample, or after averaging.
 [[nodiscard]] double input_floor(const SiteModel& model, const Segment& segment,
                                  const std::function<double(std::span<const double>)>& root_mean_square);
@@ -77,10 +77,10 @@ struct Segment {
 /// Standard deviation per sample of the residual of a correct model, from noise in both channels.
 [[nodiscard]] double noise_floor(const SiteModel& model, const Segment& segment);
 
-/// The segments of one degree of freedom that a model says something of, along the chain. Where it says that the force
-/// follows velocity or acceleration, which no displacement sensor measures well, force and motion are smoothed alike
-/// (smoothed_alike()), as far as brings the prediction nearest to the force as recorded: less drowns the derivatives in
-/// noise, more takes their peaks.
+/// The segments of one degree of freedom that a model predicts, along the chain. If the modelled force depends on
+/// velocity or acceleration, which displacement sensors measure badly, force and motion are smoothed equally
+/// (smoothed_alike()). The deviation is chosen so that the prediction is nearest to the recorded force: less smoothing
+/// leaves noise in the derivatives, more smoothing reduces their peaks.
 [[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
                                                      std::size_t dof, std::size_t position);
 

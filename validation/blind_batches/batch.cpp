@@ -161,7 +161,10 @@ auto from_json(const fs::path& path, Take take) {
   try {
     return take(Json::parse(text));
   } catch (const Json::exception& error) {
-    refuse(path, std::string{"is not what was written there: "} + error.what());
+    refuse(path,
+           std::string{
+               "cannot be read as JSON with the expected keys; expected the file as `hybridtest blind` wrote it: "} +
+               error.what());
   }
 }
 
@@ -175,7 +178,7 @@ std::string read_whole_file(const fs::path& path) {
   std::ifstream file{path, std::ios::binary};
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file) refuse(path, "cannot be read");
+  if (!file) refuse(path, "cannot be read; expected a file that exists and may be read");
   return std::move(text).str();
 }
 
@@ -187,7 +190,8 @@ std::vector<CaseFiles> open_batch(const fs::path& batch, const Digest& digest) {
       files.name = entry.at("case").get<std::string>();
       for (const auto& [name, hash] : entry.at("files").items()) {
         const fs::path path = batch / files.name / name;
-        if (digest_of(path, digest) != hash.get<std::string>()) refuse(path, "has changed since the batch was made");
+        if (digest_of(path, digest) != hash.get<std::string>())
+          refuse(path, "has changed since the batch was made; expected the original file. Make the batch again");
         if (name == "site.yaml") files.site = path;
         if (name == "held_out.csv") files.held_out = path;
         if (name.starts_with("fit_")) files.fit.push_back(path);
@@ -213,7 +217,8 @@ std::size_t seal_answers(const fs::path& batch, const fs::path& answers, const D
   std::ofstream file{answers / "answers.json", std::ios::binary};
   file << seal.dump(1) << '\n';
   file.close();
-  if (!file) refuse(answers / "answers.json", "could not be written");
+  if (!file)
+    refuse(answers / "answers.json", "cannot be written; check the permissions and the free space of the folder");
   return seal["answers"].size();
 }
 
@@ -221,7 +226,9 @@ std::string open_key(const fs::path& batch, const fs::path& key, const Digest& d
   std::string text = read_whole_file(key);
   const auto named =
       from_json(batch / "batch.json", [](const Json& json) { return json.at("key_sha256").get<std::string>(); });
-  if (digest(text) != named) refuse(key, "is not the key of " + batch.string() + ", or was changed");
+  if (digest(text) != named)
+    refuse(key, "is not the key of the batch " + batch.string() +
+                    ", or has changed; expected the key that was made with it");
   return text;
 }
 
@@ -236,14 +243,17 @@ GivenAnswers open_answers(const fs::path& batch, const fs::path& answers, const 
   if (!fs::exists(seal)) return given;
   from_json(seal, [&](const Json& json) {
     if (json.at("batch_sha256") != digest_of(batch / "batch.json", digest)) {
-      refuse(seal, "seals answers to another batch than " + batch.string());
+      refuse(seal, "belongs to another batch than " + batch.string() + "; expected the answers to this batch");
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto hash = json.at("answers").find(names[i]);
       const bool was_sealed = hash != json.at("answers").end();
       const bool is_same = was_sealed == given.texts[i].has_value() &&
                            (!was_sealed || hash->get<std::string>() == digest(*given.texts[i]));
-      if (!is_same) refuse(answer_file(answers, names[i]), "has changed since the answers were sealed");
+      if (!is_same)
+        refuse(answer_file(answers, names[i]),
+               "has changed since the answers were sealed; expected the sealed file. Delete the folder of the "
+               "answers and run the batch again");
     }
     return true;
   });
@@ -259,7 +269,9 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file{path, std::ios::binary};
   file << text;
   file.close();
-  if (!file) throw std::runtime_error{path.string() + ": could not be written"};
+  if (!file)
+    throw std::runtime_error{path.string() +
+                             ": cannot be written; check the permissions and the free space of the folder"};
 }
 
 struct CaseEntries {
@@ -292,10 +304,13 @@ CaseEntries write_case(const MakeSettings& settings, std::size_t index, const Di
 
 void make_batch(const MakeSettings& settings, const Digest& digest, const ForEach& for_each) {
   if (std::filesystem::exists(settings.directory) && !std::filesystem::is_empty(settings.directory)) {
-    throw std::runtime_error{settings.directory.string() + ": is not empty; a batch gets a directory of its own"};
+    throw std::runtime_error{settings.directory.string() +
+                             ": this directory is not empty; expected a new or empty directory"};
   }
   if (std::filesystem::exists(settings.key)) {
-    throw std::runtime_error{settings.key.string() + ": is there already; keys are not written over"};
+    throw std::runtime_error{
+        settings.key.string() +
+        ": this key exists; expected the name of a new file, because an existing key is never replaced"};
   }
   std::filesystem::create_directories(settings.directory);
   Json batch{{"schema", "hybridtest/blind_batch/1"}};

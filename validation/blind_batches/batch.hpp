@@ -23,8 +23,8 @@ using Digest = std::function<std::string(std::string_view)>;
 /// The user's model; depends on the site alone.
 [[nodiscard]] std::string site_yaml(const Site& site);
 
-/// Header of names and units, one row per sample, every number equally wide, so that a file's size tells
-/// nothing but its length.
+/// Header of names and units, one row per sample. All numbers have the same width, so that the size of a file
+/// shows nothing but its length.
 [[nodiscard]] std::string recording_csv(const PlantRecording& recording, const RecordedColumns& columns,
                                         double rate_hz);
 
@@ -41,19 +41,19 @@ struct CaseFiles {
   std::filesystem::path held_out;
 };
 
-/// The whole of a file. @throws std::runtime_error where it cannot be read.
+/// The text of a file. @throws std::runtime_error if it cannot be read.
 [[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
 
 /// The cases of a batch, after its files were checked against batch.json. The key is not needed.
 /// @throws std::runtime_error for a batch that is incomplete or changed.
 [[nodiscard]] std::vector<CaseFiles> open_batch(const std::filesystem::path& batch, const Digest& digest);
 
-/// Writes ANSWERS/answers.json: the SHA-256 of each answer that is there, and of the batch.
+/// Writes ANSWERS/answers.json: the SHA-256 of each existing answer, and of the batch.
 /// @returns the number of answers.
 std::size_t seal_answers(const std::filesystem::path& batch, const std::filesystem::path& answers,
                          const Digest& digest);
 
-/// The text of a batch's key. @throws std::runtime_error when it is not the one whose hash the batch names.
+/// The text of a batch's key. @throws std::runtime_error if its hash differs from that in batch.json.
 [[nodiscard]] std::string open_key(const std::filesystem::path& batch, const std::filesystem::path& key,
                                    const Digest& digest);
 
@@ -77,9 +77,9 @@ struct MakeSettings {
 /// Calls one(0) … one(count - 1), each once, in any order, on any threads; throws what one of them throws.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& one)>;
 
-/// Writes a batch and, apart from it, its key. The batch names the SHA-256 of each of its files
-/// and of the key; the seed is in the key alone.
-/// @throws std::runtime_error when the directory holds something already or cannot be written.
+/// Writes a batch and, in a separate file, its key. batch.json contains the SHA-256 of each file of the batch and of
+/// the key. Only the key contains the seed.
+/// @throws std::runtime_error if the directory is not empty or cannot be written.
 void make_batch(const MakeSettings& settings, const Digest& digest, const ForEach& for_each);
 
 /// Diagnoses a case and writes diagnosis.json and other files into a directory. Throws on failure.
@@ -90,7 +90,7 @@ struct RunOutcome {
   std::vector<std::string> failures;  // "case_0007: …"
 };
 
-/// Diagnoses every case of a batch that ANSWERS does not answer yet, then seals the answers. A
+/// Diagnoses every case of a batch that has no answer in ANSWERS yet, then seals the answers. A
 /// case that fails has no answer, which is scored as a wrong one; the other cases continue. No key is needed.
 /// @throws std::runtime_error for a changed batch, and for answers that were sealed and changed.
 [[nodiscard]] RunOutcome run_batch(const std::filesystem::path& batch, const std::filesystem::path& answers,

@@ -88,7 +88,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number, or nothing where a diagnosis wrote null for one that is not finite.
+/// A number; nothing if the key is missing or null, which stands for a value that is not finite.
 std::optional<double> number_in(const Json& json, const char* name) {
   const auto found = json.find(name);
   if (found == json.end() || !found->is_number()) return {};
@@ -122,7 +122,9 @@ Answer read_answer(std::string_view text) {
     Answer answer;
     answer.verdict = json.at("verdict").get<std::string>();
     if (std::ranges::find(known_verdicts(), answer.verdict) == known_verdicts().end() || answer.verdict == "missing") {
-      throw std::runtime_error{"verdict: '" + answer.verdict + "' is none of those that a diagnosis has"};
+      throw std::runtime_error{"verdict: '" + answer.verdict +
+                               "' is unknown; expected none, named, set, partial, unknown or "
+                               "not_excited"};
     }
     for (const Json& cause : json.at("causes")) answer.causes.push_back(read_cause(cause));
     std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
@@ -158,7 +160,7 @@ TruthClass class_named(const std::string& name) {
   for (const TruthClass kind : {TruthClass::none, TruthClass::named, TruthClass::unknown, TruthClass::pair}) {
     if (name_of(kind) == name) return kind;
   }
-  throw std::runtime_error{"the key has a truth of no class: '" + name + "'"};
+  throw std::runtime_error{"truth: '" + name + "' is unknown; expected none, named, unknown or pair"};
 }
 
 KeyCase read_case(const Json& json) {
@@ -184,7 +186,8 @@ KeyCase read_case(const Json& json) {
 std::vector<KeyCase> read_key(std::string_view text) {
   try {
     const Json json = Json::parse(text);
-    if (json.at("schema") != "hybridtest/blind_key/1") throw std::runtime_error{"no key of hybridtest/blind_key/1"};
+    if (json.at("schema") != "hybridtest/blind_key/1")
+      throw std::runtime_error{"schema: unknown; expected hybridtest/blind_key/1"};
     std::vector<KeyCase> cases;
     for (const Json& of_case : json.at("cases")) cases.push_back(read_case(of_case));
     return cases;
