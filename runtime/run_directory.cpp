@@ -83,16 +83,28 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
 }
 
 TableLayout test_layout() {
-  return {
-      "test",
-      {{"planned_steps", ""}, {"completed_steps", ""}, {"stop_reason", ""}, {"wall_time_s", "s"}, {"exit_code", ""}}};
+  return {"test",
+          {{"planned_steps", ""},
+           {"completed_steps", ""},
+           {"stop_reason", ""},
+           {"wall_time_s", "s"},
+           {"exit_code", ""},
+           {"ground_motion_peak_m_per_s2", "m/s2"},
+           {"ground_motion_points", ""},
+           {"ground_motion_duration_s", "s"}}};
 }
 
 std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code) {
   // Step 0 is the initial state; it is not counted as a completed step.
   const Step taken = std::max<Step>(report.completed_steps - 1, 0);
-  return {static_cast<double>(scenario.time.last_step), static_cast<double>(taken), static_cast<double>(report.reason),
-          to_seconds(report.running_time), static_cast<double>(exit_code)};
+  return {static_cast<double>(scenario.time.last_step),
+          static_cast<double>(taken),
+          static_cast<double>(report.reason),
+          to_seconds(report.running_time),
+          static_cast<double>(exit_code),
+          scenario.ground_motion.peak_m_per_s2,
+          static_cast<double>(scenario.ground_motion.points),
+          scenario.ground_motion.duration_s};
 }
 
 }  // namespace hybridtest

@@ -82,8 +82,9 @@ void read_excitation(Section section, const std::filesystem::path& directory, Sc
   if (scenario.ground_motion_text.empty()) return;
   scenario.ground_motion_file = directory / scenario.ground_motion_text;
   try {
-    scenario.ground_acceleration_m_per_s2 =
-        read_ground_motion(scenario.ground_motion_file, options).sampled(scenario.time.step_s, scenario.time.last_step);
+    const GroundMotion motion = read_ground_motion(scenario.ground_motion_file, options);
+    scenario.ground_motion = motion.facts();
+    scenario.ground_acceleration_m_per_s2 = motion.sampled(scenario.time.step_s, scenario.time.last_step);
   } catch (const ConfigError& error) {
     section.error("ground_motion", error.what());
   }

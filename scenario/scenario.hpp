@@ -10,6 +10,7 @@
 
 #include "coordinator/coordinator.hpp"
 #include "coordinator/integrator.hpp"
+#include "core/ground_motion_facts.hpp"
 #include "core/messages.hpp"
 #include "core/real_time_thread.hpp"
 #include "experimental_site/control_loop.hpp"
@@ -86,6 +87,7 @@ struct Scenario {
   ScenarioDigest digest{};
 
   [[nodiscard]] double model_time_s(Step step) const noexcept { return static_cast<double>(step) * time.step_s; }
+  GroundMotionFacts ground_motion;                   // scaled
   /// nullptr when there is none.
   [[nodiscard]] const SubstructureScenario* find(std::string_view id) const noexcept;
   [[nodiscard]] SubstructureIndex index_of(const SubstructureScenario& substructure) const noexcept;

@@ -36,6 +36,10 @@ double GroundMotion::peak_m_per_s2() const noexcept {
   return peak;
 }
 
+GroundMotionFacts GroundMotion::facts() const noexcept {
+  return {.peak_m_per_s2 = peak_m_per_s2(), .points = std::ssize(acceleration_m_per_s2), .duration_s = end_s()};
+}
+
 std::vector<double> GroundMotion::sampled(double step_s, std::int64_t last_step) const {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(last_step) + 1);

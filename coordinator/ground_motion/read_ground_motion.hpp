@@ -8,11 +8,9 @@
 #include <string_view>
 
 #include "coordinator/ground_motion/ground_motion.hpp"
+#include "core/ground_motion_facts.hpp"
 
 namespace hybridtest {
-
-/// Standard gravity, exact by definition.
-inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
 
 enum class AccelerationUnit : std::uint8_t { g, m_per_s2, cm_per_s2 };
 

@@ -9,6 +9,7 @@
 
 #include "core/exit_code.hpp"
 #include "core/faults.hpp"
+#include "core/ground_motion_facts.hpp"
 #include "core/messages.hpp"
 #include "recording/summary/percentiles.hpp"
 #include "recording/summary/tracking_error.hpp"
@@ -102,7 +103,8 @@ struct RunSummary {
   std::optional<double> wall_time_s;
   std::optional<double> steps_per_second;
 
-  std::vector<Peak> peak_displacement_m;  // per structure degree of freedom
+  std::optional<GroundMotionFacts> ground_motion;  // none in the files of older versions
+  std::vector<Peak> peak_displacement_m;           // per structure degree of freedom
   std::vector<SubstructureSummary> substructures;
   std::vector<InterlockSummary> interlocks;
   std::vector<std::string> faults;  // the other events of severity fault, one sentence each

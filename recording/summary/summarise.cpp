@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <set>
@@ -9,6 +10,7 @@
 #include "recording/run_file_reader.hpp"
 #include "recording/summary/columns.hpp"
 #include "recording/summary/run_summary.hpp"
+#include "recording/summary/test_rows.hpp"
 
 namespace hybridtest {
 namespace {
@@ -42,12 +44,14 @@ std::optional<Peak> peak_of(std::string dof, const std::vector<double>& values, 
   return peak;
 }
 
+/// @param values   reads a column of the table.
+template <class Values>
 std::vector<Peak> peaks_of(const RunFileReader& file, std::string_view table, std::string_view quantity,
-                           std::string_view unit) {
+                           std::string_view unit, const Values& values) {
   std::vector<Peak> peaks;
-  const std::vector<double> time_s = column_if_any(file, table, "model_time_s");
+  const std::vector<double> time_s = values("model_time_s");
   for (const DofColumn& column : dof_columns(file, table, quantity, unit)) {
-    if (auto peak = peak_of(column.dof, file.column(table, column.name), time_s)) peaks.push_back(*peak);
+    if (auto peak = peak_of(column.dof, values(column.name), time_s)) peaks.push_back(*peak);
   }
   return peaks;
 }
@@ -118,23 +122,25 @@ std::optional<ExchangeSummary> exchange_with(const Exchanges& all, std::size_t i
 }
 
 /// Target against measured displacement, from the control loop's table where there is one.
-std::vector<TrackingError> tracking_of(const RunFileReader& file) {
+std::vector<TrackingError> tracking_of(const RunFileReader& file, const TestRows& rows) {
   const bool control = file.row_count(kControl) > 0 && file.has_column(kControl, "time_s");
   const std::string_view table = control ? kControl : kSteps;
-  const std::vector<double> time_s = column_if_any(file, table, control ? "time_s" : "model_time_s");
+  const auto values = [&](std::string_view column) {
+    return control ? rows.column(column) : column_if_any(file, table, column);
+  };
+  const std::vector<double> time_s = values(control ? "time_s" : "model_time_s");
   std::vector<TrackingError> errors;
   for (const DofColumn& target : dof_columns(file, table, "target_displacement", "m")) {
     const std::string measured = "measured_displacement" + target.suffix + "_m";
     if (!file.has_column(table, measured) || time_s.empty()) continue;
-    const auto error =
-        evaluate_tracking(target.dof, time_s, file.column(table, target.name), file.column(table, measured));
+    const auto error = evaluate_tracking(target.dof, time_s, values(target.name), values(measured));
     if (error) errors.push_back(*error);
   }
   return errors;
 }
 
-std::optional<EnergyError> energy_error_of(const RunFileReader& file) {
-  std::vector<double> energy_j = column_if_any(file, kControl, "energy_error_j");
+std::optional<EnergyError> energy_error_of(const TestRows& rows) {
+  std::vector<double> energy_j = rows.column("energy_error_j");
   std::erase_if(energy_j, [](double value) { return !std::isfinite(value); });
   if (energy_j.empty()) return {};
   return EnergyError{peak_of("", energy_j, {})->value, energy_j.back()};
@@ -159,13 +165,22 @@ std::optional<LoopTimingSummary> loop_timing_of(const RunFileReader& file) {
   return timing;
 }
 
-std::vector<Peak> peak_forces_of(const RunFileReader& file) {
-  for (const auto& [table, quantity] :
-       {std::pair{kControl, "measured_force"}, {kSteps, "measured_force"}, {kSteps, "force"}}) {
-    if (file.row_count(table) == 0) continue;
-    if (auto peaks = peaks_of(file, table, quantity, "n"); !peaks.empty()) return peaks;
-  }
-  return {};
+std::vector<Peak> peak_forces_of(const RunFileReader& file, const TestRows& rows) {
+  const auto of_control = [&](std::string_view column) { return rows.column(column); };
+  if (auto peaks = peaks_of(file, kControl, "measured_force", "n", of_control); !peaks.empty()) return peaks;
+  const auto of_steps = [&](std::string_view column) { return column_if_any(file, kSteps, column); };
+  if (auto peaks = peaks_of(file, kSteps, "measured_force", "n", of_steps); !peaks.empty()) return peaks;
+  return peaks_of(file, kSteps, "force", "n", of_steps);
+}
+
+/// A response with such a tracking error is one of other displacements than the recorded ones.
+constexpr double kTrackingRemark = 0.1;  // of the target's root mean square
+
+std::string tracking_remark(const std::string& site, const TrackingError& error) {
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.0f %%", 100.0 * error.rms_relative.value_or(0.0));
+  return site + " " + error.dof + ": tracking error of " + percent +
+         " of the targets (RMS), expected at most 10 %; check sensors, rig and compensation";
 }
 
 std::string interlock_key(const Event& event) {
@@ -268,7 +283,8 @@ void Summariser::summarise_files() {
 
 void Summariser::summarise_test() {
   const RunFileReader& file = *coordinator_;
-  summary_.peak_displacement_m = peaks_of(file, kSteps, "displacement", "m");
+  summary_.peak_displacement_m = peaks_of(file, kSteps, "displacement", "m",
+                                          [&](std::string_view column) { return column_if_any(file, kSteps, column); });
   summary_.model_time_s = last_of(column_if_any(file, kSteps, "model_time_s")).value_or(0.0);
 
   if (const auto reason = last_of(column_if_any(file, kTest, "stop_reason"))) {
@@ -283,6 +299,16 @@ void Summariser::summarise_test() {
   const double last_step = last_of(column_if_any(file, kSteps, "step")).value_or(0.0);
   const double completed = last_of(column_if_any(file, kTest, "completed_steps")).value_or(last_step);
   summary_.completed_steps = static_cast<std::int64_t>(completed);
+
+  if (const auto peak = last_of(column_if_any(file, kTest, "ground_motion_peak_m_per_s2"))) {
+    const auto points = last_of(column_if_any(file, kTest, "ground_motion_points")).value_or(0.0);
+    const auto duration_s = last_of(column_if_any(file, kTest, "ground_motion_duration_s")).value_or(0.0);
+    summary_.ground_motion = {
+        .peak_m_per_s2 = *peak, .points = static_cast<std::int64_t>(points), .duration_s = duration_s};
+    if (const std::string warning = ground_motion_warning(*summary_.ground_motion); !warning.empty()) {
+      summary_.remarks.push_back(warning);
+    }
+  }
 
   const std::vector<double> wall_s = column_if_any(file, kSteps, "wall_time_s");
   summary_.wall_time_s = last_of(column_if_any(file, kTest, "wall_time_s"));
@@ -308,9 +334,14 @@ void Summariser::summarise_substructures() {
       substructure.exchange = exchange_with(*exchanges, i, static_cast<double>(summary_.completed_steps));
     }
     if (const RunFileReader* file = file_of(ids[i])) {
-      substructure.peak_force_n = peak_forces_of(*file);
-      substructure.tracking = tracking_of(*file);
-      substructure.energy_error = energy_error_of(*file);
+      const TestRows rows{*file};
+      substructure.peak_force_n = peak_forces_of(*file, rows);
+      substructure.tracking = tracking_of(*file, rows);
+      for (const TrackingError& error : substructure.tracking) {
+        if (error.rms_relative.value_or(0.0) <= kTrackingRemark) continue;
+        summary_.remarks.push_back(tracking_remark(ids[i], error));
+      }
+      substructure.energy_error = energy_error_of(rows);
       substructure.loop_timing = loop_timing_of(*file);
     } else {
       summary_.remarks.push_back(ids[i] + ": no file in this directory; if it ran on another host, copy its file here");

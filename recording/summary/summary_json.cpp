@@ -84,6 +84,12 @@ Json json(const SubstructureSummary& substructure) {
           {"loop_timing", substructure.loop_timing ? json(*substructure.loop_timing) : Json(nullptr)}};
 }
 
+Json json(const GroundMotionFacts& motion) {
+  return {{"peak_m_per_s2", number(motion.peak_m_per_s2)},
+          {"points", motion.points},
+          {"duration_s", number(motion.duration_s)}};
+}
+
 Json json(const InterlockSummary& interlock) {
   return {{"participant", interlock.participant},
           {"limit_name", interlock.limit_name},
@@ -128,6 +134,7 @@ Json json(const RunSummary& summary) {
           {"model_time_s", number(summary.model_time_s)},
           {"wall_time_s", optional(summary.wall_time_s)},
           {"steps_per_second", optional(summary.steps_per_second)},
+          {"ground_motion", summary.ground_motion ? json(*summary.ground_motion) : Json(nullptr)},
           {"peak_displacement", json(summary.peak_displacement_m, "displacement_m")},
           {"substructures", list(summary.substructures)},
           {"interlocks", list(summary.interlocks)},

@@ -76,6 +76,7 @@ void print_head(const RunSummary& summary, std::ostream& stream) {
   if (summary.wall_time_s) stream << " in " << fixed(*summary.wall_time_s, 2) << " s";
   if (summary.steps_per_second) stream << ", " << fixed(*summary.steps_per_second, 0) << " steps/s";
   stream << '\n';
+  if (summary.ground_motion) stream << "  ground motion: " << ground_motion_text(*summary.ground_motion) << '\n';
 }
 
 /// A limit's unit for people and its factor from SI.

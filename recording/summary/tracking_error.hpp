@@ -7,7 +7,7 @@
 
 namespace hybridtest {
 
-/// The tracking error of an actuator over a whole test.
+/// The tracking error of an actuator over a whole test, without the return to zero after it.
 struct TrackingError {
   std::string dof;
   double rms_m = 0.0;                        // of measured − target

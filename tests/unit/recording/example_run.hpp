@@ -25,7 +25,11 @@ struct ExampleRun {
   bool site_at_rest = false;
   bool site_skips_steps_100_to_102 = false;
   bool site_has_loop_thread = false;
+  int site_waits = 0;       // control samples before the test, the sensors off by 3 mm and 90 kN
+  int site_returns = 0;     // control samples after it, with an error of 5 mm and a force of 80 kN
+  double site_error = 0.0;  // added to the measured displacement, of the target
   bool with_test_row = true;
+  double ground_peak_m_per_s2 = 3.5;
   StopReason stop_reason = StopReason::completed;
   int exit_code = 0;
   std::vector<std::vector<double>> extra_exchanges;
@@ -74,7 +78,10 @@ struct ExampleRun {
                             {"completed_steps", "-"},
                             {"stop_reason", "-"},
                             {"wall_time_s", "s"},
-                            {"exit_code", "-"}}},
+                            {"exit_code", "-"},
+                            {"ground_motion_peak_m_per_s2", "m/s2"},
+                            {"ground_motion_points", "-"},
+                            {"ground_motion_duration_s", "s"}}},
                           {"table_of_tomorrow", {{"value", "-"}}}}};
     std::vector<double> steps;
     std::vector<double> exchanges;
@@ -93,7 +100,8 @@ struct ExampleRun {
     writer.append(1, exchanges);
     if (with_test_row) {
       writer.append(2, std::vector{static_cast<double>(kSteps), static_cast<double>(coordinator_steps),
-                                   static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code)});
+                                   static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code),
+                                   ground_peak_m_per_s2, 6201.0, 31.0});
     }
     writer.append_events(coordinator_events, std::vector<std::string>(coordinator_events.size(), "it happened"));
     writer.close();
@@ -146,18 +154,24 @@ struct ExampleRun {
   void append_site(RunFileWriter& writer) const {
     std::vector<double> steps;
     std::vector<double> control;
+    const auto aside = [&](int sample, double model_time_s, double error_m, double force_n, double energy_j) {
+      control.insert(control.end(), {static_cast<double>(sample), 100.0 + time_s(sample), model_time_s, 0.0, 0.0,
+                                     error_m, force_n, energy_j, 0.0});
+    };
+    for (int i = -site_waits; i < 0; ++i) aside(i, 0.0, 0.003, 90'000.0, 0.0);
     for (int i = 0; i <= site_steps; ++i) {
       if (!(site_skips_steps_100_to_102 && i >= 100 && i <= 102)) {
         steps.insert(steps.end(), {static_cast<double>(i), time_s(i), 0.0, 0.0, 1.0, 0.0});
       }
-      if (i == kSteps) continue;  // whole periods in the control table
+      if (i == kSteps && site_returns == 0) continue;  // whole periods in the control table
       const double target = site_at_rest ? 0.0 : target_m(time_s(i));
-      const double measured = site_at_rest ? 0.0 : target_m(time_s(i) - kDelay_s);
+      const double measured = site_at_rest ? 0.0 : target_m(time_s(i) - kDelay_s) + site_error * target;
       const double force_n = i == 3000 ? -41'000.0 : 10.0;
       const double energy_j = i == 4000 ? -12.5 : 0.25;
       control.insert(control.end(), {static_cast<double>(i), 100.0 + time_s(i), time_s(i), target, target, measured,
                                      force_n, energy_j, 0.0});
     }
+    for (int i = 1; i <= site_returns; ++i) aside(site_steps + i, time_s(site_steps), 0.005, 80'000.0, 99.0);
     writer.append(0, steps);
     writer.append(1, control);
     writer.append_events(site_events, std::vector<std::string>(site_events.size(), "it \"happened\", there"));

@@ -162,6 +162,51 @@ TEST(RunSummary, SiteAtRestHasNoDelay) {
   EXPECT_FALSE(summary.substructures[0].tracking[0].equivalent_delay_s.has_value());
 }
 
+TEST(RunSummary, FiguresLeaveOutWaitAndReturnOfTheSite) {
+  const SubstructureSummary plain = summary_of({}).substructures[0];
+  ExampleRun run;
+  run.site_waits = 700;
+  run.site_returns = 2000;
+  const SubstructureSummary site = summary_of(run).substructures[0];
+  ASSERT_EQ(site.tracking.size(), 1U);
+  EXPECT_EQ(site.tracking[0].samples, 10'001U) << "from the start to the end of the last step, both included";
+  EXPECT_LT(site.tracking[0].peak_m, 0.004) << "5 mm is the error of the return";
+  EXPECT_EQ(site.tracking[0].peak_m, plain.tracking[0].peak_m);
+  EXPECT_NEAR(site.tracking[0].rms_m, plain.tracking[0].rms_m, 1e-4 * plain.tracking[0].rms_m);
+  EXPECT_EQ(site.peak_force_n.at(0).value, -41'000.0);
+  EXPECT_EQ(site.energy_error->peak_j, -12.5);
+  EXPECT_EQ(site.energy_error->final_j, 0.25);
+}
+
+TEST(RunSummary, RemarksOnTrackingErrorAboveATenth) {
+  ExampleRun run;
+  run.site_at_rest = true;
+  EXPECT_THAT(summary_of(run).remarks, IsEmpty());
+  run.site_at_rest = false;
+  // Behind by 12.5 ms at 2 Hz: 2 sin(pi f tau) = 15.7 %.
+  EXPECT_THAT(summary_of(run).remarks,
+              ElementsAre(HasSubstr("storey_1 floor_1: tracking error of 16 % of the targets")));
+  run.site_error = -1.0;  // measured minus target: one amplitude and more
+  EXPECT_THAT(summary_of(run).remarks, ElementsAre(HasSubstr("tracking error of 102 %")));
+}
+
+TEST(RunSummary, TellsGroundMotionAndWarnsOfImplausiblePeak) {
+  ExampleRun run;
+  run.site_at_rest = true;
+  const RunSummary plausible = summary_of(run);
+  EXPECT_THAT(plausible.remarks, IsEmpty());
+  EXPECT_THAT(printed(plausible), HasSubstr("ground motion: peak 0.3569 g (3.5 m/s2), 6201 points, 31 s\n"));
+  run.ground_peak_m_per_s2 = 0.09;
+  EXPECT_THAT(summary_of(run).remarks, ElementsAre(HasSubstr("a peak of 0.009177 g, expected 0.01 to 3 g")));
+  run.ground_peak_m_per_s2 = 34.0;
+  EXPECT_THAT(summary_of(run).remarks, ElementsAre(HasSubstr("excitation.unit")));
+  std::ostringstream stream;
+  write_summary_json(summary_of(run), stream);
+  EXPECT_EQ(nlohmann::json::parse(stream.str()).at("ground_motion").at("points"), 6201);
+  run.with_test_row = false;
+  EXPECT_FALSE(summary_of(run).ground_motion.has_value());
+}
+
 TEST(RunSummary, NamesKilledSite) {
   const TemporaryDirectory directory;
   ExampleRun run;

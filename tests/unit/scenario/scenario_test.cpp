@@ -249,6 +249,13 @@ TEST_F(ScenarioTest, DigestChangesWithEveryValue) {
   }
 }
 
+TEST_F(ScenarioTest, GroundMotionIsToldAsScaled) {
+  const GroundMotionFacts motion = file_.read(kScenarioText, {"excitation.scale=-2.0"}).ground_motion;
+  EXPECT_EQ(motion.peak_m_per_s2, 2.0);
+  EXPECT_EQ(motion.points, 3);
+  EXPECT_DOUBLE_EQ(motion.duration_s, 0.1);
+}
+
 TEST_F(ScenarioTest, LastOverrideWins) {
   const Scenario scenario =
       file_.read(kScenarioText, {"substructures[storey_1].limits.force_n=1.0e3", "substructures[1].id=upper",
