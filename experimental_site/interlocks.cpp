@@ -40,17 +40,18 @@ struct Finding {
   return limit ? against(observed, *limit) : Finding{};
 }
 
-/// A sensor with constant readings is stuck when the command has moved in the meantime.
-void count_stuck(double value, double before, double command_m, InterlockState::Stuck& stuck) noexcept {
-  if (value != before) {
-    stuck = {0, command_m, 0.0};
+/// A sensor with constant readings is stuck when the command has moved in the meantime. The samples before that do
+/// not count: a site that stood still for long may answer its first command with a delay.
+void count_stuck(bool is_same, double command_m, double while_moving_m, InterlockState::Stuck& stuck) noexcept {
+  if (!is_same) {
+    stuck = {.command_then_m = command_m};
     return;
   }
-  ++stuck.samples;
   stuck.command_moved_m = std::max(stuck.command_moved_m, std::fabs(command_m - stuck.command_then_m));
+  if (stuck.command_moved_m > while_moving_m) ++stuck.samples;
 }
 
-void remember(const InterlockInput& input, InterlockState& state) noexcept {
+void remember(const SiteLimits& limits, const InterlockInput& input, InterlockState& state) noexcept {
   const Eigen::Index dofs = input.measured_displacement_m.size();
   if (!std::exchange(state.has_sample, true)) {
     state.measured_displacement_m = InterfaceVector::Constant(dofs, kNotANumber);  // equal to no reading
@@ -59,9 +60,12 @@ void remember(const InterlockInput& input, InterlockState& state) noexcept {
   for (Eigen::Index k = 0; k < dofs; ++k) {
     const auto dof = static_cast<std::size_t>(k);
     const double command_m = input.command_displacement_m[k];
-    count_stuck(input.measured_displacement_m[k], state.measured_displacement_m[k], command_m,
-                state.displacement_stuck[dof]);
-    count_stuck(input.force_n[k], state.measured_force_n[k], command_m, state.force_stuck[dof]);
+    // A rig with a fault repeats its last readings: there is nothing to be learnt of its sensors.
+    const auto is_same = [&](double value, double before) { return value == before && !input.rig_fault; };
+    count_stuck(is_same(input.measured_displacement_m[k], state.measured_displacement_m[k]), command_m,
+                limits.stuck_while_moving_m, state.displacement_stuck[dof]);
+    count_stuck(is_same(input.force_n[k], state.measured_force_n[k]), command_m, limits.stuck_while_moving_m,
+                state.force_stuck[dof]);
   }
   state.measured_displacement_m = input.measured_displacement_m;
   state.measured_force_n = input.force_n;
@@ -79,9 +83,8 @@ void remember(const InterlockInput& input, InterlockState& state) noexcept {
   int samples = 0;
   const auto dofs = static_cast<std::size_t>(input.force_n.size());
   for (std::size_t k = 0; k < dofs; ++k) {
-    for (const InterlockState::Stuck& stuck : {state.displacement_stuck[k], state.force_stuck[k]}) {
-      if (stuck.command_moved_m > limits.stuck_while_moving_m) samples = std::max(samples, stuck.samples);
-    }
+    samples = std::max(samples, state.displacement_stuck[k].samples);
+    if (limits.stuck_judges_force) samples = std::max(samples, state.force_stuck[k].samples);
   }
   return {true, samples >= *limits.stuck_samples, static_cast<double>(samples),
           static_cast<double>(*limits.stuck_samples)};
@@ -157,7 +160,7 @@ void add(InterlockVerdict& verdict, const InterlockTrip& trip) noexcept {
 InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
                        InterlockState& state) noexcept {
   const Before before = state.has_sample ? Before{state.measured_displacement_m, state.measured_force_n} : Before{};
-  if (input.is_new_sample) remember(input, state);
+  if (input.is_new_sample) remember(limits, input, state);
   InterlockVerdict verdict;
   for (std::size_t i = 0; i < kInterlockCount; ++i) {
     const InterlockRule& rule = rules[i];

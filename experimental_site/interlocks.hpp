@@ -52,8 +52,9 @@ struct SiteLimits {
   double command_age_s = 0.0;                   // since the last new target
   std::optional<double> displacement_step_m{};  // measured, from one control period to the next
   std::optional<double> force_step_n{};         // likewise
-  std::optional<int> stuck_samples{};           // identical readings in a row, while the command moves
+  std::optional<int> stuck_samples{};           // identical readings in a row, after the command has moved
   double stuck_while_moving_m = 1e-4;           // by more than this; above the resolution of the sensors
+  bool stuck_judges_force = true;               // else displacement readings alone
   std::optional<double> tracking_indicator{};   // |lag_sine|, see TrackingIndicator
 };
 
@@ -105,11 +106,11 @@ struct InterlockState {
   bool has_sample = false;
   InterfaceVector measured_displacement_m;  // of the sample before
   InterfaceVector measured_force_n;
-  /// For how long a sensor has had the same reading, and how far the command has moved in that time.
+  /// Of a sensor that has the same reading again.
   struct Stuck {
-    int samples = 0;
-    double command_then_m = 0.0;
-    double command_moved_m = 0.0;
+    double command_then_m = 0.0;   // when it changed last
+    double command_moved_m = 0.0;  // furthest that the command was from there since
+    int samples = 0;               // since that was further than the limits' `stuck_while_moving_m`
   };
   std::array<Stuck, kMaxInterfaceDofs> displacement_stuck{};
   std::array<Stuck, kMaxInterfaceDofs> force_stuck{};

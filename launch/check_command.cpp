@@ -3,23 +3,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "coordinator/preflight/critical_delay.hpp"
-#include "coordinator/preflight/site_coupling.hpp"
-#include "coordinator/preflight/step_stability.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/test_stability.hpp"
 
 namespace hybridtest {
 namespace {
 
-CoupledSite coupled_site(const SubstructureScenario& substructure) {
-  CoupledSite site;
-  site.id = substructure.id;
-  site.interface = substructure.interface;
-  site.stiffness_n_per_m = substructure.initial_stiffness_n_per_m;
-  return site;
+void print_ground_motion(const Scenario& scenario) {
+  fmt::print("\nground motion {}: {}\n", scenario.ground_motion_text, ground_motion_text(scenario.ground_motion));
+  const std::string warning = ground_motion_warning(scenario.ground_motion);
+  if (!warning.empty()) fmt::print("  WARNING: {}\n", warning);
 }
 
 void print_modes(const Scenario& scenario, const VibrationModes& modes) {
@@ -32,51 +28,92 @@ void print_modes(const Scenario& scenario, const VibrationModes& modes) {
   }
 }
 
-void print_site(const Scenario& scenario, const VibrationModes& modes, const std::vector<CoupledSite>& sites,
-                std::size_t position, const SubstructureScenario& substructure) {
-  const SiteScenario& site = substructure.site;
-  const Eigen::VectorXd shares = stiffness_share_by_mode(scenario.structure, modes, sites[position]);
-  const CriticalDelay critical = critical_delay(scenario.structure, sites, position);
-  fmt::print("\nsite {}: {} rig\n", substructure.id, site.rig_type);
-  fmt::print("  control rate        {:.6g} Hz requested, {:.6g} Hz used ({} per step)\n", site.control_rate_hz,
-             site.periods_per_step / (scenario.time.step_s * scenario.time.time_scale), site.periods_per_step);
-  fmt::print("  stiffness share    ");
-  for (const double share : shares) fmt::print(" {:.1f} %", 100.0 * share);
-  fmt::print(" of modes 1 to {}\n", shares.size());
-  if (std::isfinite(critical.delay_s)) {
-    fmt::print("  critical delay      {:.3f} ms, at {:.2f} Hz\n", 1e3 * critical.delay_s,
-               critical.frequency_rad_per_s / (2.0 * std::numbers::pi));
+/// One row in brackets after the other.
+std::string written(const Eigen::MatrixXd& matrix) {
+  std::string text;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    std::string entries;
+    for (const double entry : matrix.row(row)) entries += fmt::format("{}{:.6g}", entries.empty() ? "" : ", ", entry);
+    text += fmt::format("{}[{}]", row == 0 ? "" : ", ", entries);
+  }
+  return "[" + text + "]";
+}
+
+void print_stiffness(const SiteStability& stability) {
+  if (stability.stiffness_error <= kStiffnessTolerance) return;
+  fmt::print("  WARNING: initial_stiffness_n_per_m is {}, but the simulated specimen has\n",
+             written(stability.site->initial_stiffness_n_per_m));
+  fmt::print("  {} N/m from rest. The figures below are those of the specimen. Correct the scenario:\n",
+             written(stability.specimen_stiffness_n_per_m));
+  fmt::print("  damping, energy error and the stability limit of the step come from its number.\n");
+}
+
+void print_delays(const SiteStability& stability) {
+  const ForceDelay& delay = stability.delay;
+  if (std::isfinite(stability.critical.delay_s)) {
+    fmt::print("  critical delay      {:.3f} ms, at {:.2f} Hz\n", 1e3 * stability.critical.delay_s,
+               stability.critical.frequency_rad_per_s / (2.0 * std::numbers::pi));
   } else {
     fmt::print("  critical delay      none: stable at any delay\n");
   }
-  const double left_s = site.transfer_delay_s - site.compensated_delay_s;
-  fmt::print("  transfer system     {:.3f} ms delay at low frequency, {:.3f} ms of it compensated\n",
-             1e3 * site.transfer_delay_s, 1e3 * site.compensated_delay_s);
-  if (!std::isfinite(critical.delay_s)) return;
-  fmt::print(
-      "  delay margin        {:.3f} ms{}\n", 1e3 * (critical.delay_s - std::abs(left_s)),
-      std::abs(left_s) < critical.delay_s ? "" : "   UNSTABLE: the motion will grow until an interlock ends the test");
+  fmt::print("  transfer system     {:.3f} ms delay at low frequency\n", 1e3 * delay.transfer_s);
+  fmt::print("  compensated         {:.3f} ms by the command, {:.3f} ms by the force\n",
+             1e3 * (delay.transfer_s - delay.after_command_s), 1e3 * (delay.after_command_s - delay.remaining_s));
+  if (!std::isfinite(stability.critical.delay_s)) return;
+  fmt::print("  delay margin        {:.3f} ms", 1e3 * stability.margin_s());
+  if (stability.is_unstable()) {
+    fmt::print("   UNSTABLE: the motion will grow until an interlock ends the test\n");
+  } else {
+    fmt::print("{}\n", delay.is_learnt ? " at the start; the delay is learnt during the test" : "");
+  }
+}
+
+void print_interlocks(const SiteLimits& limits) {
+  fmt::print("  tracking error      {}\n", limits.tracking_error_m
+                                               ? fmt::format("at most {:.4g} mm", 1e3 * *limits.tracking_error_m)
+                                               : "not checked");
+  if (!limits.stuck_samples) {
+    fmt::print("  stuck sensors       not checked\n");
+    return;
+  }
+  fmt::print("  stuck sensors       {} equal readings of {} after {:.4g} mm of motion\n", *limits.stuck_samples,
+             limits.stuck_judges_force ? "displacement or force" : "displacement", 1e3 * limits.stuck_while_moving_m);
+}
+
+void print_site(const Scenario& scenario, const SiteStability& stability) {
+  const SiteScenario& site = stability.site->site;
+  fmt::print("\nsite {}: {} rig\n", stability.site->id, site.rig_type);
+  fmt::print("  control rate        {:.6g} Hz requested, {:.6g} Hz used ({} per step)\n", site.control_rate_hz,
+             site.periods_per_step / (scenario.time.step_s * scenario.time.time_scale), site.periods_per_step);
+  print_stiffness(stability);
+  fmt::print("  stiffness share    ");
+  for (const double share : stability.stiffness_share) fmt::print(" {:.1f} %", 100.0 * share);
+  fmt::print(" of modes 1 to {}\n", stability.stiffness_share.size());
+  print_delays(stability);
+  print_interlocks(site.loop.limits);
 }
 
 int check(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const Scenario scenario = read_scenario(file, overrides);
   const VibrationModes modes = vibration_modes(scenario.structure);
-  const StepStability stability = step_stability(modes);
+  const TestStability stability = test_stability(scenario, modes);
   fmt::print("{}: valid, {} degrees of freedom, {} substructures, {} steps\n", scenario.name, scenario.dofs.size(),
              scenario.substructures.size(), scenario.time.last_step);
+  print_ground_motion(scenario);
   print_modes(scenario, modes);
   fmt::print("\n{}: step {:.6g} s, stable up to {:.6g} s ({:.1f} % used)\n", scenario.integrator_type,
-             scenario.time.step_s, stability.step_s_max, 100.0 * scenario.time.step_s / stability.step_s_max);
-
-  std::vector<CoupledSite> sites;
-  std::vector<const SubstructureScenario*> experimental;
-  for (const SubstructureScenario& substructure : scenario.substructures) {
-    if (substructure.role != Role::experimental_site) continue;
-    sites.push_back(coupled_site(substructure));
-    experimental.push_back(&substructure);
+             scenario.time.step_s, stability.step.step_s_max, 100.0 * scenario.time.step_s / stability.step.step_s_max);
+  for (const SiteStability& site : stability.sites) print_site(scenario, site);
+  const bool is_unstable = stability.is_unstable(scenario.integrator_step_s);
+  if (is_unstable) {
+    fmt::print(
+        "\nUNSTABLE: do not run this test with a specimen. Compensate the delay of each site to within its critical\n"
+        "delay, or shorten the step.\n");
   }
-  for (std::size_t i = 0; i < sites.size(); ++i) print_site(scenario, modes, sites, i, *experimental[i]);
-  return kExitCompleted;
+  if (stability.has_wrong_stiffness()) {
+    fmt::print("\nWRONG STIFFNESS: correct initial_stiffness_n_per_m, which is off by more than a factor of two.\n");
+  }
+  return is_unstable || stability.has_wrong_stiffness() ? kExitConfiguration : kExitCompleted;
 }
 
 }  // namespace
@@ -86,8 +123,9 @@ void add_check_command(CLI::App& app, CommandAction& action) {
   auto overrides = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand(
       "check",
-      "Check a scenario and list all its errors; print modes, the stability limit of the step, and the\n"
-      "critical delay and delay margin of each site");
+      "Check a scenario and list all its errors; print the ground motion, modes, the stability limit of the step,\n"
+      "and the critical delay and delay margin of each site. An unstable test or\n"
+      "a wrong stiffness of a simulated specimen is exit code 2");
   command->add_option("FILE", *file, "Scenario file (YAML)")->required();
   command->add_option("--set", *overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->callback([file, overrides, &action] { action = [file, overrides] { return check(*file, *overrides); }; });

@@ -1,5 +1,8 @@
 #include "scenario/loop_sections.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -11,6 +14,14 @@ namespace {
 using config::Section;
 
 constexpr Range kCommandAge{.low = 0.01, .high = 86400.0};
+
+// Of the defaults, see read_loop().
+constexpr double kTrackingShare = 0.1;  // of the displacement limit
+constexpr double kStuckMotionShare = 0.001;
+constexpr double kResolutionSteps = 2.0;  // of coarse readings, where that is more
+constexpr double kStuckTime_s = 0.1;
+constexpr double kStuckSamplesMin = 10.0;
+constexpr int kStuckSamplesMax = 1'000'000;
 
 std::string seconds_text(double seconds) {
   char text[32];
@@ -24,18 +35,18 @@ class SafetySections {
   SafetySections(Section& site, CouplingMode mode)
       : limits_{site.section_or_empty("limits")}, interlocks_{site.section_or_empty("interlocks")}, mode_{mode} {}
 
-  void read(LoopScenario& loop) {
+  void read(const TrackingExpectation& rig, LoopScenario& loop) {
     loop_ = &loop;
     loop.limits.displacement_m = required(InterlockKind::displacement, "displacement_m", "limit_m");
     loop.limits.velocity_m_per_s = required(InterlockKind::velocity, "velocity_m_per_s", "limit_m_per_s");
     loop.limits.force_n = required(InterlockKind::force, "force_n", "limit_n");
-    loop.limits.tracking_error_m = optional(InterlockKind::tracking_error, "tracking_error_m", "limit_m");
+    read_tracking_error(rig);
     loop.limits.energy_error_ratio = optional(InterlockKind::energy_error, "energy_error_ratio", "limit_ratio");
     loop.limits.displacement_step_m = optional(InterlockKind::displacement_step, "displacement_step_m", "limit_m");
     loop.limits.force_step_n = optional(InterlockKind::force_step, "force_step_n", "limit_n");
     read_command_age();
     read_tracking_indicator();
-    read_stuck_sensor();
+    read_stuck_sensor(rig);
     for (const InterlockKind kind : {InterlockKind::not_finite, InterlockKind::rig_status}) {
       Section section = interlocks_.section_or_empty(name(kind));
       read_rule(kind, section);
@@ -46,17 +57,18 @@ class SafetySections {
 
  private:
   /// The limit from wherever it stands; the interlock's rule with it.
-  std::optional<double> optional(InterlockKind kind, std::string_view short_key, std::string_view key) {
+  std::optional<double> optional(InterlockKind kind, std::string_view short_key, std::string_view key,
+                                 std::optional<double> fallback = {}) {
     const bool is_short = limits_.has(short_key);
     std::optional<double> limit;
     if (is_short) limit = limits_.number(short_key, kPositive);
-    if (!is_short && !interlocks_.has(name(kind))) return {};
+    if (!is_short && !interlocks_.has(name(kind)) && !fallback) return {};
     Section section = interlocks_.section_or_empty(name(kind));
     if (is_short && section.has(key)) {
       section.error(key, "this limit is given under limits." + std::string{short_key} + " already");
       static_cast<void>(section.number(key));
     } else if (!is_short) {
-      limit = section.number(key, kPositive);
+      limit = section.number(key, kPositive, fallback);
     }
     read_rule(kind, section);
     return limit;
@@ -86,12 +98,36 @@ class SafetySections {
     read_rule(InterlockKind::tracking_indicator, section);
   }
 
-  void read_stuck_sensor() {
-    if (!interlocks_.has("stuck_sensor")) return;
-    Section section = interlocks_.section("stuck_sensor");
-    loop_->limits.stuck_samples = static_cast<int>(section.integer("limit_samples", 2, 1'000'000));
-    loop_->limits.stuck_while_moving_m =
-        section.number("while_moving_m", kPositive, loop_->limits.stuck_while_moving_m);
+  void read_tracking_error(const TrackingExpectation& rig) {
+    constexpr InterlockKind kKind = InterlockKind::tracking_error;
+    if (interlocks_.reads_off(name(kKind))) return;
+    if (limits_.reads_off("tracking_error_m")) {
+      if (!interlocks_.has_optional(name(kKind))) return;
+      interlocks_.error(name(kKind), "this interlock is off by limits.tracking_error_m already");
+      return;
+    }
+    std::optional<double> fallback;
+    if (rig.follows_commands) {
+      fallback = kTrackingShare * loop_->limits.displacement_m + loop_->limits.velocity_m_per_s * rig.remaining_delay_s;
+    }
+    loop_->limits.tracking_error_m = optional(kKind, "tracking_error_m", "limit_m", fallback);
+  }
+
+  void read_stuck_sensor(const TrackingExpectation& rig) {
+    constexpr std::string_view kKey = "stuck_sensor";
+    if (interlocks_.reads_off(kKey) || (!rig.follows_commands && !interlocks_.has(kKey))) return;
+    Section section = interlocks_.section_or_empty(kKey);
+    SiteLimits& limits = loop_->limits;
+    const double samples = std::ceil((rig.reading_delay_s + kStuckTime_s) / rig.control_period_s);
+    limits.stuck_samples = static_cast<int>(
+        section.integer("limit_samples", 2, kStuckSamplesMax,
+                        static_cast<std::int64_t>(std::clamp<double>(samples, kStuckSamplesMin, kStuckSamplesMax))));
+    limits.stuck_while_moving_m = section.number(
+        "while_moving_m", kPositive,
+        std::max(kStuckMotionShare * limits.displacement_m, kResolutionSteps * rig.displacement_resolution_m));
+    limits.stuck_judges_force =
+        section.choice("sensors", {"displacement", "displacement_and_force"},
+                       rig.force_always_varies ? "displacement_and_force" : "displacement") == 1;
     read_rule(InterlockKind::stuck_sensor, section);
   }
 
@@ -138,9 +174,9 @@ TrajectorySettings read_trajectory(Section section) {
 
 }  // namespace
 
-LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s) {
+LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s, const TrackingExpectation& rig) {
   LoopScenario loop;
-  SafetySections{site, mode}.read(loop);
+  SafetySections{site, mode}.read(rig, loop);
   if (mode != CouplingMode::lockstep && loop.limits.command_age_s <= site_step_s) {
     site.error("limits", "command_age_s of " + seconds_text(loop.limits.command_age_s) +
                              " is no longer than a step, step_s times time_scale, of " + seconds_text(site_step_s) +

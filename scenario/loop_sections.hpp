@@ -20,10 +20,27 @@ struct LoopScenario {
   double return_time_s = 0.0;
 };
 
+/// What the default limits of a site's interlocks are derived from. Times are site time.
+struct TrackingExpectation {
+  bool follows_commands = true;  // false: nothing there tracks a target, and there are no default limits
+  double control_period_s = 0.0;
+  double reading_delay_s = 0.0;            // longest that a sound reading stays behind the command
+  double remaining_delay_s = 0.0;          // that the compensators of the commands leave, either way
+  double displacement_resolution_m = 0.0;  // of coarse readings
+  bool force_always_varies = true;         // false: a sound force may read the same to the last bit during motion
+};
+
 /// Reads `limits`, `interlocks`, `trajectory`, `ramp_in_s`, `zero_offsets`, `at_end` and `return_time_s`.
+///
+/// Two interlocks have a limit by default, because without them a site with dead sensors passes for a sound one:
+///   - `tracking_error`: a tenth of the displacement limit, plus the motion at the velocity limit within the delay
+///     that is left uncompensated. A rig further from its target than that does not follow it.
+///   - `stuck_sensor`: identical readings for 0.1 s longer than a reading may be late, after the command has moved by
+///     a thousandth of the displacement limit: twice the step of a 12-bit converter over a range of both limits.
 /// @param site          the experimental substructure's section.
 /// @param site_step_s   coupling step in site time.
-[[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s);
+[[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s,
+                                     const TrackingExpectation& rig);
 
 /// Reads `real_time`. In lockstep, where the loop has no thread and no deadlines, it is not read.
 [[nodiscard]] RealTimeRequest read_real_time(config::Section& site, CouplingMode mode);

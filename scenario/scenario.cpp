@@ -1,8 +1,10 @@
 #include "scenario/scenario.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "coordinator/ground_motion/read_ground_motion.hpp"
 #include "coordinator/preflight/step_stability.hpp"
@@ -11,6 +13,7 @@
 #include "core/text/shown.hpp"
 #include "experimental_site/energy_error.hpp"
 #include "mechanics/structure/damping.hpp"
+#include "mechanics/structure/stiffness_matrix.hpp"
 #include "mechanics/structure/vibration_modes.hpp"
 #include "numerical_substructure/scaled_model.hpp"
 #include "scenario/catalogue/compensators.hpp"
@@ -205,18 +208,63 @@ void check_model(Section section, int dofs) {
   section.finish();
 }
 
+std::vector<ForceDelay> force_delays(const RigReading& rig, std::span<const CompensatorReading> commands,
+                                     std::span<const ForceCompensatorReading> forces) {
+  std::vector<ForceDelay> delays{commands.size()};
+  for (std::size_t k = 0; k < delays.size(); ++k) {
+    ForceDelay& delay = delays[k];
+    delay.transfer_s = rig.transfer_delay_s[k];
+    delay.after_command_s = delay.transfer_s - commands[k].delay_s;
+    delay.remaining_s =
+        delay.after_command_s - std::clamp(delay.after_command_s, forces[k].delay_s_min, forces[k].delay_s_max);
+    delay.is_learnt = commands[k].learns_delay || forces[k].learns_delay;
+  }
+  return delays;
+}
+
+TrackingExpectation tracking_expectation(const RigReading& rig, std::span<const ForceDelay> delays,
+                                         double control_period_s) {
+  TrackingExpectation expectation{.follows_commands = rig.follows_commands,
+                                  .control_period_s = control_period_s,
+                                  .reading_delay_s = rig.silence_s_max,
+                                  .displacement_resolution_m = rig.displacement_resolution_m,
+                                  .force_always_varies = rig.force_always_varies};
+  for (const ForceDelay& delay : delays) {
+    expectation.reading_delay_s = std::max(expectation.reading_delay_s, rig.silence_s_max + delay.transfer_s);
+    expectation.remaining_delay_s = std::max(expectation.remaining_delay_s, std::abs(delay.after_command_s));
+  }
+  return expectation;
+}
+
+/// A stiffness that a specimen at rest can have: symmetric, without a motion that it pushes along.
+void check_initial_stiffness(Section& section, const Eigen::MatrixXd& stiffness_n_per_m) {
+  constexpr const char* kKey = "initial_stiffness_n_per_m";
+  constexpr double kRounding = 1e-9;  // of the largest entry
+  try {
+    Eigen::MatrixXd stiffness = checked_stiffness(stiffness_n_per_m);
+    stiffness.diagonal().array() += kRounding * stiffness.cwiseAbs().maxCoeff();
+    if (Eigen::LDLT<Eigen::MatrixXd>{stiffness}.isPositive()) return;
+    section.error(kKey,
+                  "is negative in some direction: the specimen would push itself away from rest; expected a positive "
+                  "semidefinite matrix. A force is positive when it resists a positive displacement: check the sign");
+  } catch (const ConfigError& error) {
+    section.error(kKey, error.what());
+  }
+}
+
 void read_site(Section& section, const Scenario& scenario, const std::filesystem::path& directory,
                SubstructureScenario& substructure) {
   const TimeScenario& time = scenario.time;
   const auto dofs = static_cast<std::size_t>(substructure.interface.size());
   SiteScenario& site = substructure.site;
   substructure.initial_stiffness_n_per_m = section.matrix("initial_stiffness_n_per_m", dofs, dofs);
+  check_initial_stiffness(section, substructure.initial_stiffness_n_per_m);
   RigReading rig = read_rig(section.section("rig"), static_cast<int>(dofs), directory,
                             static_cast<int>(scenario.substructures.size()));
   site.rig_type = rig.type;
   site.rig_is_elsewhere = rig.is_elsewhere;
   site.rig_tables = std::move(rig.tables);
-  site.transfer_delay_s = rig.transfer_delay_s;
+  site.specimen_stiffness_n_per_m = rig.stiffness_n_per_m;
   if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
     section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
   }
@@ -230,14 +278,15 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
 
   const auto commands = read_each(section, "compensator", dofs, read_compensator);
   const auto forces = read_each(section, "force_compensator", dofs, read_force_compensator);
-  site.compensated_delay_s = std::ranges::min(commands, {}, &CompensatorReading::delay_s).delay_s;
+  site.delays = force_delays(rig, commands, forces);
   substructure.make_compensation = [commands, forces](double period_s) {
     SiteCompensation made;
     for (const CompensatorReading& compensator : commands) made.commands.push_back(compensator.make(period_s, 0.0));
-    for (const ForceCompensatorMaker& make : forces) made.forces.push_back(make(period_s));
+    for (const ForceCompensatorReading& compensator : forces) made.forces.push_back(compensator.make(period_s));
     return made;
   };
-  site.loop = read_loop(section, time.mode, site_step_s);
+  site.loop = read_loop(section, time.mode, site_step_s,
+                        tracking_expectation(rig, site.delays, site_step_s / site.periods_per_step));
   site.real_time = read_real_time(section, time.mode);
 }
 

@@ -39,6 +39,14 @@ struct TimeoutScenario {
   Duration liveliness_lease{};
 };
 
+/// Delay of the force at one interface degree of freedom, for the preflight. [s]
+struct ForceDelay {
+  double transfer_s = 0.0;       // of the rig at low frequency
+  double after_command_s = 0.0;  // that the compensator of the command leaves; negative: ahead of the target
+  double remaining_s = 0.0;      // that the compensator of the force leaves of it
+  bool is_learnt = false;        // during the test: these are the values at its start
+};
+
 /// What an experimental substructure adds: the site.
 struct SiteScenario {
   double control_rate_hz = 0.0;
@@ -49,8 +57,9 @@ struct SiteScenario {
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
   bool has_model = false;               // of the site, beside its rig: what a diagnosis of the run compares with
-  double compensated_delay_s = 0.0;     // what the compensator makes up for, for the preflight
-  double transfer_delay_s = 0.0;        // low-frequency delay of a simulated rig, for the preflight
+  std::vector<ForceDelay> delays;       // one per interface degree of freedom
+  /// Stiffness of a simulated specimen over the interface, see RigReading. Empty when it is not known.
+  std::function<Eigen::MatrixXd(double displacement_m)> specimen_stiffness_n_per_m;
 };
 
 struct SubstructureScenario {
@@ -78,6 +87,7 @@ struct Scenario {
   LinearStructure structure;  // initial stiffness assembled from the substructures
   std::filesystem::path ground_motion_file;
   std::string ground_motion_text;                    // as written in the scenario
+  GroundMotionFacts ground_motion;                   // scaled
   std::vector<double> ground_acceleration_m_per_s2;  // at each step
   std::string integrator_type;
   double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
@@ -87,7 +97,6 @@ struct Scenario {
   ScenarioDigest digest{};
 
   [[nodiscard]] double model_time_s(Step step) const noexcept { return static_cast<double>(step) * time.step_s; }
-  GroundMotionFacts ground_motion;                   // scaled
   /// nullptr when there is none.
   [[nodiscard]] const SubstructureScenario* find(std::string_view id) const noexcept;
   [[nodiscard]] SubstructureIndex index_of(const SubstructureScenario& substructure) const noexcept;

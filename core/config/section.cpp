@@ -152,6 +152,15 @@ double Section::number(std::string_view key, Range range, std::optional<double> 
   return value;
 }
 
+bool Section::reads_off(std::string_view key) {
+  constexpr const char* kOff = "off";
+  const Node* const node = state_->find(key);
+  if (node == nullptr || node->kind != Node::Kind::scalar || node->text != kOff) return false;
+  static_cast<void>(state_->read(key));
+  state_->record(key, kOff);
+  return true;
+}
+
 std::int64_t Section::integer(std::string_view key, std::int64_t low, std::int64_t high,
                               std::optional<std::int64_t> fallback) {
   const Node* const node = state_->read(key);

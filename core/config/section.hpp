@@ -43,6 +43,9 @@ class Section {
   /// Required without a fallback; NaN, infinities and text (a quoted number is text) are errors.
   /// A fallback that is not finite ("no limit") is returned and left out of effective().
   [[nodiscard]] double number(std::string_view key, Range range = kAnyNumber, std::optional<double> fallback = {});
+  /// Whether the value of the key is the word `off`, which then is its effective value. Another value or none is
+  /// left to the reader of the key.
+  [[nodiscard]] bool reads_off(std::string_view key);
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high,
                                      std::optional<std::int64_t> fallback = {});
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {});

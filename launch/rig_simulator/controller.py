@@ -12,9 +12,13 @@ class Controller:
     """Accepts command datagrams and answers each accepted one.
 
     With `rate_hz` the clock advances the plant; otherwise the loop counts of the commands do. The enable line of
-    the actuators is on while the state is active; the watchdog switches it off."""
+    the actuators is on while the state is active; the watchdog switches it off. After `stuck_after` loop counts the
+    plant moves on, but its sensors repeat their last reading."""
 
-    def __init__(self, make_plant, actuators, watchdog_s, rate_hz=None, say=print):
+    def __init__(self, make_plant, actuators, watchdog_s, rate_hz=None, say=print, stuck_after=None):
+        self._stuck_after = stuck_after
+        self._followed = 0
+        self._reading = None
         self._make_plant = make_plant
         self._actuators = actuators
         self._watchdog_s = watchdog_s
@@ -89,6 +93,7 @@ class Controller:
         loops = (command.loop_count - self._loop_count) & 0xFFFFFFFF
         if loops > 0:
             self._alive_at_s = now_s
+            self._followed += loops
         if self._rate_hz is None:
             steps = min(loops, _STEPS_MAX)
             for step in range(1, steps + 1):
@@ -111,8 +116,10 @@ class Controller:
 
     def _measurement(self, now_s):
         self._sequence = (self._sequence + 1) & 0xFFFFFFFF
-        displacement_m = self._plant.displacement_m if self._plant else [0.0] * self._actuators
-        force_n = self._plant.force_n if self._plant else [0.0] * self._actuators
+        if self._stuck_after is None or self._followed < self._stuck_after or self._reading is None:
+            self._reading = ((self._plant.displacement_m, self._plant.force_n) if self._plant
+                             else ([0.0] * self._actuators, [0.0] * self._actuators))
+        displacement_m, force_n = self._reading
         return datagrams.encode_measurement(
             datagrams.Measurement(self._sequence, self._newest, self.state, self._status, self._discarded,
                                   int(now_s * 1e9), displacement_m, force_n))

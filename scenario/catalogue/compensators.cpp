@@ -64,6 +64,16 @@ PartType<CompensatorReading> compensator_set_to_delay(std::string name) {
   return {std::move(name), read, describe<Part>};
 }
 
+/// One that learns the delay during the test.
+PartType<CompensatorReading> learning(PartType<CompensatorReading> type) {
+  type.read = [read = std::move(type.read)](Section& section) {
+    CompensatorReading reading = read(section);
+    reading.learns_delay = true;
+    return reading;
+  };
+  return type;
+}
+
 /// Where the scenario has no compensator, the real setting is not known; it is taken for the usual polynomial.
 CompensatorReading read_none(Section&) {
   return {.make = [](double period_s, double delay_change_s) -> std::unique_ptr<Compensator> {
@@ -88,13 +98,15 @@ const std::vector<PartType<CompensatorReading>>& compensators() {
       compensator_set_to_delay<NewmarkKinematics>("newmark_kinematics"),
       compensator_set_to_delay<LinearAcceleration>("linear_acceleration"),
       compensator_set_to_delay<InverseCompensation>("inverse_compensation"),
-      compensator_set_to_delay<AdaptiveInverse>("adaptive_inverse"),
-      compensator<AdaptiveTimeSeries>("adaptive_time_series", &TimeSeriesParameters::a1_s),
-      compensator<ConditionalAdaptiveTimeSeries>("conditional_adaptive_time_series", &TimeSeriesParameters::a1_s),
+      learning(compensator_set_to_delay<AdaptiveInverse>("adaptive_inverse")),
+      learning(compensator<AdaptiveTimeSeries>("adaptive_time_series", &TimeSeriesParameters::a1_s)),
+      learning(
+          compensator<ConditionalAdaptiveTimeSeries>("conditional_adaptive_time_series", &TimeSeriesParameters::a1_s)),
       compensator<FeedforwardLqg>("feedforward_lqg", plant_delay_s<FeedforwardLqg::Parameters>),
-      compensator<TwoStageAdaptive>("two_stage_adaptive", &TwoStageAdaptive::Parameters::coarse_delay_s),
+      learning(compensator<TwoStageAdaptive>("two_stage_adaptive", &TwoStageAdaptive::Parameters::coarse_delay_s)),
       compensator<UpperBoundDelay>("upper_bound_delay", &UpperBoundDelay::Parameters::delay_upper_bound_s),
-      compensator<AdaptiveModelInverse>("adaptive_model_inverse", plant_delay_s<AdaptiveModelInverse::Parameters>),
+      learning(
+          compensator<AdaptiveModelInverse>("adaptive_model_inverse", plant_delay_s<AdaptiveModelInverse::Parameters>)),
   };
   return table;
 }
@@ -107,6 +119,7 @@ CompensatorReading read_compensator(Section section) {
       return std::make_unique<EstimatedDelayCompensation>(make(period_s, 0.0), make_estimator(period_s));
     };
     reading.setting = {};
+    reading.learns_delay = true;
   }
   return reading;
 }

@@ -13,8 +13,9 @@ namespace hybridtest {
 struct CompensatorReading {
   /// @param delay_change_s   added to its setting; 0 where it has none that `setting` speaks of.
   std::function<std::unique_ptr<Compensator>(double control_period_s, double delay_change_s)> make;
-  double delay_s = 0.0;  // that it makes up for
+  double delay_s = 0.0;  // that it makes up for, at first
   DelaySetting setting = {};
+  bool learns_delay = false;  // during the test
 };
 
 /// Every compensator on commands that a file can name.

@@ -13,24 +13,50 @@
 namespace hybridtest {
 namespace {
 
+struct DelayRange {
+  double low_s = 0.0;
+  double high_s = 0.0;
+};
+
+DelayRange made_up_for(const PolynomialForce::Parameters& parameters) {
+  return {parameters.delay_s, parameters.delay_s};
+}
+
+/// It looks for the wanted displacement within its window, and ahead as far as its horizon.
+DelayRange made_up_for(const ForceCorrection::Parameters& parameters) {
+  return {-parameters.window_s, parameters.horizon_s};
+}
+
+/// A parabola is not trusted further ahead than its points reach back.
+DelayRange made_up_for(const ForceCorrectionQuadratic::Parameters& parameters) {
+  const double span_s = (parameters.points - 1) * parameters.point_spacing_s;
+  return {-span_s, span_s};
+}
+
+/// It looks back only: for a displacement that comes too early.
+DelayRange made_up_for(const OptimalPick::Parameters& parameters) { return {-parameters.window_s, 0.0}; }
+
 template <class Part>
-PartType<ForceCompensatorMaker> force_compensator(std::string name) {
-  const auto read = [](config::Section& section) -> ForceCompensatorMaker {
-    return [parameters = read_parameters<Part>(section)](double period_s) {
-      return std::make_unique<Part>(parameters, period_s);
-    };
+PartType<ForceCompensatorReading> force_compensator(std::string name) {
+  const auto read = [](config::Section& section) {
+    const auto parameters = read_parameters<Part>(section);
+    const DelayRange range = made_up_for(parameters);
+    return ForceCompensatorReading{
+        .make = [parameters](double period_s) { return std::make_unique<Part>(parameters, period_s); },
+        .delay_s_min = range.low_s,
+        .delay_s_max = range.high_s};
   };
   return {std::move(name), read, describe<Part>};
 }
 
-ForceCompensatorMaker read_no_force_compensation(config::Section&) {
-  return [](double) { return std::make_unique<NoForceCompensation>(); };
+ForceCompensatorReading read_no_force_compensation(config::Section&) {
+  return {.make = [](double) { return std::make_unique<NoForceCompensation>(); }};
 }
 
 }  // namespace
 
-const std::vector<PartType<ForceCompensatorMaker>>& force_compensators() {
-  static const std::vector<PartType<ForceCompensatorMaker>> table{
+const std::vector<PartType<ForceCompensatorReading>>& force_compensators() {
+  static const std::vector<PartType<ForceCompensatorReading>> table{
       {"none", read_no_force_compensation},
       force_compensator<PolynomialForce>("polynomial_force"),
       force_compensator<ForceCorrection>("force_correction"),
@@ -40,13 +66,15 @@ const std::vector<PartType<ForceCompensatorMaker>>& force_compensators() {
   return table;
 }
 
-ForceCompensatorMaker read_force_compensator(config::Section section) {
+ForceCompensatorReading read_force_compensator(config::Section section) {
   const auto estimator_maker = read_optional_estimator(section);
-  ForceCompensatorMaker maker = read_type(section, force_compensators(), "none");
-  if (!estimator_maker) return maker;
-  return [maker, make_estimator = *estimator_maker](double period_s) {
-    return std::make_unique<EstimatedDelayForceCompensation>(maker(period_s), make_estimator(period_s));
+  ForceCompensatorReading reading = read_type(section, force_compensators(), "none");
+  if (!estimator_maker) return reading;
+  reading.make = [make = reading.make, make_estimator = *estimator_maker](double period_s) {
+    return std::make_unique<EstimatedDelayForceCompensation>(make(period_s), make_estimator(period_s));
   };
+  reading.learns_delay = true;
+  return reading;
 }
 
 }  // namespace hybridtest

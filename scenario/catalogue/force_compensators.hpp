@@ -9,12 +9,18 @@
 
 namespace hybridtest {
 
-using ForceCompensatorMaker = std::function<std::unique_ptr<ForceCompensator>(double control_period_s)>;
+struct ForceCompensatorReading {
+  std::function<std::unique_ptr<ForceCompensator>(double control_period_s)> make;
+  // Delays of the measured displacement behind the target that it makes up for; negative: ahead of the target.
+  double delay_s_min = 0.0;
+  double delay_s_max = 0.0;
+  bool learns_delay = false;  // during the test
+};
 
 /// Every compensator on forces that a file can name.
-[[nodiscard]] const std::vector<PartType<ForceCompensatorMaker>>& force_compensators();
+[[nodiscard]] const std::vector<PartType<ForceCompensatorReading>>& force_compensators();
 
 /// `none` when no type is given.
-[[nodiscard]] ForceCompensatorMaker read_force_compensator(config::Section section);
+[[nodiscard]] ForceCompensatorReading read_force_compensator(config::Section section);
 
 }  // namespace hybridtest

@@ -1,5 +1,6 @@
 #include "scenario/catalogue/rigs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -38,7 +39,9 @@ RigReading read_udp_rig(Section& section, int actuators) {
   settings.connect_timeout = from_seconds(section.number("connect_timeout_s", {.low = 0.1, .high = 3600.0}, 5.0));
 
   RigReading reading;
-  reading.transfer_delay_s = section.number("transfer_delay_s", {.low = 0.0, .high = 10.0}, 0.0);
+  reading.transfer_delay_s.assign(static_cast<std::size_t>(actuators),
+                                  section.number("transfer_delay_s", {.low = 0.0, .high = 10.0}, 0.0));
+  reading.silence_s_max = to_seconds(settings.watchdog);
   reading.is_elsewhere = true;
   reading.keeps_time = !settings.follows_datagrams;
   reading.tables = {UdpRig::link_layout()};
@@ -54,6 +57,8 @@ RigReading read_replay_rig(Section& section, int actuators, const std::filesyste
   const std::filesystem::path file = directory / section.text("recording");
   const bool holds = section.choice("at_end", {"fault", "hold"}, "fault") == 1;
   RigReading reading;
+  reading.transfer_delay_s.assign(static_cast<std::size_t>(actuators), 0.0);
+  reading.follows_commands = false;
   reading.make = [file, actuators, at_end = holds ? ReplayRig::AtEnd::hold : ReplayRig::AtEnd::fault](double) {
     return std::make_unique<ReplayRig>(read_measurement(file, actuators), at_end);
   };
@@ -95,8 +100,23 @@ GeometryReading read_geometry(Section section, int dofs) {
   return reading;
 }
 
+/// Of the degrees of freedom at rest, by virtual work: J^T K J.
+Eigen::MatrixXd stiffness_behind(const SetupGeometry& geometry, const Eigen::MatrixXd& stiffness_n_per_m) {
+  InterfaceMatrix jacobian{geometry.actuators(), geometry.dofs()};
+  geometry.derivative(InterfaceVector::Zero(geometry.dofs()), jacobian);
+  return jacobian.transpose() * stiffness_n_per_m * jacobian;
+}
+
 /// The rig, read in actuators, behind its geometry.
-RigReading behind(const GeometryReading& geometry, RigReading rig) {
+RigReading behind(const GeometryReading& geometry, int dofs, RigReading rig) {
+  // Each degree of freedom may hang on every actuator: the slowest counts.
+  const double slowest_s = rig.transfer_delay_s.empty() ? 0.0 : std::ranges::max(rig.transfer_delay_s);
+  rig.transfer_delay_s.assign(static_cast<std::size_t>(dofs), slowest_s);
+  if (rig.stiffness_n_per_m) {
+    rig.stiffness_n_per_m = [geometry, of_actuators = std::move(rig.stiffness_n_per_m)](double displacement_m) {
+      return stiffness_behind(*geometry.make(), of_actuators(displacement_m));
+    };
+  }
   rig.tables.push_back(TransformedRig::actuators_layout(geometry.actuators));
   rig.make = [geometry, make_rig = std::move(rig.make)](double period_s) {
     return std::make_unique<TransformedRig>(make_rig(period_s), geometry.make(), geometry.stroke_limit_m);
@@ -126,7 +146,7 @@ RigReading read_rig(Section section, int dofs, const std::filesystem::path& dire
   RigReading reading = type.read(geometry ? geometry->actuators : dofs);
   reading.type = type.name;
   section.finish();
-  return geometry ? behind(*geometry, std::move(reading)) : reading;
+  return geometry ? behind(*geometry, dofs, std::move(reading)) : reading;
 }
 
 }  // namespace hybridtest

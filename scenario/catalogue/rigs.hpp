@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -16,10 +17,17 @@ namespace hybridtest {
 struct RigReading {
   std::string type;
   std::function<std::unique_ptr<Rig>(double control_period_s)> make;
-  double transfer_delay_s = 0.0;    // at low frequency, of a simulated rig's slowest actuator
-  bool is_elsewhere = false;        // outside the process that makes it: not under simulated time
-  bool keeps_time = false;          // by a clock of its own: not in lockstep
-  std::vector<TableLayout> tables;  // that it records by itself, see Rig::record_to()
+  std::vector<double> transfer_delay_s;  // at low frequency, of each actuator
+  /// Stiffness over the actuators of a simulated specimen without its effects: the secant from rest to a displacement
+  /// of this size at one actuator after the other. Empty when it is not known before the test.
+  std::function<Eigen::MatrixXd(double displacement_m)> stiffness_n_per_m;
+  bool follows_commands = true;            // false: nothing there tracks a target
+  double silence_s_max = 0.0;              // for so long readings may fail to come without a fault
+  double displacement_resolution_m = 0.0;  // of coarse readings
+  bool force_always_varies = true;         // false: a sound reading may be the same to the last bit during motion
+  bool is_elsewhere = false;               // outside the process that makes it: not under simulated time
+  bool keeps_time = false;                 // by a clock of its own: not in lockstep
+  std::vector<TableLayout> tables;         // that it records by itself, see Rig::record_to()
 };
 
 /// @param directory   where files that it names are looked for.

@@ -33,7 +33,7 @@ void read_transfer_systems(Section& section, SimulatedSiteReading& site) {
   for (std::size_t i = 0; i < std::min(readings.size(), dofs); ++i) {
     site.dofs[i].make_transfer_system = readings[i].make;
     site.dofs[i].removable_delay_s = readings[i].pure_delay_s;
-    site.transfer_delay_s = std::max(site.transfer_delay_s, readings[i].delay_s);
+    site.transfer_delay_s[i] = readings[i].delay_s;
   }
 }
 
@@ -82,11 +82,54 @@ std::unique_ptr<Specimen> make_specimen(const SimulatedSiteReading& site) {
   return std::make_unique<LawSpecimen>(std::move(laws));
 }
 
+/// Largest step of the readings of that sensor; 0 without quantization.
+double reading_step(const SimulatedSiteReading& site, EffectInterface sensor) {
+  const EffectType* const quantization = find_effect(sensor, DigitTrace::rounding);
+  double step = 0.0;
+  for (const SiteModel& dof : site.dofs) {
+    for (const EffectSetting& effect : dof.effects) {
+      if (effect.type == quantization) step = std::max(step, effect.values.front());
+    }
+  }
+  return step;
+}
+
+/// A force without noise reads the same on a plateau, in a gap and without a specimen.
+bool force_always_varies(const SimulatedSiteReading& site) {
+  return site.dofs.front().noise.force_noise_n > 0.0 && reading_step(site, EffectInterface::force_sensor) == 0.0;
+}
+
+/// Without a law, the effects are the specimen.
+bool has_whole_specimen(const SimulatedSiteReading& site) {
+  return site.make_full_stiffness || std::ranges::all_of(site.dofs, [](const SiteModel& dof) {
+           return dof.make_law || std::ranges::none_of(dof.effects, [](const EffectSetting& effect) {
+                    return effect.type->interface == EffectInterface::specimen;
+                  });
+         });
+}
+
+Eigen::MatrixXd secant_stiffness(Specimen& specimen, double displacement_m) {
+  const int dofs = specimen.dofs();
+  const InterfaceVector no_velocity = InterfaceVector::Zero(dofs);
+  InterfaceVector pushed_m = InterfaceVector::Zero(dofs);
+  InterfaceVector force_n = InterfaceVector::Zero(dofs);
+  Eigen::MatrixXd stiffness_n_per_m{dofs, dofs};
+  for (int k = 0; k < dofs; ++k) {
+    pushed_m.setZero();
+    pushed_m[k] = displacement_m;
+    specimen.reset();
+    specimen.impose(pushed_m, no_velocity, force_n);
+    stiffness_n_per_m.col(k) = force_n / displacement_m;
+  }
+  return stiffness_n_per_m;
+}
+
 }  // namespace
 
 SimulatedSiteReading read_simulated_site(Section& section, int dofs, AbsentPart absent) {
   SimulatedSiteReading site;
   site.dofs.resize(static_cast<std::size_t>(dofs));
+  site.transfer_delay_s.resize(static_cast<std::size_t>(dofs), 0.0);
   for (SiteModel& dof : site.dofs) {
     dof.make_transfer_system = [](double, double) { return std::make_unique<Ideal>(); };
   }
@@ -104,6 +147,13 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
   RigReading reading;
   reading.type = "simulated";
   reading.transfer_delay_s = site.transfer_delay_s;
+  reading.displacement_resolution_m = reading_step(site, EffectInterface::displacement_sensor);
+  reading.force_always_varies = force_always_varies(site);
+  if (has_whole_specimen(site)) {
+    reading.stiffness_n_per_m = [site](double displacement_m) {
+      return secant_stiffness(*make_specimen(site), displacement_m);
+    };
+  }
   reading.make = [site](double period_s) {
     std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
     std::vector<SimulatedRig::Effects> effects;

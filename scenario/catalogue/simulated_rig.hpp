@@ -16,7 +16,7 @@ namespace hybridtest {
 struct SimulatedSiteReading {
   std::vector<SiteModel> dofs;                                     // one per interface degree of freedom
   std::function<std::unique_ptr<Specimen>()> make_full_stiffness;  // of a specimen that couples them; else empty
-  double transfer_delay_s = 0.0;                                   // at low frequency, of the slowest actuator
+  std::vector<double> transfer_delay_s;                            // at low frequency, of each actuator
 };
 
 /// What is meant where `transfer_system` or `specimen` are left out.

@@ -11,9 +11,9 @@ from plant import Plant
 class Site:
     """Sends commands to a controller and reads its answers."""
 
-    def __init__(self, watchdog_s=0.0, rate_hz=None):
+    def __init__(self, watchdog_s=0.0, rate_hz=None, stuck_after=None):
         self.said = []
-        self.controller = Controller(self._make_plant, 1, watchdog_s, rate_hz, self.said.append)
+        self.controller = Controller(self._make_plant, 1, watchdog_s, rate_hz, self.said.append, stuck_after)
         self.sequence = 0
         self.loop_count = 0
 
@@ -60,6 +60,14 @@ class States(unittest.TestCase):
     def test_nothing_moves_unasked(self):
         self.assertIsNone(self.site.exchange(0.01).displacement_m[0] or None)
         self.assertEqual(self.site.exchange(0.01).state, INACTIVE)
+
+    def test_stuck_sensors_repeat_their_last_reading(self):
+        self.site = Site(stuck_after=3)
+        self.site.send(INACTIVE)
+        self.site.send(ACTIVE)
+        readings = [self.site.exchange(0.001 * i) for i in range(1, 6)]
+        self.assertEqual([r.displacement_m[0] for r in readings], [0.001, 0.002, 0.002, 0.002, 0.002])
+        self.assertEqual(readings[-1].force_n, [0.002 * 2.0e6])
 
     def test_an_older_command_is_not_taken(self):
         self.site.send(INACTIVE)

@@ -249,6 +249,25 @@ TEST_F(DiagnosisLoop, TestWithoutSimulationHasNoResponse) {
   EXPECT_EQ(diagnosis.diagnosis.report.why_no_response, "nothing was added to the model");
 }
 
+TEST_F(DiagnosisLoop, ModelOnItsPlateauHasNoStuckSensor) {
+  // It yields without hardening: without noise its force then stands still to the last bit.
+  const std::string plastic =
+      "transfer_system: {type: second_order, natural_frequency_hz: 15.0, damping_ratio: 0.9, delay_s: 0.004}, "
+      "specimen: {type: bilinear, stiffness_n_per_m: 4.0e6, yield_force_n: 40.0e3, hardening_ratio: 0.0}";
+  const Scenario real = simulate("real", {in_rig(plastic + kNoise), "substructures[storey_1].model={" + plastic + "}"});
+  ASSERT_TRUE(real.substructures[0].site.loop.limits.stuck_judges_force) << "the real load cell is watched";
+  std::ofstream{directory_ / "model.yaml"}
+      << "compensator: {type: polynomial_displacement, order: 3, delay_s: 0.023}\nrig: {type: simulated, " << plastic
+      << "}\n";
+  SiteDiagnosis diagnosis;
+  diagnosis.diagnosis.causes = {{find_effect(EffectInterface::specimen, "viscous_damping"), {1.0}}};
+  add_response(diagnosis, read_site_model(directory_ / "model.yaml"), directory_ / "real", "storey_1",
+               directory_ / "real" / "scenario.yaml", {});
+  const report::DiagnosisReport& report = diagnosis.diagnosis.report;
+  ASSERT_TRUE(report.response_shrink.has_value()) << report.why_no_response;
+  EXPECT_THAT(report.notes, testing::IsEmpty()) << "both models run to the end of the test";
+}
+
 TEST_F(DiagnosisLoop, RejectsRealRigWithoutModel) {
   const Scenario simulated = shipped_scenario("two_storey_one_site", {});
   EXPECT_NO_THROW(require_models(simulated));

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,7 @@
 namespace hybridtest {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
@@ -131,6 +134,43 @@ TEST_F(UdpRigTest, CompletesDespiteLossDuplicationAndReordering) {
   EXPECT_EQ(last_of_link("answers_invalid"), 0.0);
 }
 
+/// The first shell block below a heading of a page.
+std::string shell_block(const std::filesystem::path& page, const std::string& heading) {
+  std::ifstream stream{page};
+  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  const std::string fence = "```sh\n";
+  const std::size_t begin = text.find(fence, text.find("\n## " + heading + "\n"));
+  const std::size_t end = text.find("```\n", begin + fence.size());
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  return text.substr(begin + fence.size(), end - begin - fence.size());
+}
+
+std::string replaced(std::string text, const std::string& piece, const std::string& by) {
+  for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + by.size())) {
+    text.replace(at, piece.size(), by);
+  }
+  return text;
+}
+
+TEST_F(UdpRigTest, ExampleOfTheGuideCompletesAsTyped) {
+  const std::filesystem::path source{HYBRIDTEST_SOURCE_DIR};
+  std::string commands = shell_block(source / "docs" / "udp_rig.md", "Trying it out");
+  ASSERT_THAT(commands, AllOf(HasSubstr("udp_controller --port 5000"), HasSubstr("hybridtest run"), HasSubstr("kill")));
+  // Another port, folder and domain, so that other processes on the machine cannot disturb it.
+  const std::string port = std::to_string(start_controller().port());
+  commands = replaced(replaced(commands, "--port 5000", "--port " + port), "port: 5000", "port: " + port);
+  std::string run = "hybridtest run --out " + (directory() / "typed").string();
+  for (const std::string& argument : network()) run += " " + argument;
+  commands = replaced(commands, "hybridtest run", run);
+  std::ofstream{directory() / "typed.sh"} << "set -e\ntrap 'kill $! 2>/dev/null || true' EXIT\ncd '" << source.string()
+                                          << "'\nPATH='" << program("").string() << "':$PATH\n"
+                                          << commands;
+  StartedProgram shell{"/bin/sh", {(directory() / "typed.sh").string()}, directory() / "shell"};
+  ASSERT_THAT(shell.wait(), Optional(0)) << shell.standard_error();
+  EXPECT_EQ(recorded("typed").summary()["verdict"], "completed");
+  EXPECT_THAT(recorded("typed").summary()["remarks"], ::testing::IsEmpty());
+}
+
 TEST_F(UdpRigTest, DeadControllerIsAFaultWithinWatchdogTime) {
   constexpr double kWatchdog_s = 0.1;
   Controller controller = start_controller({"--pace", "clock", "--rate-hz", "400"});
@@ -160,6 +200,22 @@ TEST_F(UdpRigTest, DeadControllerIsAFaultWithinWatchdogTime) {
   std::cout << "fault " << 1e3 * noticed_s << " ms after the last answer, watchdog " << 1e3 * kWatchdog_s << " ms\n";
   // A whole number of control periods, so that no rounding up is left but that of the times themselves.
   EXPECT_NEAR(noticed_s, kWatchdog_s, 1e-9);
+}
+
+TEST_F(UdpRigTest, StuckSensorsEndTheTest) {
+  constexpr double kStuckAfter = 6000.0;  // samples of 0.5 ms, in the middle of the motion
+  Controller controller = start_controller({"--stuck-after", "6000"});
+  StartedProgram udp = start_with_udp(controller.port(), "pace: datagrams", kTenSeconds);
+  ASSERT_THAT(udp.wait(), Optional(kExitEndedEarly)) << udp.standard_error();
+  const RecordedRun run = recorded("udp");
+  ASSERT_EQ(run.summary()["interlocks"].size(), 1U) << run.summary()["interlocks"];
+  EXPECT_EQ(run.summary()["interlocks"][0]["limit_name"], "stuck_sensor");
+
+  const auto faults = run.column("storey_1", "control", "faults");
+  const auto fault = std::ranges::find(faults, static_cast<double>(FaultFlags::stuck_sensor)) - faults.begin();
+  std::cout << "noticed " << 0.5 * (static_cast<double>(fault) - kStuckAfter) << " ms after the last sound reading\n";
+  EXPECT_GT(static_cast<double>(fault), kStuckAfter);
+  EXPECT_LT(static_cast<double>(fault), kStuckAfter + 600.0) << "0.1 s, the watchdog, the delay, and 0.2 mm of motion";
 }
 
 TEST_F(UdpRigTest, DeadSiteDropsTheEnableAtController) {

@@ -154,6 +154,16 @@ TEST(ConfigSection, AbsentKeysTakeTheirDefault) {
   EXPECT_THAT(errors, IsEmpty());
 }
 
+TEST(ConfigSection, OffIsReadByNameAlone) {
+  Document document = Document::parse("a: off\nb: 0\nc: {}\nd: Off\n", "test.yaml");
+  Section root = document.root();
+  EXPECT_TRUE(root.reads_off("a"));
+  for (const char* key : {"b", "c", "d", "absent"}) EXPECT_FALSE(root.reads_off(key)) << key;
+  root.finish();
+  EXPECT_EQ(document.effective(), "a: off\n") << "the others are left to who reads them";
+  EXPECT_THROW(document.throw_if_errors(), ConfigError);
+}
+
 TEST(ConfigSection, WrongValuesTakeTheDefault) {
   const auto errors = errors_of("number: -1\ninteger: 9\ntext: 5\nchoice: c\n", [](Section root) {
     EXPECT_EQ(root.number("number", kPositive, 2.5), 2.5);

@@ -251,8 +251,8 @@ TEST(InterlocksTest, StuckSensorTripsUnderMovingCommand) {
     }
     ASSERT_EQ(story.trips.size(), 1U);
     EXPECT_EQ(story.trips[0].kind, InterlockKind::stuck_sensor);
-    // It had read the same for long: the command has to have moved by more than the 0.1 mm.
-    EXPECT_EQ(samples, 6);
+    // It had read the same for long: the samples count from when the command has moved by more than 0.1 mm.
+    EXPECT_EQ(samples, 5 + 20);
   }
   // From motion, the number of samples decides.
   Story story;
@@ -267,12 +267,51 @@ TEST(InterlocksTest, StuckSensorTripsUnderMovingCommand) {
   story.limits.tracking_error_m.reset();
   int samples = 0;
   while (story.trips.empty() && samples < 100) {
-    story.command[0] += 1e-5;
+    story.command[0] += 3e-5;
     story.force[0] += 1.0;
     story.sample();
     ++samples;
   }
-  EXPECT_EQ(samples, 20);
+  EXPECT_EQ(samples, 3 + 20);
+}
+
+TEST(InterlocksTest, LateFirstAnswerIsNoStuckSensor) {
+  constexpr int kDelaySamples = 19;  // one fewer than the limit
+  Story story;
+  for (int i = 0; i < 200; ++i) story.sample();  // stands
+  for (int i = 0; i < 100; ++i) {
+    story.command[0] += 5e-4;
+    if (i >= kDelaySamples) story.measured[0] += 5e-4;
+    if (i >= kDelaySamples) story.force[0] += 10.0;
+    story.target = story.measured;
+    story.sample();
+  }
+  EXPECT_TRUE(story.trips.empty());
+}
+
+TEST(InterlocksTest, RepeatedReadingsOfARigFaultAreNoStuckSensor) {
+  Story story;
+  for (int i = 0; i < 100; ++i) {
+    story.command[0] += 1e-4;
+    story.rig_fault = i >= 10;  // after ten answers that did not come, fewer than the limit
+    story.sample();
+  }
+  ASSERT_EQ(story.trips.size(), 1U);
+  EXPECT_EQ(story.trips[0].kind, InterlockKind::rig_status);
+}
+
+TEST(InterlocksTest, ForceThatMayStandStillIsNotJudged) {
+  for (const bool judges_force : {false, true}) {
+    Story story;
+    story.limits.stuck_judges_force = judges_force;
+    for (int i = 0; i < 60; ++i) {  // sliding: the force stays
+      story.command[0] += 1e-4;
+      story.measured[0] += 1e-4;
+      story.target[0] += 1e-4;
+      story.sample();
+    }
+    EXPECT_EQ(story.trips.size(), judges_force ? 1U : 0U);
+  }
 }
 
 TEST(InterlocksTest, StepLimitIgnoresNonFiniteNeighbours) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
+
 #include "tests/unit/scenario/scenario_file.hpp"
 
 namespace hybridtest {
@@ -36,8 +39,8 @@ TEST_F(LoopSectionsTest, LimitsAloneAreTheShortForm) {
   const LoopScenario loop = read(kLimits);
   EXPECT_EQ(loop.limits.displacement_m, 0.2);
   EXPECT_EQ(loop.limits.command_age_s, 1.0);
-  EXPECT_FALSE(loop.limits.tracking_error_m || loop.limits.energy_error_ratio || loop.limits.force_step_n ||
-               loop.limits.displacement_step_m || loop.limits.stuck_samples || loop.limits.tracking_indicator);
+  EXPECT_FALSE(loop.limits.energy_error_ratio || loop.limits.force_step_n || loop.limits.displacement_step_m ||
+               loop.limits.tracking_indicator);
   const InterlockRules defaults = default_interlock_rules();
   for (std::size_t i = 0; i < kInterlockCount; ++i) {
     EXPECT_EQ(loop.rules[i].action, defaults[i].action) << i;
@@ -98,6 +101,68 @@ TEST_F(LoopSectionsTest, FullInterlocksHaveLimitActionAndClearCondition) {
 
   const Scenario scenario = file_.read(scenario_with(text));
   EXPECT_EQ(file_.read(scenario.effective).digest, scenario.digest) << "the effective scenario says the same";
+}
+
+TEST_F(LoopSectionsTest, DeadSensorsAreNoticedByDefault) {
+  const SiteLimits limits = read(kLimits).limits;
+  // An actuator of 0.9/(15 pi) + 0.004 s behind a compensator of 0.023 s; control periods of 0.5 ms.
+  const double delay_s = 0.9 / (15.0 * M_PI) + 0.004;
+  ASSERT_TRUE(limits.tracking_error_m);
+  EXPECT_NEAR(*limits.tracking_error_m, 0.1 * 0.2 + 1.5 * (delay_s - 0.023), 1e-12);
+  EXPECT_EQ(limits.stuck_samples, static_cast<int>(std::ceil((0.1 + delay_s) / 0.0005)));
+  EXPECT_DOUBLE_EQ(limits.stuck_while_moving_m, 0.001 * 0.2);
+  EXPECT_TRUE(limits.stuck_judges_force);
+
+  const std::string effective = file_.read(scenario_with(kLimits)).effective;
+  EXPECT_THAT(effective, HasSubstr("limit_samples: 247"));
+  EXPECT_THAT(effective, HasSubstr("sensors: displacement_and_force"));
+  EXPECT_THAT(effective, HasSubstr("tracking_error:\n        limit_m: 0.02014"));
+}
+
+TEST_F(LoopSectionsTest, DefaultInterlocksAreOffOnlyByName) {
+  const auto has_tracking_and_stuck = [](const SiteLimits& limits) {
+    return std::pair{limits.tracking_error_m.has_value(), limits.stuck_samples.has_value()};
+  };
+  const auto interlocks = [](const std::string& text) {
+    return std::string{kLimits} + "    interlocks: {" + text + "}\n";
+  };
+  using Both = std::pair<bool, bool>;
+  EXPECT_EQ(has_tracking_and_stuck(read(kLimits).limits), Both(true, true));
+  EXPECT_EQ(has_tracking_and_stuck(read(interlocks("stuck_sensor: off")).limits), Both(true, false));
+  EXPECT_EQ(has_tracking_and_stuck(read(interlocks("tracking_error: off")).limits), Both(false, true));
+  const std::string short_form =
+      "    limits: {displacement_m: 0.2, velocity_m_per_s: 1.5, force_n: 150.0e3, tracking_error_m: off}\n";
+  EXPECT_EQ(has_tracking_and_stuck(read(short_form).limits), Both(false, true));
+  for (const std::string& text : {interlocks("stuck_sensor: off, tracking_error: off"), short_form}) {
+    const Scenario scenario = file_.read(scenario_with(text));
+    EXPECT_EQ(file_.read(scenario.effective).digest, scenario.digest) << "off stays off";
+  }
+  EXPECT_THAT(errors(short_form + "    interlocks: {tracking_error: {action: warn}}\n"),
+              testing::ElementsAre(HasSubstr("off by limits.tracking_error_m already")));
+  EXPECT_THAT(errors(interlocks("force: off")), testing::Not(testing::IsEmpty())) << "only these two";
+  const LoopScenario warns = read(interlocks("tracking_error: {action: warn}, stuck_sensor: {action: warn}"));
+  EXPECT_EQ(has_tracking_and_stuck(warns.limits), Both(true, true)) << "a rule alone keeps the default limit";
+  EXPECT_EQ(rule(warns, InterlockKind::stuck_sensor).action, SafetyAction::warn);
+}
+
+TEST_F(LoopSectionsTest, StuckSensorDefaultsKnowTheRigsReadings) {
+  const auto limits = [&](const std::vector<std::string>& overrides) {
+    return file_.read(kScenarioText, overrides).substructures[0].site.loop.limits;
+  };
+  const std::string rig = "substructures[storey_1].rig";
+  EXPECT_FALSE(limits({rig + ".sensors.force_noise_n=0.0"}).stuck_judges_force) << "constant on a plateau";
+  const SiteLimits coarse = limits({rig + ".effects=[{interface: displacement_sensor, effect: quantization, step_m: "
+                                          "0.001}, {interface: force_sensor, effect: quantization, step_n: 100.0}]"});
+  EXPECT_DOUBLE_EQ(coarse.stuck_while_moving_m, 0.002);
+  EXPECT_FALSE(coarse.stuck_judges_force);
+  const SiteLimits late = limits({rig + "={type: udp, host: a, port: 1, pace: datagrams, watchdog_s: 2.0}"});
+  EXPECT_EQ(late.stuck_samples, 4200) << "a silent link is the watchdog's";
+  EXPECT_TRUE(late.stuck_judges_force);
+  EXPECT_DOUBLE_EQ(*late.tracking_error_m, 0.1 * 0.2 + 1.5 * 0.023) << "what the compensator is set to is the rig's";
+  std::ofstream{file_.directory() / "recorded.csv"}
+      << "time_s,measured_displacement_m,measured_force_n\n0.0,0.0,0.0\n1.0,0.0,0.0\n";
+  const SiteLimits replayed = limits({rig + "={type: replay, recording: recorded.csv, at_end: hold}"});
+  EXPECT_FALSE(replayed.stuck_samples || replayed.tracking_error_m) << "a recording follows no commands";
 }
 
 TEST_F(LoopSectionsTest, InterlockRuleAppliesToShortFormLimit) {

@@ -43,7 +43,7 @@ const std::string kPaced = "time.mode=paced";
 TEST_F(RigsTest, UdpRigRequiresAddressAndPace) {
   const Scenario scenario = read("{type: udp, host: rig.example, port: 5000, transfer_delay_s: 0.02}", {kPaced});
   EXPECT_EQ(scenario.substructures[0].site.rig_type, "udp");
-  EXPECT_EQ(scenario.substructures[0].site.transfer_delay_s, 0.02);
+  EXPECT_EQ(scenario.substructures[0].site.delays.at(0).transfer_s, 0.02);
   EXPECT_TRUE(scenario.substructures[0].site.rig_is_elsewhere);
   EXPECT_THAT(tables(scenario), ElementsAre("rig_link"));
   EXPECT_THAT(errors("{type: udp}", {kPaced}), AllOf(Contains(HasSubstr("rig.host")), Contains(HasSubstr("rig.port"))));

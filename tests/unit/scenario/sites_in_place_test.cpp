@@ -47,7 +47,7 @@ TEST_F(SitesInPlace, OmittedPartsAreIdeal) {
   write_site("specimen: {type: elastic, stiffness_n_per_m: 4.0e6}\n");
   const Scenario scenario = file_.read(kScenarioText, {kRigOfFile});
   EXPECT_THAT(scenario.effective, HasSubstr("type: ideal"));
-  EXPECT_EQ(scenario.find("storey_1")->site.transfer_delay_s, 0.0);
+  EXPECT_EQ(scenario.find("storey_1")->site.delays.at(0).transfer_s, 0.0);
 }
 
 TEST_F(SitesInPlace, DiagnosisReadsModelBesideRig) {
