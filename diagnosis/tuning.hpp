@@ -261,21 +261,23 @@ inline constexpr double kNothingLeft = 0.002;
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kEffectsMax = 4;
 
-// Progress: shares of the time that the stages usually take. A wrong one only makes the display uneven.
+// Progress: shares of the time that the stages took on recordings of a laboratory. A wrong one only makes the display
+// uneven.
 
-/// End of the preparation, of the choice of effects and of the ranking, of a whole diagnosis.
-inline constexpr double kPrepared = 0.05;
-inline constexpr double kSelected = 0.85;
-inline constexpr double kRanked = 0.95;
-/// End of the fits of single effects and of pairs, of the choice of effects.
-inline constexpr double kLibraryFitted = 0.35;
-inline constexpr double kPairsFitted = 0.7;
-/// End of the search of single effects, of their fits.
-inline constexpr double kLibrarySearched = 0.7;
-/// End of the screening and of the search, of a round that looks for a further effect.
-inline constexpr double kPairsScreened = 0.3;
-inline constexpr double kPairsSearched = 0.8;
-/// End of the fits at the site and of the checks of the structure, of everything that `hybridtest diagnose` does.
+/// End of the preparation, of the choice of effects and of the ranking, in the diagnosis of a degree of freedom.
+inline constexpr double kPrepared = 0.02;
+inline constexpr double kSelected = 0.95;
+inline constexpr double kRanked = 0.99;
+/// End of the fits of single effects and of pairs, in the choice of effects.
+inline constexpr double kLibraryFitted = 0.1;
+inline constexpr double kPairsFitted = 0.5;
+/// End of the search of single effects, in their fits.
+inline constexpr double kLibrarySearched = 0.8;
+/// End of the screening and of the search, in a round that looks for a further effect.
+inline constexpr double kPairsScreened = 0.1;
+inline constexpr double kPairsSearched = 0.65;
+/// End of the fits at the site, of the checks of the structure and of the simulated tests, in everything that
+/// `hybridtest diagnose` does.
 inline constexpr double kSiteDiagnosed = 0.9;
 inline constexpr double kStructureDiagnosed = 0.92;
 inline constexpr double kTestRerun = 0.98;
