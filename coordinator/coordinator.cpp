@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "core/stall.hpp"
 
 namespace hybridtest {
 namespace {
@@ -14,6 +15,9 @@ using std::chrono::milliseconds;
 
 /// Interval at which arm and stop are sent again until every participant has followed them.
 constexpr Duration kControlRepeat = milliseconds{250};
+
+/// For the others to leave a test that was never armed: nothing moves.
+constexpr Duration kLeaveUnarmed = milliseconds{500};
 
 /// Recorded as the times of an exchange that was not answered.
 constexpr double kUnanswered = std::numeric_limits<double>::quiet_NaN();
@@ -53,7 +57,8 @@ Instant Coordinator::advance(Instant now) noexcept {
   if (!std::exchange(began_, true)) phase_began_ = now;
   const Instant presence_wake = presence_.advance(now);
   take_control_messages(now);
-  if (requested_stop_ != StopReason::none) begin_stop(now, std::exchange(requested_stop_, StopReason::none));
+  if (requested_stop_ != StopReason::none)
+    begin_stop(now, std::exchange(requested_stop_, StopReason::none), kOperatorId);
   if (presence_.is_duplicate() && phase_ != Phase::done && phase_ != Phase::stopping) {
     report(now, Severity::fault, EventCode::second_coordinator);
     reason_ = StopReason::refused;
@@ -81,20 +86,33 @@ void Coordinator::take_control_messages(Instant now) noexcept {
     if (message.sender == presence_.identity().incarnation || message.sender_role != Role::operator_tool) continue;
     // Sent again to all participants: the operator's tool may have exited before they discovered it.
     switch (message.verb) {
-      case ControlVerb::stop: begin_stop(now, StopReason::interrupted); break;
+      case ControlVerb::stop:
+        if (message.reason == StopReason::participant_failed) {
+          begin_stop(now, message.reason);  // `hybridtest run` knows which one
+        } else {
+          begin_stop(now, StopReason::interrupted, kOperatorId);
+        }
+        break;
       case ControlVerb::emergency_stop:
-        report(now, Severity::fault, EventCode::emergency_stop);
-        control(ControlVerb::emergency_stop, StopReason::interlock);
-        begin_stop(now, StopReason::interlock);
+        if (!any(presence_.faults() & FaultFlags::emergency_stop)) {
+          report(now, Severity::fault, EventCode::emergency_stop);
+        }
+        presence_.raise(FaultFlags::emergency_stop);
+        control(ControlVerb::emergency_stop, StopReason::emergency_stop);
+        begin_stop(now, StopReason::emergency_stop, kOperatorId);
         break;
       case ControlVerb::pause:
-        if (!std::exchange(is_paused_, true)) report(now, Severity::information, EventCode::test_paused);
+        // Reported again when it is asked for again: whoever asks has not heard the answer.
+        is_paused_ = true;
+        report(now, Severity::information, EventCode::test_paused);
         control(ControlVerb::pause);
         break;
       case ControlVerb::resume:
-        if (std::exchange(is_paused_, false)) report(now, Severity::information, EventCode::test_resumed);
+        is_paused_ = false;
+        report(now, Severity::information, EventCode::test_resumed);
         control(ControlVerb::resume);
         step_due_ = std::max(step_due_, now);
+        step_completed_ = now;
         break;
       case ControlVerb::arm:
       case ControlVerb::start: break;  // only the coordinator gives these
@@ -129,7 +147,7 @@ void Coordinator::assemble(Instant now) noexcept {
     const Peer* peer = presence_.find(substructure.id);
     if (peer == nullptr || peer->status.state != LifecycleState::refused) continue;
     report(now, Severity::fault, EventCode::digest_mismatch, substructure.id);
-    begin_stop(now, StopReason::refused);
+    begin_stop(now, StopReason::refused, substructure.id);
     return;
   }
   if (everyone_is(LifecycleState::ready)) {
@@ -141,8 +159,7 @@ void Coordinator::assemble(Instant now) noexcept {
     phase_began_ = now;
     control_repeat_due_ = now;
   } else if (now - phase_began_ >= settings_.discovery_timeout) {
-    report_missing(now, LifecycleState::ready);
-    begin_stop(now, StopReason::not_assembled);
+    end_unassembled(now, LifecycleState::ready);
   }
 }
 
@@ -155,8 +172,7 @@ void Coordinator::arm(Instant now) noexcept {
     return;
   }
   if (now - phase_began_ >= settings_.arm_timeout) {
-    report_missing(now, LifecycleState::armed);
-    begin_stop(now, StopReason::not_assembled);
+    end_unassembled(now, LifecycleState::armed);
     return;
   }
   if (now >= control_repeat_due_) {
@@ -172,6 +188,7 @@ void Coordinator::start(Instant now) noexcept {
   phase_ = Phase::running;
   phase_began_ = now;
   started_ = now;
+  step_completed_ = now;
   step_due_ = now;
   open_step(now);
 }
@@ -191,7 +208,7 @@ void Coordinator::run(Instant now) noexcept {
       if (completed_steps_ > 0) record_step(now);
     }
     while (!ledger_.is_complete() && ports_.measurements.take(measurement)) {
-      static_cast<void>(ledger_.enter(measurement, now));
+      if (ledger_.enter(measurement, now) == LedgerEntry::accepted) last_to_answer_ = measurement.substructure;
     }
     if (!ledger_.is_complete()) {
       repeat_unanswered(now);
@@ -202,7 +219,7 @@ void Coordinator::run(Instant now) noexcept {
 }
 
 void Coordinator::watch_participants(Instant now) noexcept {
-  bool is_any_lost = false;
+  const CoupledSubstructure* lost = nullptr;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     const bool is_lost =
@@ -210,26 +227,61 @@ void Coordinator::watch_participants(Instant now) noexcept {
     if (!is_lost) continue;
     report(now, Severity::fault, EventCode::participant_lost, substructure.id);
     presence_.raise(FaultFlags::participant_lost);
-    is_any_lost = true;
+    if (lost == nullptr) lost = &substructure;
   }
-  if (is_any_lost) {
-    begin_stop(now, StopReason::participant_lost);
+  if (lost != nullptr) {
+    begin_stop(now, StopReason::participant_lost, lost->id);
     return;
   }
   constexpr FaultFlags kRecording = FaultFlags::records_dropped | FaultFlags::recording_failed;
+  const CoupledSubstructure* recorder = nullptr;  // the first that cannot record
   bool has_recording_fault = any(presence_.faults() & kRecording);
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     has_recording_fault = has_recording_fault || any(peer->status.faults & kRecording);
+    if (any(peer->status.faults & kRecording) && recorder == nullptr) recorder = &substructure;
     const bool has_other_fault = (peer->status.faults & kRecording) != peer->status.faults;
     const bool is_leaving =
         peer->status.state == LifecycleState::stopping || peer->status.state == LifecycleState::finished;
+    if (any(peer->status.faults & FaultFlags::emergency_stop)) {
+      begin_stop(now, StopReason::emergency_stop, kOperatorId);
+      return;
+    }
+    // A site whose command is overdue is not the cause while another participant keeps the test waiting.
+    const CoupledSubstructure* slow = owes_answer(substructure);
+    if ((peer->status.faults | kRecording) == (FaultFlags::command_age | kRecording) && slow != nullptr) {
+      report(now, Severity::fault, EventCode::answer_overdue, slow->id, {to_seconds(now - ledger_.opened()), 0.0});
+      begin_stop(now, StopReason::participant_lost, slow->id);
+      return;
+    }
     if (has_other_fault || is_leaving) {
-      begin_stop(now, has_other_fault ? StopReason::interlock : StopReason::interrupted);
+      begin_stop(now, has_other_fault ? StopReason::interlock : StopReason::interrupted, substructure.id);
       return;
     }
   }
-  if (has_recording_fault && settings_.stop_on_recording_failure) begin_stop(now, StopReason::recording_failed);
+  if (has_recording_fault && settings_.stop_on_recording_failure) {
+    begin_stop(now, StopReason::recording_failed, recorder == nullptr ? ParticipantId{kCoordinatorId} : recorder->id);
+  }
+}
+
+const CoupledSubstructure* Coordinator::owes_answer(const CoupledSubstructure& except) const noexcept {
+  if (phase_ != Phase::running || !step_is_sent_) return nullptr;
+  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+    const bool owes = !ledger_.has_answered(static_cast<SubstructureIndex>(i));
+    if (owes && &settings_.substructures[i] != &except) return &settings_.substructures[i];
+  }
+  return nullptr;
+}
+
+void Coordinator::watch_pace(Instant now) noexcept {
+  if (settings_.mode != CouplingMode::paced) return;
+  const double taken_s = to_seconds(now - std::exchange(step_completed_, now));
+  const double step_s = settings_.step_s * settings_.time_scale;
+  // Of many in a row the longest are reported; the summary counts all of them.
+  if (is_paused_ || !is_stall(taken_s, step_s) || taken_s < 1.5 * longest_stall_s_) return;
+  longest_stall_s_ = taken_s;
+  report(now, Severity::warning, EventCode::test_stalled, settings_.substructures[last_to_answer_].id,
+         {taken_s, step_s});
 }
 
 void Coordinator::open_step(Instant now) noexcept {
@@ -280,7 +332,7 @@ void Coordinator::complete_step(Instant now) noexcept {
     if (force_n.size() != interface.size() || !force_n.allFinite()) {
       report(now, Severity::fault, EventCode::measurement_not_finite, settings_.substructures[i].id);
       presence_.raise(FaultFlags::not_finite);
-      begin_stop(now, StopReason::not_finite);
+      begin_stop(now, StopReason::not_finite, settings_.substructures[i].id);
       return;
     }
     interface.add_to_structure(force_n, restoring_force_n_);
@@ -290,6 +342,7 @@ void Coordinator::complete_step(Instant now) noexcept {
   applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
   integrator_->advance(restoring_force_n_, applied_force_n_);
   ++completed_steps_;
+  watch_pace(now);
   if (step == settings_.last_step) {
     record_step(now);
     report(now, Severity::information, EventCode::test_completed);
@@ -299,7 +352,7 @@ void Coordinator::complete_step(Instant now) noexcept {
   if (!integrator_->current().displacement_m.allFinite()) {
     presence_.raise(FaultFlags::not_finite);
     record_step(now);
-    begin_stop(now, StopReason::not_finite);
+    begin_stop(now, StopReason::not_finite, kCoordinatorId);
     return;
   }
   if (settings_.mode == CouplingMode::paced) {
@@ -346,15 +399,17 @@ void Coordinator::record_exchanges() noexcept {
   }
 }
 
-void Coordinator::begin_stop(Instant now, StopReason reason) noexcept {
+void Coordinator::begin_stop(Instant now, StopReason reason, const ParticipantId& who) noexcept {
   if (phase_ == Phase::stopping || phase_ == Phase::done) return;
   reason_ = reason;
+  const bool was_armed = phase_ == Phase::arming || phase_ == Phase::running;
+  stop_by_ = now + (was_armed ? settings_.stop_timeout : std::min(settings_.stop_timeout, kLeaveUnarmed));
   if (phase_ == Phase::running) {
     running_time_ = now - started_;
     if (completed_steps_ > 0 && !step_is_sent_) record_step(now);
     if (step_is_sent_ && !ledger_.is_complete()) record_exchanges();
   }
-  report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, {},
+  report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, who,
          {static_cast<double>(reason), 0.0});
   presence_.set_state(LifecycleState::stopping);
   phase_ = Phase::stopping;
@@ -367,17 +422,20 @@ void Coordinator::stop(Instant now) noexcept {
     control(ControlVerb::stop, reason_);
     control_repeat_due_ = now + kControlRepeat;
   }
-  if (!everyone_is(LifecycleState::finished) && now - phase_began_ < settings_.stop_timeout) return;
+  if (!everyone_is(LifecycleState::finished) && now < stop_by_) return;
   presence_.set_state(LifecycleState::finished);
   phase_ = Phase::done;
 }
 
-void Coordinator::report_missing(Instant now, LifecycleState wanted) noexcept {
+void Coordinator::end_unassembled(Instant now, LifecycleState wanted) noexcept {
+  ParticipantId first;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     if (peer != nullptr && has_reached(peer->status.state, wanted)) continue;
     report(now, Severity::fault, EventCode::participant_missing, substructure.id);
+    if (first.view().empty()) first = substructure.id;
   }
+  begin_stop(now, StopReason::not_assembled, first);
 }
 
 bool Coordinator::everyone_is(LifecycleState wanted) const noexcept {
@@ -398,7 +456,7 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
       if (is_paused_) return presence_wake;
       return std::min(presence_wake, step_is_sent_ ? repeat_due_ : std::max(step_due_, now));
     }
-    case Phase::stopping: return std::min({presence_wake, control_repeat_due_, phase_began_ + settings_.stop_timeout});
+    case Phase::stopping: return std::min({presence_wake, control_repeat_due_, stop_by_});
     case Phase::done: return kNever;
   }
   return kNever;

@@ -102,8 +102,12 @@ class Coordinator final : public Node {
   void complete_step(Instant now) noexcept;
   void record_step(Instant now) noexcept;
   void record_exchanges() noexcept;
-  void begin_stop(Instant now, StopReason reason) noexcept;
-  void report_missing(Instant now, LifecycleState wanted) noexcept;
+  /// @param who   ended the test: a participant's id or `operator`.
+  void begin_stop(Instant now, StopReason reason, const ParticipantId& who = {}) noexcept;
+  /// The substructure that keeps the test waiting while the others have answered; nullptr without one.
+  [[nodiscard]] const CoupledSubstructure* owes_answer(const CoupledSubstructure& except) const noexcept;
+  void watch_pace(Instant now) noexcept;
+  void end_unassembled(Instant now, LifecycleState wanted) noexcept;
   [[nodiscard]] bool everyone_is(LifecycleState state) const noexcept;
   [[nodiscard]] Instant next_wake(Instant now, Instant presence_wake) const noexcept;
   void report(Instant now, Severity severity, EventCode code, const ParticipantId& subject = {},
@@ -131,7 +135,11 @@ class Coordinator final : public Node {
   StopReason reason_ = StopReason::none;
   Step completed_steps_ = 0;
   Instant started_{};
+  Instant step_completed_{};  // the last one; paced: or the end of a pause
+  double longest_stall_s_ = 0.0;
+  SubstructureIndex last_to_answer_ = 0;
   Duration running_time_{};
+  Instant stop_by_{};  // then the coordinator leaves, whether the others are at rest or not
   Instant control_repeat_due_{};
   Eigen::VectorXd restoring_force_n_;
   Eigen::VectorXd applied_force_n_;

@@ -30,6 +30,8 @@ class StepLedger {
   [[nodiscard]] LedgerEntry enter(const ForceMeasurement& measurement, Instant now) noexcept;
 
   [[nodiscard]] Step step() const noexcept { return step_; }
+  /// When the open step was sent.
+  [[nodiscard]] Instant opened() const noexcept { return opened_; }
   [[nodiscard]] bool is_complete() const noexcept { return answered_ == count_; }
   [[nodiscard]] bool has_answered(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answered;

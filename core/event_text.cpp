@@ -32,6 +32,11 @@ std::string interlock_text(const Event& event) {
          number(event.values[1]) + unit + ")";
 }
 
+/// Of an errno; empty when it is not known.
+std::string error_text(double number) {
+  return number > 0.0 ? " (" + std::generic_category().message(static_cast<int>(number)) + ")" : "";
+}
+
 std::string granted_text(const Event& event) {
   const auto subject = event.subject.text();
   if (subject == "scheduling") return "SCHED_FIFO at priority " + number(event.values[0]);
@@ -76,7 +81,8 @@ std::string describe(const Event& event) {
     case EventCode::test_started: return "test started";
     case EventCode::test_completed: return "test completed";
     case EventCode::test_stopped:
-      return "test stopped: " + std::string{name(static_cast<StopReason>(static_cast<int>(event.values[0])))};
+      return "test stopped: " + std::string{name(static_cast<StopReason>(static_cast<int>(event.values[0])))} +
+             (event.subject.text().empty() ? "" : " (" + event.subject.text() + ")");
     case EventCode::interlock_tripped: return interlock_text(event);
     case EventCode::command_overdue:
       return "no command for " + number(event.values[0]) + " s (limit " + number(event.values[1]) +
@@ -85,7 +91,8 @@ std::string describe(const Event& event) {
     case EventCode::command_repeated: return "resent the command to " + subject + ", which has not answered";
     case EventCode::measurement_not_finite: return "received a force that is not a finite number from " + subject;
     case EventCode::recording_failed:
-      return "recording failed: data are missing from here on; check the free space of the disk";
+      return "recording failed" + error_text(event.values[0]) +
+             ": data are missing from here on; check the free space of the disk";
     case EventCode::records_dropped: return number(event.values[0]) + " rows of the recording were dropped";
     case EventCode::test_paused: return "test paused";
     case EventCode::test_resumed: return "test resumed";
@@ -97,6 +104,11 @@ std::string describe(const Event& event) {
              number(event.values[1]) + " N";
     case EventCode::real_time_granted: return "real time: " + granted_text(event);
     case EventCode::real_time_refused: return "real time: " + refused_text(event);
+    case EventCode::answer_overdue:
+      return subject + " has not answered the command sent " + number(event.values[0]) + " s ago";
+    case EventCode::test_stalled:
+      return "the test stood still for " + number(event.values[0]) + " s (a step takes " + number(event.values[1]) +
+             " s); last to answer: " + subject;
   }
   return "unknown event";
 }

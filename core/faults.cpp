@@ -1,5 +1,7 @@
 #include "core/faults.hpp"
 
+#include "core/exit_code.hpp"
+
 namespace hybridtest {
 
 std::string_view name(FaultFlags single_flag) noexcept {
@@ -27,19 +29,8 @@ std::string_view name(FaultFlags single_flag) noexcept {
 }
 
 std::string_view name(StopReason reason) noexcept {
-  switch (reason) {
-    case StopReason::none: return "none";
-    case StopReason::completed: return "completed";
-    case StopReason::interrupted: return "interrupted";
-    case StopReason::interlock: return "interlock";
-    case StopReason::participant_lost: return "participant_lost";
-    case StopReason::coordinator_lost: return "coordinator_lost";
-    case StopReason::not_finite: return "not_finite";
-    case StopReason::not_assembled: return "not_assembled";
-    case StopReason::refused: return "refused";
-    case StopReason::recording_failed: return "recording_failed";
-  }
-  return "unknown";
+  const TestEnd& end = test_end(reason);
+  return end.reason == reason ? end.name : "unknown";
 }
 
 std::string_view name(EventCode code) noexcept {
@@ -71,6 +62,8 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::zero_offset: return "zero_offset";
     case EventCode::real_time_granted: return "real_time_granted";
     case EventCode::real_time_refused: return "real_time_refused";
+    case EventCode::answer_overdue: return "answer_overdue";
+    case EventCode::test_stalled: return "test_stalled";
   }
   return "unknown";
 }

@@ -54,14 +54,16 @@ HYBRIDTEST_FLAG_OPERATORS(MeasurementFlags)
 enum class StopReason : std::uint8_t {
   none,
   completed,
-  interrupted,  // Ctrl-C or a stop command
-  interlock,    // a site's limit or fault
-  participant_lost,
+  interrupted,       // Ctrl-C or a stop command
+  interlock,         // a limit or a fault of a site
+  participant_lost,  // no longer heard of, or does not answer
   coordinator_lost,
   not_finite,     // NaN or infinity in the integrator
   not_assembled,  // a participant did not appear or did not arm
   refused,        // scenario digest or identity
   recording_failed,
+  emergency_stop,
+  participant_failed,  // a participant could not start
 };
 
 enum class EventCode : std::uint16_t {
@@ -76,14 +78,14 @@ enum class EventCode : std::uint16_t {
   test_armed,
   test_started,
   test_completed,
-  test_stopped,       // values[0]: StopReason
+  test_stopped,       // subject: who ended it; values[0]: StopReason
   interlock_tripped,  // subject: the FaultFlags' name; values: observed, limit
   command_overdue,    // values: age [s], limit [s]
   coordinator_lost,
   command_repeated,  // values[0]: attempt
   measurement_not_finite,
-  recording_failed,
-  records_dropped,  // values[0]: count
+  recording_failed,  // values[0]: errno of the file, 0 when it is not known
+  records_dropped,   // values[0]: count
   test_paused,
   test_resumed,
   emergency_stop,
@@ -92,6 +94,8 @@ enum class EventCode : std::uint16_t {
   zero_offset,        // subject: interface degree of freedom; values: displacement [m], force [N]
   real_time_granted,  // subject: which request; values[0]: priority or cpu
   real_time_refused,  // subject: which request; values: errno, requested value
+  answer_overdue,     // subject: who; values[0]: time since the command was sent [s]
+  test_stalled,       // subject: who answered last; values: time without a new step [s], wall time of a step [s]
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

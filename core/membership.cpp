@@ -23,7 +23,7 @@ Request Membership::next_request(Instant now) noexcept {
     const bool from_operator = message.sender_role == Role::operator_tool;
     if (message.verb == ControlVerb::emergency_stop) {
       presence_.raise(FaultFlags::emergency_stop);
-      stop_reason_ = StopReason::interlock;
+      stop_reason_ = StopReason::emergency_stop;
       return Request::emergency_stop;
     }
     if (from_operator && (message.verb == ControlVerb::pause || message.verb == ControlVerb::resume)) {

@@ -43,6 +43,9 @@ class Presence {
   void set_last_step(Step step) noexcept { own_.last_step = step; }
   void raise(FaultFlags faults) noexcept;
 
+  /// Everyone else ever heard of.
+  [[nodiscard]] std::span<const Peer> peers() const noexcept { return std::span{peers_}.first(peer_count_); }
+  [[nodiscard]] const ParticipantStatus& own_status() const noexcept { return own_; }
   [[nodiscard]] LifecycleState state() const noexcept { return own_.state; }
   [[nodiscard]] FaultFlags faults() const noexcept { return own_.faults; }
   [[nodiscard]] const Identity& identity() const noexcept { return identity_; }

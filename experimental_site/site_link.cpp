@@ -60,7 +60,7 @@ void SiteLink::follow(Request request) noexcept {
     case Request::stop: begin_stop(membership_.stop_reason()); break;
     case Request::emergency_stop:
       ports_.requests.send(loop_request::EmergencyStop{});
-      begin_stop(StopReason::interlock);
+      begin_stop(StopReason::emergency_stop);
       break;
     case Request::none: break;
   }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -47,8 +48,20 @@ bool ChildProcess::is_running() noexcept {
   if (exit_code_) return false;
   int status = 0;
   if (waitpid(process_, &status, WNOHANG) != process_) return true;
-  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (WIFSIGNALED(status)) signal_ = WTERMSIG(status);
+  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + signal_;
   return false;
+}
+
+std::string ChildProcess::last_words() const {
+  std::ifstream log{log_file_};
+  std::string last;
+  for (std::string line; std::getline(log, line);) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  // An event is written as `2026-01-31T12:00:00.000Z error id: text`.
+  const auto time_end = last.find("Z error ");
+  return time_end == std::string::npos ? last : last.substr(time_end + std::strlen("Z error "));
 }
 
 void ChildProcess::send_signal(int signal) noexcept {

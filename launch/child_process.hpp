@@ -21,6 +21,10 @@ class ChildProcess {
   [[nodiscard]] bool is_running() noexcept;
   /// Exit code, 128 + signal when a signal ended it; nothing while it runs.
   [[nodiscard]] std::optional<int> exit_code() const noexcept { return exit_code_; }
+  /// The signal that ended it, 0 while it runs and when it exited by itself.
+  [[nodiscard]] int signal() const noexcept { return signal_; }
+  /// The last line of its log, without time and severity; empty when there is none.
+  [[nodiscard]] std::string last_words() const;
   void send_signal(int signal) noexcept;
 
  private:
@@ -28,6 +32,7 @@ class ChildProcess {
   std::filesystem::path log_file_;
   int process_ = -1;
   std::optional<int> exit_code_;
+  int signal_ = 0;
 };
 
 }  // namespace hybridtest

@@ -27,15 +27,14 @@ void repair_files(const std::filesystem::path& directory) {
 
 }  // namespace
 
-int finish_run(const std::filesystem::path& directory, int exit_code) {
+int finish_run(const std::filesystem::path& directory, int exit_code, const SummaryInput& input) {
   repair_files(directory);
   try {
-    const RunSummary summary = summarise(directory);
+    const RunSummary summary = summarise(directory, input);
     // Print first: on a full disk the file cannot be written.
     print_summary(summary, std::cout);
     write_summary_json(summary, directory / "summary.json");
-    // If a signal ended the coordinator, its exit code does not say how the test ended.
-    return exit_code == kExitCompleted || exit_code >= 128 ? summary.exit_code : exit_code;
+    return exit_code == kExitInternal ? exit_code : summary.exit_code;
   } catch (const RecordingError& error) {
     fmt::print(stderr, "summary.json was not written: {}\n", error.what());
     return exit_code == kExitCompleted ? kExitDataInvalid : exit_code;

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deque>
 #include <fstream>
 
 #include "core/config_error.hpp"
@@ -8,11 +10,11 @@
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
-#include "launch/progress.hpp"
 #include "launch/run_monitor.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
+#include "runtime/progress.hpp"
 #include "runtime/run_directory.hpp"
 #include "scenario/scenario.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
@@ -38,7 +40,8 @@ void check_remote(const RunOptions& options, const Scenario& scenario) {
 
 std::vector<std::unique_ptr<ChildProcess>> start_processes(const RunOptions& options, const Scenario& scenario) {
   const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  std::vector<std::string> shared{"--scenario", options.scenario_file.string(), "--out", options.directory.string()};
+  std::vector<std::string> shared{"--scenario", options.scenario_file.string(), "--out", options.directory.string(),
+                                  "--quiet"};
   for (const std::string& value : options.overrides) shared.insert(shared.end(), {"--set", value});
   for (const std::string& value : options.network.arguments()) shared.push_back(value);
 
@@ -58,15 +61,21 @@ std::vector<std::unique_ptr<ChildProcess>> start_processes(const RunOptions& opt
   return children;
 }
 
-/// The log of a process that ended with an unexpected exit code.
-void print_log(const ChildProcess& child) {
-  std::ifstream log{child.log_file()};
-  fmt::print(stderr, "{} ended with exit code {}; its log {}:\n", child.id(), *child.exit_code(),
-             child.log_file().string());
-  for (std::string line; std::getline(log, line);) fmt::print(stderr, "  {}\n", line);
+/// The end of the log of a process that failed by itself.
+void print_log(const ProcessEnd& end, const std::filesystem::path& log_file) {
+  constexpr std::size_t kLines = 20;
+  std::deque<std::string> lines;
+  std::ifstream log{log_file};
+  for (std::string line; std::getline(log, line);) {
+    lines.push_back(line);
+    if (lines.size() > kLines) lines.pop_front();
+  }
+  fmt::print(stderr, "{}: {}; the end of its log {}:\n", end.participant, end.text(), log_file.string());
+  for (const std::string& line : lines) fmt::print(stderr, "  {}\n", line);
 }
 
 int run(RunOptions options) {
+  catch_stop_signals();
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   check_remote(options, scenario);
   if (options.diagnose) require_models(scenario);
@@ -78,25 +87,28 @@ int run(RunOptions options) {
              scenario.time.step_s, options.directory.string());
 
   const ProcessClock clock;
-  const auto transport = fast_dds::make_fast_dds_transport(options.network.settings(), scenario.name);
-  stop_on_signals(transport->waker());
+  fast_dds::FastDdsSettings network = options.network.settings();
+  network.is_observer = true;
+  const auto transport = fast_dds::make_fast_dds_transport(network, scenario.name);
+  wake_on_stop(transport->waker());
   int coordinator_exit = kExitInternal;
+  SummaryInput known;
+  known.test_name = scenario.name;
   {
     Progress progress{scenario, stderr};
     RunMonitor monitor{scenario, *transport, start_processes(options, scenario), progress};
     run_until(
         monitor, transport->waker(), clock, [&] { return monitor.is_done(); }, [](Instant) {});
+    known.processes = monitor.ends();
+    known.events = monitor.telling_events();
     for (const auto& child : monitor.children()) {
       if (child->id() == kCoordinatorId) coordinator_exit = *child->exit_code();
-    }
-    for (const auto& child : monitor.children()) {
-      if (*child->exit_code() != coordinator_exit && *child->exit_code() != kExitCompleted) print_log(*child);
-    }
-    if (coordinator_exit == kExitConfiguration || coordinator_exit == kExitInternal) {
-      print_log(*monitor.children().front());
+      const auto end = std::ranges::find(known.processes, child->id(), &ProcessEnd::participant);
+      if (end->is_cause() || *child->exit_code() == kExitInternal) print_log(*end, child->log_file());
     }
   }
-  const int exit_code = finish_run(options.directory, coordinator_exit);
+  write_process_ends(known.processes, options.directory);
+  const int exit_code = finish_run(options.directory, coordinator_exit, known);
   if (options.diagnose) show_diagnosis(scenario, options.directory);
   return exit_code;
 }

@@ -10,11 +10,11 @@
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
-#include "launch/progress.hpp"
 #include "recording/recorder.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
 #include "runtime/participant.hpp"
+#include "runtime/progress.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/simulation.hpp"
 
@@ -141,8 +141,7 @@ int simulate_scenario(SimulateOptions options) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log{std::fopen((options.directory / "events.log").c_str(), "w"),
                                                             std::fclose};
   if (!log) throw ConfigError{"--out " + options.directory.string() + ": cannot write events.log"};
-  Waker waker;
-  stop_on_signals(waker);
+  catch_stop_signals();
   const ProcessClock clock;
   SimulationResult result;
   {

@@ -1,6 +1,7 @@
 #include "recording/recorder.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 
 #include "core/assert.hpp"
@@ -47,6 +48,14 @@ RowSink& Recorder::sink(std::string_view table) {
 Outbox<Event>& Recorder::events(std::size_t source) {
   HYBRIDTEST_ASSERT(source < event_rings_.size());
   return *event_rings_[source];
+}
+
+int Recorder::error_number() const {
+  // HDF5 passes it on only in its text.
+  constexpr std::string_view kBefore = "errno = ";
+  const std::string text = error_text();
+  const auto place = text.find(kBefore);
+  return place == std::string::npos ? 0 : std::atoi(text.c_str() + place + kBefore.size());
 }
 
 bool Recorder::should_drain() const noexcept {

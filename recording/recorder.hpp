@@ -57,6 +57,8 @@ class Recorder {
   [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   /// Any thread; why recording failed, empty when it did not.
   [[nodiscard]] std::string error_text() const { return failed() ? error_text_ : std::string{}; }
+  /// Any thread; the errno of the file system that error_text() names, 0 when it names none.
+  [[nodiscard]] int error_number() const;
   /// Any thread; rows and events that will never be in the file, as of the last drain().
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 

@@ -135,6 +135,11 @@ void require_unused(const std::filesystem::path& path) {
   }
 }
 
+/// The name of a file whose head is not written yet. A process that is killed in this time leaves no run file.
+std::filesystem::path unfinished(const std::filesystem::path& path) {
+  return path.parent_path() / ("." + path.filename().string() + ".unfinished");
+}
+
 Handle create_file(const std::filesystem::path& path) {
   require_unused(path);
   const Handle access{checked(H5Pcreate(H5P_FILE_ACCESS), "creating the file"), H5Pclose};
@@ -183,7 +188,8 @@ struct RunFileWriter::Impl {
 
 void RunFileWriter::Impl::create(const RunFileHeader& header) {
   require_usable(layouts);
-  file = create_file(path);
+  require_unused(path);
+  file = create_file(unfinished(path));
   hdf5::write_header(file.id(), header);
   for (const TableLayout& layout : layouts) {
     tables.push_back(create_extensible(file.id(), layout.name, hdf5::row_type(layout.columns)));
@@ -208,10 +214,13 @@ void RunFileWriter::Impl::create(const RunFileHeader& header) {
 
   // HDF5 gives up its lock on the file when SWMR writing starts. A shared lock of our own lets
   // readers in and keeps repair(), which wants an exclusive one, away from a file in use.
-  own = Descriptor{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
+  own = Descriptor{::open(unfinished(path).c_str(), O_RDWR | O_CLOEXEC)};
   if (own.get() < 0) throw RecordingError{std::string{"opening the file again: "} + std::strerror(errno)};
   if (::flock(own.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     throw RecordingError{"another process uses this file; write into another run directory"};
+  }
+  if (::rename(unfinished(path).c_str(), path.c_str()) != 0) {
+    throw RecordingError{std::string{"giving the file its name: "} + std::strerror(errno)};
   }
 }
 
@@ -273,7 +282,10 @@ RunFileWriter::RunFileWriter(const std::filesystem::path& path, const RunFileHea
   try {
     impl_->create(header);
   } catch (const RecordingError& error) {
+    const bool is_ours = impl_->file.valid();
     impl_->fail();
+    std::error_code ignored;
+    if (is_ours) std::filesystem::remove(unfinished(path), ignored);
     throw RecordingError{path.string() + ": " + error.what()};
   }
 }

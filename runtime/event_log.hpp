@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -25,7 +26,8 @@ class EventLog final : public Outbox<Event> {
 
   bool send(const Event& event) noexcept override;
   /// Writes the events sent since the last call. Not for a control thread.
-  void write();
+  /// @param before_line   called before each of them, if given.
+  void write(const std::function<void()>& before_line = {});
 
  private:
   Outbox<Event>& network_;

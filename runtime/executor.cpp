@@ -1,19 +1,26 @@
 #include "runtime/executor.hpp"
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <ctime>
 #include <thread>
 
 namespace hybridtest {
 namespace {
 
-std::atomic<bool> stop_requested{false};
+/// End a process by default, without a core dump but for SIGQUIT and SIGXCPU.
+constexpr std::array kStopSignals{SIGHUP,  SIGINT,    SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2,  SIGALRM,
+                                  SIGPROF, SIGVTALRM, SIGPOLL, SIGPWR,  SIGXCPU, SIGSTKFLT};
+
+std::atomic<int> first_stop_signal{0};
 std::atomic<Waker*> waker_to_signal{nullptr};
 
-extern "C" void request_stop(int) {
-  stop_requested.store(true);
+extern "C" void request_stop(int signal) {
+  int none = 0;
+  first_stop_signal.compare_exchange_strong(none, signal);
   if (Waker* waker = waker_to_signal.load()) waker->signal();
 }
 
@@ -44,15 +51,27 @@ void wait_while(const std::function<bool()>& condition) {
   while (condition()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
 }
 
-void stop_on_signals(Waker& waker) {
-  waker_to_signal.store(&waker);
+void catch_stop_signals() {
   struct sigaction action {};
   action.sa_handler = request_stop;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : kStopSignals) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGXFSZ, &action, nullptr);
 }
 
-bool stop_was_requested() noexcept { return stop_requested.load(); }
+void wake_on_stop(Waker& waker) noexcept { waker_to_signal.store(&waker); }
+
+bool stop_was_requested() noexcept { return first_stop_signal.load() != 0; }
+
+std::string stop_signal() {
+  const int signal = first_stop_signal.load();
+  return signal == 0 ? "" : std::string{"SIG"} + sigabbrev_np(signal);
+}
 
 }  // namespace hybridtest

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "core/node.hpp"
 #include "core/time.hpp"
@@ -42,10 +43,16 @@ void rest_until(const ProcessClock& clock, Instant instant) noexcept;
 /// Sleeps in intervals of one millisecond while the condition is true.
 void wait_while(const std::function<bool()>& condition);
 
-/// Makes SIGINT and SIGTERM request a safe stop: they set a flag and signal the waker. One waker per
-/// process, which must live until the process ends.
-void stop_on_signals(Waker& waker);
-/// Whether SIGINT or SIGTERM has been received.
+/// Makes each signal that would end the process, and that can be caught, request a safe stop instead: a closed
+/// terminal (SIGHUP) ends a site as SIGTERM does. Call it before the first thread and the first file. A signal that
+/// the parent made this process ignore (`nohup`) stays ignored. SIGPIPE and SIGXFSZ are ignored: the write that
+/// failed reports its error.
+void catch_stop_signals();
+/// From now on a stop request also signals this waker, which must live until the process ends.
+void wake_on_stop(Waker& waker) noexcept;
+/// Whether a stop has been requested.
 [[nodiscard]] bool stop_was_requested() noexcept;
+/// Name of the first signal that requested it, such as "SIGHUP"; empty before.
+[[nodiscard]] std::string stop_signal();
 
 }  // namespace hybridtest

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <iostream>
 #include <iterator>
 #include <memory>
 
@@ -13,12 +14,14 @@
 #include "core/config_error.hpp"
 #include "recording/recorder.hpp"
 #include "recording/recorder_thread.hpp"
+#include "recording/summary/run_summary.hpp"
 #include "runtime/event_log.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
+#include "runtime/progress.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/version.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
@@ -63,30 +66,64 @@ class ProcessSurroundings {
   EventLog event_log_;
 };
 
+/// What a process that was started by hand shows on standard error: what it waits for, then how far the test is.
+class ParticipantProgress {
+ public:
+  ParticipantProgress(const Scenario& scenario, const ParticipantProcessOptions& options, Role role)
+      : progress_{scenario, stderr} {
+    const char* what = role == Role::coordinator ? "the substructures" : "the coordinator";
+    std::fprintf(stderr, "%s: test %s, DDS domain %u; waiting up to %.0f s for %s; Ctrl-C ends it\n",
+                 options.id.c_str(), scenario.name.c_str(), static_cast<unsigned>(options.network.domain),
+                 to_seconds(scenario.timeouts.discovery), what);
+  }
+
+  void show(const Presence& presence, Instant now) {
+    progress_.learn(presence.own_status());
+    for (const Peer& peer : presence.peers()) progress_.learn(peer.status);
+    progress_.set_completed(presence.own_status().last_step, now);
+    progress_.show(now);
+  }
+  void clear_line() { progress_.clear_line(); }
+
+ private:
+  Progress progress_;
+};
+
 /// Runs after each advance() of the node: passes on stop requests, writes events, checks the recording.
 class Housekeeping {
  public:
-  Housekeeping(Participant& participant, ProcessSurroundings& process, bool may_wait)
-      : participant_{participant}, process_{process}, may_wait_{may_wait} {}
+  /// @param progress   nullptr: none is shown.
+  Housekeeping(Participant& participant, ProcessSurroundings& process, ParticipantProgress* progress, bool may_wait)
+      : participant_{participant}, process_{process}, progress_{progress}, may_wait_{may_wait} {}
 
   void operator()(Instant now) {
     if (stop_was_requested() && !stop_passed_on_) {
       stop_passed_on_ = true;
+      clear_line();
+      std::fprintf(stderr, "%s: received %s: stopping safely\n", participant_.presence().identity().id.text().c_str(),
+                   stop_signal().c_str());
       participant_.request_stop(StopReason::interrupted);
     }
     watch_recording(now);
-    process_.event_log().write();
+    process_.event_log().write([&] { clear_line(); });
+    if (progress_ != nullptr) progress_->show(participant_.presence(), now);
     // Lockstep has no deadlines: it waits for the disk so that no record is lost.
     if (may_wait_) wait_while([&] { return process_.recorder().should_drain() && !process_.recorder().failed(); });
   }
 
  private:
+  void clear_line() {
+    if (progress_ != nullptr) progress_->clear_line();
+  }
+
   void watch_recording(Instant now) {
     if (!reported_failure_ && process_.recorder().failed()) {
       reported_failure_ = true;
+      clear_line();
       std::fprintf(stderr, "the recording failed: %s\n", process_.recorder().error_text().c_str());
       participant_.presence().raise(FaultFlags::recording_failed);
-      participant_.presence().report(now, Severity::fault, EventCode::recording_failed);
+      participant_.presence().report(now, Severity::fault, EventCode::recording_failed, {},
+                                     {static_cast<double>(process_.recorder().error_number()), 0.0});
     }
     if (!reported_drop_ && process_.recorder().dropped() > 0) {
       reported_drop_ = true;
@@ -98,6 +135,7 @@ class Housekeeping {
 
   Participant& participant_;
   ProcessSurroundings& process_;
+  ParticipantProgress* progress_;
   bool may_wait_;
   bool stop_passed_on_ = false;
   bool reported_failure_ = false;
@@ -113,10 +151,13 @@ int exit_code_of(const Participant& participant, const Recorder& recorder) {
 
 /// @param at_the_end   called before the recording is closed, for its last rows.
 void run_to_the_end(
-    Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, CouplingMode mode,
-    const std::function<void()>& at_the_end = [] {}) {
+    Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, const Scenario& scenario,
+    const ParticipantProcessOptions& options, const std::function<void()>& at_the_end = [] {}) {
   RecorderThread recording{process.recorder()};
-  Housekeeping housekeeping{participant, process, mode == CouplingMode::lockstep};
+  std::optional<ParticipantProgress> progress;
+  if (options.shows_progress) progress.emplace(scenario, options, participant.presence().identity().role);
+  Housekeeping housekeeping{participant, process, progress ? &*progress : nullptr,
+                            scenario.time.mode == CouplingMode::lockstep};
   run_until(
       participant.node(), process.transport().waker(), clock, [&] { return participant.is_done(); },
       [&](Instant now) { housekeeping(now); });
@@ -129,8 +170,8 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
   tables.push_back(test_layout());
   ProcessSurroundings process{scenario, options, Role::coordinator, tables};
   CoordinatorParticipant participant{scenario, process.surroundings()};
-  stop_on_signals(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
+  wake_on_stop(process.transport().waker());
+  run_to_the_end(participant, process, clock, scenario, options, [&] {
     const CoordinatorReport report = participant.report();
     process.recorder().sink("test").append(test_row(scenario, report, exit_code_for(report.reason)));
   });
@@ -141,8 +182,8 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
                   const ParticipantProcessOptions& options, const ProcessClock& clock) {
   ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure)};
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
-  stop_on_signals(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario.time.mode);
+  wake_on_stop(process.transport().waker());
+  run_to_the_end(participant, process, clock, scenario, options);
   return exit_code_of(participant, process.recorder());
 }
 
@@ -162,7 +203,8 @@ void report_grant(Presence& presence, Instant now, const RealTimeRequest& reques
 
 /// Runs the link on this thread and the control loop on its own thread.
 void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
-                               const Scenario& scenario, const SubstructureScenario& substructure) {
+                               const Scenario& scenario, const SubstructureScenario& substructure,
+                               const ParticipantProcessOptions& options) {
   const RealTimeRequest& request = substructure.site.real_time;
   LoopThread loop{participant.control_loop(), clock, request,
                   from_seconds(scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step)};
@@ -174,7 +216,7 @@ void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings
         ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
         "real_time.allow_degraded: true to start without them"};
   }
-  run_to_the_end(participant, process, clock, scenario.time.mode, [&] {
+  run_to_the_end(participant, process, clock, scenario, options, [&] {
     loop.stop();
     record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
                        process.recorder().sink("loop_start_lateness"));
@@ -189,11 +231,11 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
   ProcessSurroundings process{scenario, options, substructure.role, tables};
   SiteParticipant participant{scenario, substructure, process.surroundings(), !has_loop_thread};
   set_assert_action([](void* rig) noexcept { static_cast<Rig*>(rig)->stop_motion(); }, &participant.rig());
-  stop_on_signals(process.transport().waker());
+  wake_on_stop(process.transport().waker());
   if (has_loop_thread) {
-    run_site_with_loop_thread(participant, process, clock, scenario, substructure);
+    run_site_with_loop_thread(participant, process, clock, scenario, substructure, options);
   } else {
-    run_to_the_end(participant, process, clock, scenario.time.mode);
+    run_to_the_end(participant, process, clock, scenario, options);
   }
   set_assert_action(nullptr, nullptr);
   return exit_code_of(participant, process.recorder());
@@ -218,6 +260,7 @@ int run_role(const Scenario& scenario, const ParticipantProcessOptions& options,
 }  // namespace
 
 int run_participant_process(const ParticipantProcessOptions& options, Role role) noexcept {
+  catch_stop_signals();
   const ProcessClock clock;
   try {
     const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
@@ -228,7 +271,12 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
     if (effective.run_directory.empty()) effective.run_directory = default_run_directory(scenario.name);
     require_new_run(effective.run_directory, effective.id);
     prepare_run_directory(effective.run_directory, scenario);
-    return run_role(scenario, effective, role, clock);
+    const int exit_code = run_role(scenario, effective, role, clock);
+    if (role == Role::coordinator && options.shows_progress) {
+      // The files of the others may still be open, or on other hosts.
+      print_summary(summarise(effective.run_directory, {.only = std::string{kCoordinatorId}}), std::cout);
+    }
+    return exit_code;
   } catch (const ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitConfiguration;
@@ -250,6 +298,8 @@ int participant_main(int argc, char** argv, Role role) {
   app.add_option("--set", options.overrides, "Override one value of the scenario, key.path=value; repeatable");
   app.add_option("--out", options.run_directory, "Directory for the records of this participant")
       ->default_str("runs/<name>_<time>");
+  bool is_quiet = false;
+  app.add_flag("--quiet", is_quiet, "Print events only: no progress, no summary");
   network.add_to(app);
   app.footer(
       "Exit codes: 0 completed, 2 configuration or participant missing, 3 ended early, 4 data invalid, 70 "
@@ -261,6 +311,7 @@ int participant_main(int argc, char** argv, Role role) {
     return code == 0 ? 0 : kExitConfiguration;
   }
   options.network = network.settings();
+  options.shows_progress = !is_quiet;
   return run_participant_process(options, role);
 }
 

@@ -16,6 +16,7 @@ struct ParticipantProcessOptions {
   std::string id;                       // of the substructure; not used by the coordinator
   std::filesystem::path run_directory;  // created if it does not exist
   fast_dds::FastDdsSettings network;
+  bool shows_progress = true;  // on standard error; and the coordinator's summary on standard output
 };
 
 /// Runs one participant in this process: reads the scenario, joins the test, takes part until it ends,

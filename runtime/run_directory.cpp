@@ -89,6 +89,7 @@ TableLayout test_layout() {
            {"stop_reason", ""},
            {"wall_time_s", "s"},
            {"exit_code", ""},
+           {"step_wall_time_s", "s"},
            {"ground_motion_peak_m_per_s2", "m/s2"},
            {"ground_motion_points", ""},
            {"ground_motion_duration_s", "s"}}};
@@ -97,11 +98,14 @@ TableLayout test_layout() {
 std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code) {
   // Step 0 is the initial state; it is not counted as a completed step.
   const Step taken = std::max<Step>(report.completed_steps - 1, 0);
+  const bool is_paced = scenario.time.mode == CouplingMode::paced;
+  const double step_wall_time_s = is_paced ? scenario.time.step_s * scenario.time.time_scale : 0.0;
   return {static_cast<double>(scenario.time.last_step),
           static_cast<double>(taken),
           static_cast<double>(report.reason),
           to_seconds(report.running_time),
           static_cast<double>(exit_code),
+          step_wall_time_s,
           scenario.ground_motion.peak_m_per_s2,
           static_cast<double>(scenario.ground_motion.points),
           scenario.ground_motion.duration_s};

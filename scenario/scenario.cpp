@@ -295,6 +295,7 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   SubstructureScenario substructure;
   substructure.id = plain_name(section, "id", ParticipantId::kCapacity);
   if (substructure.id == kCoordinatorId) section.error("id", "'coordinator' is taken by the coordinator itself");
+  if (substructure.id == kOperatorId) section.error("id", "'operator' stands for the person at the controls");
   const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
   read_interface(section, scenario.dofs, substructure);

@@ -29,9 +29,10 @@ void RecursiveLeastSquares::observe(const DelaySample& sample) noexcept {
   accumulate(sample);
   if (rr_ < parameters_.motion_m_min * parameters_.motion_m_min) return;
   const double determinant = rr_ * vv_ - rv_ * rv_;
-  if (determinant < kIndependenceMin * rr_ * vv_) return;
+  // Written so that a reference that has not moved yet, with r' = 0 and both sides zero, returns too.
+  if (!(determinant > kIndependenceMin * rr_ * vv_)) return;
   const double gain = (rm_ * vv_ - vm_ * rv_) / determinant;
-  if (gain < kGainMin) return;
+  if (!(gain >= kGainMin)) return;
   gain_ = gain;
   const double error_s = -(vm_ * rr_ - rm_ * rv_) / determinant / gain;
   const double wanted_s = std::clamp(expansion_s_ + error_s, limits().delay_s_min, limits().delay_s_max);

@@ -12,6 +12,7 @@
 #include "core/ground_motion_facts.hpp"
 #include "core/messages.hpp"
 #include "recording/summary/percentiles.hpp"
+#include "recording/summary/process_end.hpp"
 #include "recording/summary/tracking_error.hpp"
 
 namespace hybridtest {
@@ -84,6 +85,21 @@ struct ParticipantFileSummary {
   std::uint64_t missing_steps = 0;  // gaps in the column `step` of its table `steps`
 };
 
+/// How the test ended, beside its stop reason.
+struct EndSummary {
+  std::string who;                     // a participant's id or `operator`; empty when it is not known
+  std::string why;                     // one sentence; empty when there is no more to say
+  std::optional<double> model_time_s;  // [s] when; empty for a test that never started
+};
+
+/// Times in which a paced test stood still, see is_stall(). The operator's pauses do not count.
+struct StallSummary {
+  std::uint64_t count = 0;
+  double total_s = 0.0;       // [s] wall time beyond that of the steps
+  double longest_s = 0.0;     // [s] likewise
+  double model_time_s = 0.0;  // [s] of the longest
+};
+
 /// The results of a test. All values in SI.
 struct RunSummary {
   std::string test_name;
@@ -92,7 +108,9 @@ struct RunSummary {
   std::string software_version;
 
   int exit_code = kExitInternal;
-  StopReason stop_reason = StopReason::none;  // none when the coordinator's file has no reason
+  StopReason stop_reason = StopReason::none;  // none when neither a file nor a process tells it
+  EndSummary end;
+  StallSummary stalls;
   bool data_valid = false;
   std::vector<std::string> data_faults;  // why the data are invalid, one sentence each
   std::vector<std::string> remarks;      // notes that are not faults
@@ -111,7 +129,16 @@ struct RunSummary {
   std::vector<ParticipantFileSummary> participants;
 };
 
-/// The test's end in a few words, such as "ended by an interlock; data invalid".
+/// What the caller of summarise() knows beside the files.
+struct SummaryInput {
+  std::string test_name{};              // for a test whose processes ended before they had a file
+  std::vector<ProcessEnd> processes{};  // empty: those in `processes.json`, if it is there
+  std::vector<Event> events{};          // heard from the network; a full disk keeps them out of the files
+  std::string only{};                   // of the files, only this participant's; empty: all
+};
+
+/// The test's end in a few words, such as "ended by an interlock (storey_1, at 3.210 s); data invalid" or
+/// "completed; specimens held (once 0.45 s at 3.210 s)".
 [[nodiscard]] std::string verdict(const RunSummary& summary);
 
 /// Reads every run file of a run directory. Columns are found by name. Unknown tables, columns and
@@ -121,8 +148,10 @@ struct RunSummary {
 /// its end or was left by a killed process, files belong to different tests, or the coordinator's
 /// file is missing or has no end. Then the exit code is 4 unless the test ended with an error code
 /// of its own, which stays.
-/// @throws RecordingError when the directory has no readable run file.
-[[nodiscard]] RunSummary summarise(const std::filesystem::path& run_directory);
+///
+/// Who ended the test, why and when is read from the events and from `processes.json`, see ProcessEnd.
+/// @throws RecordingError when the directory has no readable run file, and no process is known either.
+[[nodiscard]] RunSummary summarise(const std::filesystem::path& run_directory, const SummaryInput& input = {});
 
 /// For programs: complete, SI; unknown values are null.
 void write_summary_json(const RunSummary& summary, std::ostream& stream);

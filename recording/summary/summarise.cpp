@@ -6,9 +6,12 @@
 #include <set>
 #include <tuple>
 
+#include "core/event_text.hpp"
+#include "core/stall.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
 #include "recording/summary/columns.hpp"
+#include "recording/summary/find_end.hpp"
 #include "recording/summary/run_summary.hpp"
 #include "recording/summary/test_rows.hpp"
 
@@ -190,7 +193,11 @@ std::string interlock_key(const Event& event) {
 /// Puts a summary together from the files of a run.
 class Summariser {
  public:
-  explicit Summariser(const std::filesystem::path& run_directory) { open_files(run_directory); }
+  Summariser(const std::filesystem::path& run_directory, const SummaryInput& input) : input_{input} {
+    if (input_.processes.empty()) input_.processes = read_process_ends(run_directory);
+    open_files(run_directory);
+    collect_events();
+  }
 
   RunSummary summarise() {
     summarise_files();
@@ -202,14 +209,17 @@ class Summariser {
     summarise_substructures();
     summarise_events();
     check_ends();
+    find_end(summary_, input_.processes, events_);
     conclude();
     return std::move(summary_);
   }
 
  private:
   void open_files(const std::filesystem::path& run_directory);
+  void collect_events();
   void summarise_files();
   void summarise_test();
+  void find_stalls();
   void summarise_substructures();
   void summarise_events();
   void check_ends();
@@ -223,9 +233,10 @@ class Summariser {
     return found == files_.end() ? nullptr : &*found;
   }
 
+  SummaryInput input_;
   std::vector<RunFileReader> files_;
+  std::vector<RecordedEvent> events_;  // of all files, then those from the network
   const RunFileReader* coordinator_ = nullptr;
-  std::optional<int> recorded_exit_code_;
   RunSummary summary_;
 };
 
@@ -233,7 +244,8 @@ void Summariser::open_files(const std::filesystem::path& run_directory) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator{run_directory, error}) {
-    if (entry.path().extension() == kRunFileExtension) paths.push_back(entry.path());
+    const bool is_wanted = input_.only.empty() || entry.path().stem() == input_.only;
+    if (is_wanted && entry.path().extension() == kRunFileExtension) paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
   for (const auto& path : paths) {
@@ -243,13 +255,26 @@ void Summariser::open_files(const std::filesystem::path& run_directory) {
       add_data_fault(unreadable.what());
     }
   }
-  if (files_.empty()) throw RecordingError{run_directory.string() + ": no readable run file (*.h5) in this directory"};
+  if (files_.empty() && input_.processes.empty())
+    throw RecordingError{run_directory.string() + ": no readable run file (*.h5) in this directory"};
   for (const RunFileReader& file : files_) {
     if (file.header().role == Role::coordinator) coordinator_ = &file;
   }
 }
 
+void Summariser::collect_events() {
+  for (const RunFileReader& file : files_) {
+    const std::vector<RecordedEvent> events = file.events();
+    events_.insert(events_.end(), events.begin(), events.end());
+  }
+  for (const Event& event : input_.events) events_.push_back({event, describe(event)});
+}
+
 void Summariser::summarise_files() {
+  if (files_.empty()) {
+    summary_.test_name = input_.test_name;
+    return;
+  }
   const RunFileHeader& first = (coordinator_ != nullptr ? *coordinator_ : files_.front()).header();
   summary_.test_name = first.test_name;
   summary_.scenario_digest = hex(first.scenario_digest);
@@ -292,7 +317,6 @@ void Summariser::summarise_test() {
   } else {
     add_data_fault("the coordinator's file does not say how the test ended");
   }
-  if (const auto code = last_of(column_if_any(file, kTest, "exit_code"))) recorded_exit_code_ = static_cast<int>(*code);
   if (const auto planned = last_of(column_if_any(file, kTest, "planned_steps"))) {
     summary_.planned_steps = static_cast<std::int64_t>(*planned);
   }
@@ -315,6 +339,32 @@ void Summariser::summarise_test() {
   if (!summary_.wall_time_s && !wall_s.empty()) summary_.wall_time_s = wall_s.back() - wall_s.front();
   if (summary_.wall_time_s && *summary_.wall_time_s > 0.0)
     summary_.steps_per_second = completed / *summary_.wall_time_s;
+  find_stalls();
+}
+
+void Summariser::find_stalls() {
+  const double step_s = last_of(column_if_any(*coordinator_, kTest, "step_wall_time_s")).value_or(0.0);
+  if (!(step_s > 0.0)) return;  // lockstep: without a clock nothing stands still
+  const std::vector<double> step = column_if_any(*coordinator_, kSteps, "step");
+  const std::vector<double> wall_s = column_if_any(*coordinator_, kSteps, "wall_time_s");
+  const std::vector<double> model_s = column_if_any(*coordinator_, kSteps, "model_time_s");
+  std::set<std::int64_t> paused;
+  for (const RecordedEvent& recorded : events_) {
+    if (recorded.event.code == EventCode::test_paused) paused.insert(recorded.event.step);
+  }
+  for (std::size_t i = 1; i < std::min({step.size(), wall_s.size(), model_s.size()}); ++i) {
+    const double taken_s = wall_s[i] - wall_s[i - 1];
+    if (!is_stall(taken_s, step_s)) continue;
+    // A pause begins when a step is over; the commands of the next may be out already.
+    const auto at = static_cast<std::int64_t>(step[i]);
+    if (paused.contains(at) || paused.contains(at - 1)) continue;
+    StallSummary& stalls = summary_.stalls;
+    ++stalls.count;
+    stalls.total_s += taken_s - step_s;
+    if (taken_s - step_s <= stalls.longest_s) continue;
+    stalls.longest_s = taken_s - step_s;
+    stalls.model_time_s = model_s[i];
+  }
 }
 
 void Summariser::summarise_substructures() {
@@ -354,17 +404,15 @@ void Summariser::summarise_events() {
   // The same event is in the file of its source and in the files of its receivers.
   std::set<std::string> seen;
   std::set<std::string> told;
-  for (const RunFileReader& file : files_) {
-    for (const RecordedEvent& recorded : file.events()) {
-      const Event& event = recorded.event;
-      if (event.code == EventCode::interlock_tripped) {
-        if (!seen.insert(interlock_key(event)).second) continue;
-        summary_.interlocks.push_back({event.source.text(), event.subject.text(), event.values[0], event.values[1],
-                                       event.step, event.model_time_s});
-      } else if (event.severity == Severity::fault) {
-        const std::string text = event.source.text() + ": " + recorded.text;
-        if (told.insert(text).second) summary_.faults.push_back(text);
-      }
+  for (const RecordedEvent& recorded : events_) {
+    const Event& event = recorded.event;
+    if (event.code == EventCode::interlock_tripped) {
+      if (!seen.insert(interlock_key(event)).second) continue;
+      summary_.interlocks.push_back({event.source.text(), event.subject.text(), event.values[0], event.values[1],
+                                     event.step, event.model_time_s});
+    } else if (event.severity == Severity::fault) {
+      const std::string text = event.source.text() + ": " + recorded.text;
+      if (told.insert(text).second) summary_.faults.push_back(text);
     }
   }
   std::stable_sort(summary_.interlocks.begin(), summary_.interlocks.end(),
@@ -389,32 +437,16 @@ void Summariser::check_ends() {
 
 void Summariser::conclude() {
   summary_.data_valid = summary_.data_faults.empty();
-  // Without the end of the coordinator's file, the validity of the data is unknown.
-  summary_.exit_code = recorded_exit_code_.value_or(kExitDataInvalid);
+  // Without an end, the validity of the data is unknown.
+  const bool has_end = summary_.stop_reason != StopReason::none;
+  summary_.exit_code = has_end ? exit_code_for(summary_.stop_reason) : kExitDataInvalid;
   if (!summary_.data_valid && summary_.exit_code == kExitCompleted) summary_.exit_code = kExitDataInvalid;
 }
 
 }  // namespace
 
-std::string verdict(const RunSummary& summary) {
-  const std::string end = [&]() -> std::string {
-    switch (summary.stop_reason) {
-      case StopReason::none: return "end unknown";
-      case StopReason::completed: return "completed";
-      case StopReason::interrupted: return "stopped by the operator";
-      case StopReason::interlock: return "ended by an interlock";
-      case StopReason::participant_lost: return "ended: a participant was lost";
-      case StopReason::coordinator_lost: return "ended: the coordinator was lost";
-      case StopReason::not_finite: return "ended: a number was not finite";
-      case StopReason::not_assembled: return "never started: participants missing";
-      case StopReason::refused: return "never started: refused";
-      case StopReason::recording_failed: return "ended: recording failed";
-    }
-    return "end unknown";
-  }();
-  return summary.data_valid ? end : end + "; data invalid";
+RunSummary summarise(const std::filesystem::path& run_directory, const SummaryInput& input) {
+  return Summariser{run_directory, input}.summarise();
 }
-
-RunSummary summarise(const std::filesystem::path& run_directory) { return Summariser{run_directory}.summarise(); }
 
 }  // namespace hybridtest

@@ -67,9 +67,13 @@ void print_list(const char* title, const std::vector<std::string>& lines, std::o
 
 void print_head(const RunSummary& summary, std::ostream& stream) {
   std::string words = verdict(summary);
-  std::transform(words.begin(), words.end(), words.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  int depth = 0;  // names and units in parentheses stay as they are
+  for (char& c : words) {
+    depth += (c == '(') - (c == ')');
+    if (depth == 0) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
   stream << words << "  (exit " << summary.exit_code << ")  " << summary.test_name << '\n';
+  if (!summary.end.why.empty()) stream << "  cause: " << summary.end.why << '\n';
   stream << "  " << summary.completed_steps;
   if (summary.planned_steps) stream << " of " << *summary.planned_steps;
   stream << " steps, " << fixed(summary.model_time_s, 3) << " s of model time";
@@ -160,6 +164,21 @@ void print_sites(const RunSummary& summary, std::ostream& stream) {
 }
 
 }  // namespace
+
+std::string verdict(const RunSummary& summary) {
+  std::string text{test_end(summary.stop_reason).verdict};
+  const bool is_completed = summary.stop_reason == StopReason::completed;
+  std::string where = is_completed || summary.end.who == kOperatorId ? "" : summary.end.who;
+  if (!is_completed && summary.end.model_time_s) {
+    where += (where.empty() ? "at " : ", at ") + fixed(*summary.end.model_time_s, 3) + " s";
+  }
+  if (!where.empty()) text += " (" + where + ")";
+  if (const StallSummary& stalls = summary.stalls; stalls.count > 0) {
+    text += "; specimens held (" + (stalls.count == 1 ? "once" : std::to_string(stalls.count) + " times, up to") + " " +
+            fixed(stalls.longest_s, 2) + " s at " + fixed(stalls.model_time_s, 3) + " s)";
+  }
+  return summary.data_valid ? text : text + "; data invalid";
+}
 
 void print_summary(const RunSummary& summary, std::ostream& stream) {
   print_head(summary, stream);

@@ -109,12 +109,13 @@ TEST_F(Loss, KilledCoordinatorBringsOthersToRest) {
   const auto coordinator = std::ranges::find_if(children, is_coordinator);
   ASSERT_NE(coordinator, children.end());
   ASSERT_EQ(::kill(*coordinator, SIGKILL), 0);
-  ASSERT_THAT(run.wait(), Optional(kExitDataInvalid)) << run.standard_error();
-  EXPECT_THAT(run.standard_output(), HasSubstr("END UNKNOWN; DATA INVALID"));
+  ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
+  EXPECT_THAT(run.standard_output(), HasSubstr("ENDED: THE COORDINATOR WAS LOST (coordinator, at"));
+  EXPECT_THAT(run.standard_output(), HasSubstr("DATA INVALID"));
 
   const RecordedRun record = recorded("run");
   EXPECT_EQ(record.summary()["data_valid"], false);
-  EXPECT_EQ(record.summary()["stop_reason"], "none");
+  EXPECT_EQ(record.summary()["stop_reason"], "coordinator_lost");
   EXPECT_FALSE(record.open("coordinator").counters().closed_cleanly);
   expect_all_steps_from_the_first(record, "coordinator");
   expect_opens_with_h5dump(record.file("coordinator"), directory());

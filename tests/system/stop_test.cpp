@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <string>
 #include <utility>
@@ -103,7 +104,39 @@ TEST_F(Stop, PauseResumeAndEmergencyStopTakeEffect) {
   EXPECT_EQ(control("emergency-stop"), kExitCompleted);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   // Nothing moves after an emergency stop, not even back.
-  expect_stopped_in_order(StopReason::interlock, false);
+  expect_stopped_in_order(StopReason::emergency_stop, false);
+}
+
+TEST_F(Stop, EmergencyStopReachesTheSiteWithoutTheCoordinator) {
+  StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run",
+                                 {"--set", "time.duration_s=600", "--set", "timeouts={liveliness_lease_s: 30}", "--set",
+                                  "substructures[storey_1].limits.command_age_s=60"});
+  ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
+  const auto children = run.children();
+  const auto coordinator = std::ranges::find_if(children, [&](pid_t process) {
+    return process != run.child({"--id", "storey_1"}) && process != run.child({"--id", "storey_2"});
+  });
+  ASSERT_NE(coordinator, children.end());
+  ASSERT_EQ(::kill(*coordinator, SIGSTOP), 0);
+  Arguments arguments{"emergency-stop", test_name()};
+  for (const std::string& argument : network()) arguments.push_back(argument);
+  StartedProgram command = start_hybridtest(arguments, "emergency_stop");
+  // The coordinator did not answer, and the operator is told so.
+  EXPECT_THAT(command.wait(), Optional(kExitEndedEarly)) << command.standard_error();
+  EXPECT_THAT(command.standard_output(), HasSubstr("storey_1"));
+  EXPECT_THAT(command.standard_error(), HasSubstr("NOT found: coordinator"));
+  ASSERT_TRUE(wait_until([&] { return run.child({"--id", "storey_1"}) == 0; })) << "the site goes on";
+  ::kill(*coordinator, SIGCONT);
+  ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
+  EXPECT_EQ(recorded("run").summary()["stop_reason"], "emergency_stop");
+}
+
+TEST_F(Stop, UnknownTestIsNotFound) {
+  Arguments arguments{"stop", "no_test_of_this_name"};
+  for (const std::string& argument : network()) arguments.push_back(argument);
+  StartedProgram command = start_hybridtest(arguments, "stop");
+  EXPECT_THAT(command.wait(), Optional(kExitConfiguration));
+  EXPECT_THAT(command.standard_error(), HasSubstr("no participant of this test was found"));
 }
 
 }  // namespace

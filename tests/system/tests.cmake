@@ -26,7 +26,7 @@ add_executable(simulate_digest_unoptimised system/simulate_digest/main.cpp ${par
 target_compile_features(simulate_digest_unoptimised PRIVATE cxx_std_20)
 target_include_directories(simulate_digest_unoptimised PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(simulate_digest_unoptimised PRIVATE Eigen3::Eigen yaml-cpp HDF5::HDF5 nlohmann_json::nlohmann_json
-  OpenSSL::Crypto Threads::Threads hybridtest_version)
+  OpenSSL::Crypto Threads::Threads fmt::fmt hybridtest_version)
 # After the build type's own flags, so these win.
 target_compile_options(simulate_digest_unoptimised PRIVATE -O0 -UNDEBUG -g0)
 set_target_properties(simulate_digest_unoptimised PROPERTIES

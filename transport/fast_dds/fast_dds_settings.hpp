@@ -40,6 +40,9 @@ struct FastDdsSettings {
   /// A participant whose rig can move and that sends no status for this time is lost as well: its
   /// process lives, its node does not. Every node repeats its status at least twice as often.
   Duration heartbeat_deadline = std::chrono::seconds{2};
+  /// Only listens to the statuses, and hears those of every test, whatever its lease: a reader that asks for a shorter
+  /// lease than a writer offers is not matched with it. Not for participants of a test.
+  bool is_observer = false;
 };
 
 }  // namespace hybridtest::fast_dds

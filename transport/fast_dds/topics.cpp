@@ -51,6 +51,10 @@ dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& s
 dds::DataReaderQos reader_qos(const Delivery& delivery, const FastDdsSettings& settings) {
   dds::DataReaderQos qos;
   set_delivery(delivery, delivery.reader_depth > 0 ? delivery.reader_depth : delivery.depth, settings, qos);
+  if (settings.is_observer) {
+    qos.liveliness() = dds::DataReaderQos{}.liveliness();
+    qos.deadline() = dds::DataReaderQos{}.deadline();
+  }
   return qos;
 }
 

@@ -524,8 +524,107 @@ TEST_F(CoordinatorTest, EmergencyStopEndsTest) {
   make();
   start();
   operator_says(ControlVerb::emergency_stop);
+  EXPECT_EQ(reason(), StopReason::emergency_stop);
+  operator_says(ControlVerb::emergency_stop);
+  EXPECT_EQ(subjects(EventCode::emergency_stop).size(), 1U) << "the operator's tool repeats itself";
+  EXPECT_EQ(subjects(EventCode::test_stopped), (std::multiset<std::string>{"operator"}));
+}
+
+TEST_F(CoordinatorTest, EmergencyStopAtASiteIsNoInterlock) {
+  make();
+  start();
+  say(0, LifecycleState::stopping, FaultFlags::emergency_stop);
+  advance();
+  EXPECT_EQ(reason(), StopReason::emergency_stop);
+}
+
+TEST_F(CoordinatorTest, SilentSubstructureIsTheCauseOfAnOverdueCommand) {
+  make();
+  start();
+  answer(0, 0);
+  advance();
+  say(0, LifecycleState::running, FaultFlags::command_age);
+  advance(milliseconds{800});
+  EXPECT_EQ(reason(), StopReason::participant_lost);
+  EXPECT_EQ(subjects(EventCode::answer_overdue), (std::multiset<std::string>{"b"}));
+  EXPECT_EQ(subjects(EventCode::test_stopped), (std::multiset<std::string>{"b"}));
+}
+
+TEST_F(CoordinatorTest, OverdueCommandIsAnInterlockWhenNobodyOwesAnAnswer) {
+  make();
+  start();
+  answer(1, 0);
+  advance();
+  say(0, LifecycleState::running, FaultFlags::command_age);
+  advance(milliseconds{800});
   EXPECT_EQ(reason(), StopReason::interlock);
-  EXPECT_EQ(subjects(EventCode::emergency_stop).size(), 1U);
+  EXPECT_EQ(subjects(EventCode::test_stopped), (std::multiset<std::string>{"a"}));
+}
+
+TEST_F(CoordinatorTest, LeavesUnarmedTestWithinHalfASecond) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say(0, LifecycleState::ready);
+  advance();
+  coordinator_->request_stop(StopReason::interrupted);
+  advance();
+  EXPECT_FALSE(coordinator_->is_done());
+  advance(milliseconds{500});
+  EXPECT_TRUE(coordinator_->is_done());
+}
+
+TEST_F(CoordinatorTest, FailedParticipantIsTheReasonGivenByTheMonitor) {
+  make();
+  advance();
+  TestControl message;
+  message.verb = ControlVerb::stop;
+  message.reason = StopReason::participant_failed;
+  message.sender = 1234;
+  control_in_.send(message);
+  advance();
+  EXPECT_EQ(reason(), StopReason::participant_failed);
+}
+
+TEST_F(CoordinatorTest, ReportsAStallOfAPacedTest) {
+  make(CouplingMode::paced, 20);
+  start();
+  const auto take_step = [&](Step step, Duration after) {
+    advance(after);
+    answer(0, step);
+    answer(1, step);
+    keep_alive();
+    advance();
+  };
+  for (Step step = 0; step < 5; ++step) take_step(step, milliseconds{10});
+  EXPECT_TRUE(subjects(EventCode::test_stalled).empty());
+  take_step(5, milliseconds{500});
+  take_step(6, milliseconds{10});
+  EXPECT_EQ(subjects(EventCode::test_stalled), (std::multiset<std::string>{"b"}));
+  const auto stalled = std::ranges::find(told_, EventCode::test_stalled, &Event::code);
+  EXPECT_NEAR(stalled->values[0], 0.5, 1e-9);
+  EXPECT_EQ(stalled->values[1], kStep_s);
+}
+
+TEST_F(CoordinatorTest, PauseIsNoStall) {
+  make(CouplingMode::paced, 20);
+  start();
+  for (Step step = 0; step < 3; ++step) {
+    advance(milliseconds{10});
+    answer(0, step);
+    answer(1, step);
+    advance();
+  }
+  operator_says(ControlVerb::pause);
+  advance(milliseconds{500});
+  keep_alive();
+  operator_says(ControlVerb::resume);
+  advance(milliseconds{10});
+  answer(0, 3);
+  answer(1, 3);
+  advance();
+  EXPECT_EQ(completed(), 4);
+  EXPECT_TRUE(subjects(EventCode::test_stalled).empty());
 }
 
 TEST_F(CoordinatorTest, YoungerCoordinatorLeavesWithoutEffect) {

@@ -320,7 +320,7 @@ TEST_F(SiteLinkTest, PassesEmergencyStopToLoopFirst) {
   const auto requests = take_requests();
   ASSERT_GE(requests.size(), 1U);
   EXPECT_TRUE(std::holds_alternative<loop_request::EmergencyStop>(requests[0]));
-  EXPECT_EQ(link_.stop_reason(), StopReason::interlock);
+  EXPECT_EQ(link_.stop_reason(), StopReason::emergency_stop);
   EXPECT_EQ(presence_.faults(), FaultFlags::emergency_stop);
 }
 

@@ -30,6 +30,8 @@ struct ExampleRun {
   double site_error = 0.0;  // added to the measured displacement, of the target
   bool with_test_row = true;
   double ground_peak_m_per_s2 = 3.5;
+  double step_wall_time_s = 0.0;  // of a paced test
+  int stalled_step = -1;          // takes half a second more
   StopReason stop_reason = StopReason::completed;
   int exit_code = 0;
   std::vector<std::vector<double>> extra_exchanges;
@@ -79,6 +81,7 @@ struct ExampleRun {
                             {"stop_reason", "-"},
                             {"wall_time_s", "s"},
                             {"exit_code", "-"},
+                            {"step_wall_time_s", "s"},
                             {"ground_motion_peak_m_per_s2", "m/s2"},
                             {"ground_motion_points", "-"},
                             {"ground_motion_duration_s", "s"}}},
@@ -89,7 +92,9 @@ struct ExampleRun {
       // Peaks of 30 mm at step 1000 and −45 mm at step 2000.
       const double first_m = i == 1000 ? 0.03 : 0.001;
       const double second_m = i == 2000 ? -0.045 : 0.002;
-      steps.insert(steps.end(), {static_cast<double>(i), time_s(i), 0.5 * time_s(i), first_m, second_m, 99.0, 99.0});
+      const double stall_s = stalled_step >= 0 && i >= stalled_step ? 0.5 : 0.0;
+      steps.insert(steps.end(),
+                   {static_cast<double>(i), time_s(i), 0.5 * time_s(i) + stall_s, first_m, second_m, 99.0, 99.0});
       // 1 to 100 us over and over to the site, 10 us to the other.
       exchanges.insert(exchanges.end(),
                        {static_cast<double>(i), 0.0, 1.0 + i % 100, i == 7 ? 3.0 : 1.0, i == 8 ? 8.0 + 2.0 : 0.0, 0.5});
@@ -101,7 +106,7 @@ struct ExampleRun {
     if (with_test_row) {
       writer.append(2, std::vector{static_cast<double>(kSteps), static_cast<double>(coordinator_steps),
                                    static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code),
-                                   ground_peak_m_per_s2, 6201.0, 31.0});
+                                   step_wall_time_s, ground_peak_m_per_s2, 6201.0, 31.0});
     }
     writer.append_events(coordinator_events, std::vector<std::string>(coordinator_events.size(), "it happened"));
     writer.close();

@@ -129,7 +129,7 @@ TEST(RunSummary, InterlockIsListedOnceWithLimitAndExitCode) {
   run.coordinator_events = {example_event()};
   const RunSummary summary = summary_of(run);
   EXPECT_EQ(summary.exit_code, kExitEndedEarly);
-  EXPECT_EQ(verdict(summary), "ended by an interlock; data invalid");
+  EXPECT_EQ(verdict(summary), "ended by an interlock (storey_1, at 4.711 s); data invalid");
   ASSERT_EQ(summary.interlocks.size(), 1U);
   EXPECT_EQ(summary.interlocks[0].participant, "storey_1");
   EXPECT_EQ(summary.interlocks[0].limit_name, "displacement_limit");
@@ -234,7 +234,7 @@ TEST(RunSummary, MissingTestRowMakesDataInvalid) {
   run.with_test_row = false;
   const RunSummary killed = summary_of(run);
   EXPECT_EQ(killed.exit_code, kExitDataInvalid);
-  EXPECT_EQ(verdict(killed), "end unknown; data invalid");
+  EXPECT_EQ(verdict(killed), "end unknown (at 10.000 s); data invalid");
   EXPECT_EQ(killed.completed_steps, 10'000) << "from the steps recorded";
   EXPECT_FALSE(killed.planned_steps.has_value());
   EXPECT_DOUBLE_EQ(killed.wall_time_s.value(), 5.0);

@@ -126,13 +126,13 @@ class Draw {
   }
   TestControl control() {
     return {one_of(ControlVerb::emergency_stop), any<Incarnation>(), one_of(Role::operator_tool),
-            one_of(StopReason::recording_failed)};
+            one_of(StopReason::participant_failed)};
   }
   Event event() {
     return {text<48>(),
             any<Incarnation>(),
             one_of(Severity::fault),
-            one_of(EventCode::real_time_refused),
+            one_of(EventCode::test_stalled),
             step(),
             time_s(),
             text<48>(),

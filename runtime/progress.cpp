@@ -1,4 +1,4 @@
-#include "launch/progress.hpp"
+#include "runtime/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -31,10 +31,11 @@ class Progress {
   void print(const Event& event);
   /// Shows the state of the test, if the next display is due.
   void show(Instant now);
+  /// Takes the rewritten line off the terminal, before something else is printed there.
+  void clear_line();
 
  private:
   [[nodiscard]] std::string line() const;
-  void clear_line();
 
   const Scenario& scenario_;
   std::FILE* out_;

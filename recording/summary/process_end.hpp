@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hybridtest {
+
+/// How a process of a test ended, as its parent saw it. A process that was killed cannot record that itself.
+struct ProcessEnd {
+  std::string participant;
+  int exit_code = 0;
+  int signal = 0;             // that killed it; 0: it exited by itself
+  std::string words;          // the last line of its log
+  bool was_asked = false;     // it had been asked to stop, or another process had ended before it
+  bool before_start = false;  // of the first step
+
+  /// Whether this process ended the test: it failed before anyone asked it to stop.
+  [[nodiscard]] bool is_cause() const noexcept { return !was_asked && (signal != 0 || exit_code != 0); }
+  /// "killed by signal 9 (Killed)", or its own words.
+  [[nodiscard]] std::string text() const;
+};
+
+/// `processes.json` of a run directory. The write is best effort: without space it is left out.
+void write_process_ends(const std::vector<ProcessEnd>& ends, const std::filesystem::path& run_directory);
+/// @return empty when the file is absent or is not one of ours.
+[[nodiscard]] std::vector<ProcessEnd> read_process_ends(const std::filesystem::path& run_directory);
+
+}  // namespace hybridtest
