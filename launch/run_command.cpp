@@ -79,6 +79,7 @@ int run(RunOptions options) {
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   check_remote(options, scenario);
   if (options.diagnose) require_models(scenario);
+  fast_dds::require_usable(options.network.settings());
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name);
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);

@@ -10,11 +10,13 @@
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
+#include "recording/error.hpp"
 #include "recording/recorder.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/progress.hpp"
+#include "runtime/recording_watch.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/simulation.hpp"
 
@@ -65,6 +67,9 @@ SimulationSettings settings_from(const SimulateOptions& options, const Scenario&
   settings.network.reordering = options.reordering;
   for (const std::string& text : options.outages) {
     const auto [id, times] = id_and_times(text, 2, scenario, "--outage");
+    if (times[1] <= times[0]) {
+      throw ConfigError{"--outage " + text + ": the end is not after the begin; expected ID:BEGIN:END in s"};
+    }
     settings.network.outages.push_back({id, times[0], times[1]});
   }
   for (const std::string& text : options.kills) {
@@ -74,49 +79,81 @@ SimulationSettings settings_from(const SimulateOptions& options, const Scenario&
   return settings;
 }
 
-/// The recorders of all participants, made when their first table is asked for.
+/// Faults after the end of the test have no effect.
+void warn_of_unreached(const SimulateOptions& options, const SimulationSettings& settings, Duration end) {
+  const auto warn = [end](std::string_view option, const std::string& text) {
+    fmt::print(
+        stderr,
+        "warning: {} {} had no effect: the test ended after {:.6g} s of simulated time, which is not model time\n",
+        option, text, to_seconds(end));
+  };
+  for (std::size_t i = 0; i < settings.kills.size(); ++i) {
+    if (settings.kills[i].at >= end) warn("--kill", options.kills[i]);
+  }
+  for (std::size_t i = 0; i < settings.network.outages.size(); ++i) {
+    if (settings.network.outages[i].begin >= end) warn("--outage", options.outages[i]);
+  }
+}
+
+/// The recordings of all participants.
 class SimulatedRecording {
  public:
-  SimulatedRecording(const Scenario& scenario, const std::filesystem::path& directory, std::uint64_t seed)
+  SimulatedRecording(const Scenario& scenario, const std::filesystem::path& directory, std::uint64_t seed) try
       : scenario_{scenario}, directory_{directory}, seed_{seed} {
     make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario));
     for (const SubstructureScenario& substructure : scenario.substructures) {
       make(substructure.id, substructure.role, substructure_tables(substructure));
     }
+  } catch (const RecordingError& error) {
+    throw ConfigError{"--out " + directory.string() + ": cannot record there: " + error.what()};
   }
 
   [[nodiscard]] RowSink& sink(const std::string& participant, std::string_view table) {
-    return recorders_.at(participant)->sink(table);
+    return parts_.at(participant).recorder->sink(table);
   }
-  void keep(const Event& event) { recorders_.at(event.source.text())->events().send(event); }
-  void drain() {
-    for (auto& [id, recorder] : recorders_) {
-      if (recorder->should_drain()) recorder->drain();
-    }
+  void keep(const Event& event) { parts_.at(event.source.text()).recorder->events().send(event); }
+  /// Writes what waits, often enough that a full disk loses the newest rows alone, and reports failures.
+  void keep_house(const std::string& participant, Presence& presence, Instant now) {
+    Part& part = parts_.at(participant);
+    part.recorder->drain();
+    if (part.watch.look(*part.recorder, presence, now)) failures_.push_back(part.recorder->error_text());
   }
-  void close(const SimulationResult& result) {
-    recorders_.at(std::string{kCoordinatorId})
-        ->sink("test")
+  /// Closes the files, so that they can be repaired. @return why recordings failed.
+  [[nodiscard]] std::vector<std::string> close(const SimulationResult& result) {
+    parts_.at(std::string{kCoordinatorId})
+        .recorder->sink("test")
         .append(test_row(scenario_, result.coordinator, exit_code_for(result.coordinator.reason)));
-    for (auto& [id, recorder] : recorders_) recorder->close();
+    for (auto& [id, part] : parts_) {
+      const bool had_failed = part.recorder->failed();
+      part.recorder->close();
+      if (!had_failed && part.recorder->failed()) failures_.push_back(part.recorder->error_text());
+    }
+    parts_.clear();
+    return failures_;
   }
 
  private:
-  /// More rows than one step can append between two calls of drain().
+  /// More rows than one step can append between two calls of keep_house().
   static constexpr std::size_t kRingRows = 1U << 16U;
+
+  struct Part {
+    std::unique_ptr<Recorder> recorder;
+    RecordingWatch watch;
+  };
 
   void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
     if (role == Role::coordinator) tables.push_back(test_layout());
     std::vector<RecordedTable> recorded;
     for (const TableLayout& table : tables) recorded.push_back({table, kRingRows});
-    recorders_[id] =
+    parts_[id].recorder =
         std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, seed_), recorded);
   }
 
   const Scenario& scenario_;
   std::filesystem::path directory_;
   std::uint64_t seed_;
-  std::map<std::string, std::unique_ptr<Recorder>> recorders_;
+  std::map<std::string, Part> parts_;
+  std::vector<std::string> failures_;
 };
 
 void write_event(std::FILE* log, const Event& event) {
@@ -130,6 +167,7 @@ void write_event(std::FILE* log, const Event& event) {
 int simulate_scenario(SimulateOptions options) {
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   const SimulationSettings settings = settings_from(options, scenario);
+  require_simulable(scenario);
   if (options.diagnose) require_models(scenario);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
   require_new_run(options.directory, kCoordinatorId);
@@ -155,8 +193,10 @@ int simulate_scenario(SimulateOptions options) {
       write_event(log.get(), event);
       progress.print(event);
     };
+    observer.housekeeping = [&](const std::string& participant, Presence& presence, Instant now) {
+      recording.keep_house(participant, presence, now);
+    };
     observer.progress = [&](const CoordinatorReport& report) {
-      recording.drain();
       progress.set_completed(report.completed_steps - 1, clock.now());
       progress.show(clock.now());
       return stop_was_requested();
@@ -164,7 +204,8 @@ int simulate_scenario(SimulateOptions options) {
     result = simulate(scenario, settings, observer);
     result.coordinator.running_time = clock.now().time_since_epoch();
   }
-  recording.close(result);
+  for (const std::string& why : recording.close(result)) fmt::print(stderr, "the recording failed: {}\n", why);
+  warn_of_unreached(options, settings, result.simulated_time);
   const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason));
   if (options.diagnose) show_diagnosis(scenario, options.directory);
   return exit_code;
@@ -205,8 +246,13 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
       ->check(probability)
       ->capture_default_str();
   command->add_option("--outage", options->outages,
-                      "ID:BEGIN:END: no message from or to this participant arrives in this time, in s; repeatable");
-  command->add_option("--kill", options->kills, "ID:AT: this participant is killed at this time, in s; repeatable");
+                      "ID:BEGIN:END: no message from or to this participant arrives between these two times, in s of "
+                      "simulated time; repeatable");
+  command->add_option("--kill", options->kills,
+                      "ID:AT: this participant is killed at this time, in s of simulated time; repeatable");
+  command->footer(
+      "Simulated time starts with the processes and is not model time. With mode lockstep a step takes as long as\n"
+      "its messages travel; with mode paced it takes step_s x time_scale.");
   command->callback([options, &action] { action = [options] { return simulate_scenario(*options); }; });
 }
 

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/input_file.hpp"
 #include "recording/error.hpp"
 #include "recording/hdf5/layout.hpp"
 #include "recording/run_file_reader.hpp"
@@ -80,6 +81,7 @@ void repair_open(const std::filesystem::path& path) {
 bool repair(const std::filesystem::path& path) {
   const auto lock = hdf5::lock_library();
   try {
+    if (const auto why = why_unreadable(path)) throw RecordingError{"opening: " + *why};
     if (opens_normally(path)) return false;
     fill_up(path);
     repair_open(path);

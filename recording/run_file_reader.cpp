@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/input_file.hpp"
 #include "recording/error.hpp"
 #include "recording/hdf5/layout.hpp"
 
@@ -13,6 +14,7 @@ using hdf5::checked;
 using hdf5::Handle;
 
 Handle open_file(const std::filesystem::path& path) {
+  if (const auto why = why_unreadable(path)) throw RecordingError{"opening: " + *why};
   // SWMR reading opens files in order as well, and is the only way into one still marked as
   // being written.
   return {checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), "opening"), H5Fclose};

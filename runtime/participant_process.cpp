@@ -22,6 +22,7 @@
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/progress.hpp"
+#include "runtime/recording_watch.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/version.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
@@ -117,19 +118,9 @@ class Housekeeping {
   }
 
   void watch_recording(Instant now) {
-    if (!reported_failure_ && process_.recorder().failed()) {
-      reported_failure_ = true;
+    if (watch_.look(process_.recorder(), participant_.presence(), now)) {
       clear_line();
       std::fprintf(stderr, "the recording failed: %s\n", process_.recorder().error_text().c_str());
-      participant_.presence().raise(FaultFlags::recording_failed);
-      participant_.presence().report(now, Severity::fault, EventCode::recording_failed, {},
-                                     {static_cast<double>(process_.recorder().error_number()), 0.0});
-    }
-    if (!reported_drop_ && process_.recorder().dropped() > 0) {
-      reported_drop_ = true;
-      participant_.presence().raise(FaultFlags::records_dropped);
-      participant_.presence().report(now, Severity::fault, EventCode::records_dropped, {},
-                                     {static_cast<double>(process_.recorder().dropped()), 0.0});
     }
   }
 
@@ -138,8 +129,7 @@ class Housekeeping {
   ParticipantProgress* progress_;
   bool may_wait_;
   bool stop_passed_on_ = false;
-  bool reported_failure_ = false;
-  bool reported_drop_ = false;
+  RecordingWatch watch_;
 };
 
 /// Exit code of the process, after its records are closed. A completed part is valid only with all its records.
@@ -241,20 +231,25 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
   return exit_code_of(participant, process.recorder());
 }
 
-int run_role(const Scenario& scenario, const ParticipantProcessOptions& options, Role role, const ProcessClock& clock) {
-  if (role == Role::coordinator) return run_coordinator(scenario, options, clock);
-  const SubstructureScenario* substructure = scenario.find(options.id);
+/// @throws ConfigError when the scenario has no substructure of this id and role.
+void require_substructure(const Scenario& scenario, const std::string& id, Role role) {
+  const SubstructureScenario* substructure = scenario.find(id);
   if (substructure == nullptr) {
     std::string known;
     for (const auto& other : scenario.substructures) known += (known.empty() ? "" : ", ") + other.id;
-    throw ConfigError{"--id " + options.id + ": the scenario has no such substructure; expected one of " + known};
+    throw ConfigError{"--id " + id + ": the scenario has no such substructure; expected one of " + known};
   }
   if (substructure->role != role) {
-    throw ConfigError{"--id " + options.id + ": this substructure is served by the program " +
+    throw ConfigError{"--id " + id + ": this substructure is served by the program " +
                       std::string{name(substructure->role)}};
   }
-  return role == Role::experimental_site ? run_site(scenario, *substructure, options, clock)
-                                         : run_numerical(scenario, *substructure, options, clock);
+}
+
+int run_role(const Scenario& scenario, const ParticipantProcessOptions& options, Role role, const ProcessClock& clock) {
+  if (role == Role::coordinator) return run_coordinator(scenario, options, clock);
+  const SubstructureScenario& substructure = *scenario.find(options.id);
+  return role == Role::experimental_site ? run_site(scenario, substructure, options, clock)
+                                         : run_numerical(scenario, substructure, options, clock);
 }
 
 }  // namespace
@@ -268,6 +263,8 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
     if (role == Role::coordinator) effective.id = kCoordinatorId;
     effective.network.lease = scenario.timeouts.liveliness_lease;
     effective.network.heartbeat_deadline = scenario.timeouts.liveliness_lease;
+    if (role != Role::coordinator) require_substructure(scenario, effective.id, role);
+    fast_dds::require_usable(effective.network);
     if (effective.run_directory.empty()) effective.run_directory = default_run_directory(scenario.name);
     require_new_run(effective.run_directory, effective.id);
     prepare_run_directory(effective.run_directory, scenario);

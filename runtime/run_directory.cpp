@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <system_error>
 
 #include "core/config_error.hpp"
 #include "runtime/version.hpp"
@@ -48,7 +50,13 @@ void prepare_run_directory(const std::filesystem::path& directory, const Scenari
   // Participants on one machine share the directory; each writes the same bytes.
   const std::filesystem::path partial =
       directory / ("." + std::to_string(scenario.digest[0]) + "." + std::to_string(::getpid()) + ".scenario.yaml");
-  std::ofstream{partial} << scenario.effective;
+  std::ofstream text{partial};
+  text << scenario.effective;
+  if (!text.flush()) {
+    const std::error_code error{errno == 0 ? EIO : errno, std::generic_category()};
+    std::filesystem::remove(partial);
+    throw std::filesystem::filesystem_error{"", partial, error};
+  }
   std::filesystem::rename(partial, file);
 } catch (const std::filesystem::filesystem_error& error) {
   throw ConfigError{"--out " + directory.string() + ": cannot write there: " + error.code().message()};

@@ -150,8 +150,16 @@ class Simulation {
       // A node that is due at once runs a nanosecond later, so that time moves on.
       participant.wake = std::max(participant.clock.simulated(wake), now_ + Duration{1});
       if (&participant == &participants_.front() && ++coordinator_runs_ % kProgressEvery == 0) {
+        keep_house();
         if (observer_.progress(report())) participant.participant->request_stop(StopReason::interrupted);
       }
+    }
+  }
+
+  void keep_house() {
+    for (SimulatedParticipant& participant : participants_) {
+      if (participant.is_over()) continue;
+      observer_.housekeeping(participant.id, participant.participant->presence(), participant.clock.local(now_));
     }
   }
 
@@ -184,14 +192,18 @@ class Simulation {
 
 }  // namespace
 
-SimulationResult simulate(const Scenario& scenario, const SimulationSettings& settings,
-                          const SimulationObserver& observer) {
+void require_simulable(const Scenario& scenario) {
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (!substructure.site.rig_is_elsewhere) continue;
     throw ConfigError{"the rig of " + substructure.id + " is of type " + substructure.site.rig_type +
                       ": it runs outside this process and cannot follow simulated time; choose another type, "
                       "such as `simulated`, or use `hybridtest run`"};
   }
+}
+
+SimulationResult simulate(const Scenario& scenario, const SimulationSettings& settings,
+                          const SimulationObserver& observer) {
+  require_simulable(scenario);
   return Simulation{scenario, settings, observer}.run();
 }
 

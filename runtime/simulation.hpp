@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/messages.hpp"
+#include "core/presence.hpp"
 #include "core/records.hpp"
 #include "scenario/scenario.hpp"
 #include "transport/simulated/simulated_network.hpp"
@@ -32,7 +33,10 @@ struct SimulationSettings {
 struct SimulationObserver {
   std::function<RowSink&(const std::string& participant, const TableLayout& table)> sink;
   std::function<void(const Event& event)> event = [](const Event&) {};
-  /// Called at intervals with the report of the coordinator; true requests a safe stop.
+  /// Called at intervals for each participant; `now` is its clock. May report faults of its recording.
+  std::function<void(const std::string& participant, Presence& presence, Instant now)> housekeeping =
+      [](const std::string&, Presence&, Instant) {};
+  /// Called at intervals, after the housekeeping, with the report of the coordinator; true requests a safe stop.
   std::function<bool(const CoordinatorReport& report)> progress = [](const CoordinatorReport&) { return false; };
 };
 
@@ -51,9 +55,12 @@ struct SimulationResult {
   Duration simulated_time{};
 };
 
+/// @throws ConfigError for a rig outside this process.
+void require_simulable(const Scenario& scenario);
+
 /// Runs every participant of the scenario in this thread under simulated time and a simulated
 /// network. The same scenario and settings give the same bytes in every record.
-/// @throws ConfigError for a rig outside this process.
+/// @throws ConfigError as require_simulable().
 [[nodiscard]] SimulationResult simulate(const Scenario& scenario, const SimulationSettings& settings,
                                         const SimulationObserver& observer);
 

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/config_error.hpp"
+#include "core/input_file.hpp"
 
 namespace hybridtest {
 namespace {
+
+/// Largest recording that is replayed.
+constexpr std::size_t kBytesMax = std::size_t{1} << 30U;
 
 std::vector<std::string_view> split(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
@@ -27,8 +31,9 @@ std::vector<std::string_view> split(std::string_view line) {
 /// The file as a table, read line by line.
 class Lines {
  public:
-  explicit Lines(const std::filesystem::path& file) : file_{file}, stream_{file} {
-    if (!stream_ || !std::getline(stream_, line_)) refuse("cannot be read, or is empty");
+  explicit Lines(const std::filesystem::path& file)
+      : file_{file}, stream_{read_input_file(file, kBytesMax, "a recorded measurement (CSV)")} {
+    if (!std::getline(stream_, line_)) refuse("is empty; expected a recorded measurement (CSV)");
     names_ = line_;
     header_ = split(names_);
   }
@@ -69,7 +74,7 @@ class Lines {
 
  private:
   std::filesystem::path file_;
-  std::ifstream stream_;
+  std::istringstream stream_;
   std::string names_;
   std::string line_;
   int number_ = 1;

@@ -23,6 +23,7 @@
 #include "scenario/catalogue/numerical_models.hpp"
 #include "scenario/catalogue/rigs.hpp"
 #include "scenario/catalogue/simulated_rig.hpp"
+#include "scenario/named_file.hpp"
 #include "scenario/scenario_digest.hpp"
 #include "scenario/sites_in_place.hpp"
 
@@ -31,9 +32,10 @@ namespace {
 using config::Section;
 
 constexpr double kStepsAtMost = 1e9;
+constexpr std::size_t kTestNameLongest = 64;
 
 /// Names become parts of file, partition and column names.
-bool is_plain_name(std::string_view name) {
+bool is_plain_name(std::string_view name) noexcept {
   constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
   return !name.empty() && name.front() != '.' && name.find_first_not_of(kAllowed) == std::string_view::npos;
 }
@@ -75,6 +77,7 @@ void read_timeouts(Section& root, TimeoutScenario& timeouts) {
 
 void read_excitation(Section section, const std::filesystem::path& directory, Scenario& scenario) {
   scenario.ground_motion_text = section.text("ground_motion");
+  const std::optional<std::filesystem::path> file = named_file(section, "ground_motion", directory);
   GroundMotionOptions options;
   options.scale = section.number("scale", kAnyNumber, 1.0);
   if (section.has("dt_s")) options.dt_s = section.number("dt_s", kPositive);
@@ -82,8 +85,8 @@ void read_excitation(Section section, const std::filesystem::path& directory, Sc
     options.unit = static_cast<AccelerationUnit>(section.choice("unit", {"g", "m_per_s2", "cm_per_s2"}));
   }
   section.finish();
-  if (scenario.ground_motion_text.empty()) return;
-  scenario.ground_motion_file = directory / scenario.ground_motion_text;
+  if (!file) return;
+  scenario.ground_motion_file = *file;
   try {
     const GroundMotion motion = read_ground_motion(scenario.ground_motion_file, options);
     scenario.ground_motion = motion.facts();
@@ -390,14 +393,16 @@ SubstructureIndex Scenario::index_of(const SubstructureScenario& substructure) c
   return static_cast<SubstructureIndex>(&substructure - substructures.data());
 }
 
+bool is_test_name(std::string_view name) noexcept { return name.size() <= kTestNameLongest && is_plain_name(name); }
+
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   config::Document document = config::Document::load(file, with_sites_in_place(file, overrides));
   Section root = document.root();
   Scenario scenario;
   scenario.file = file;
   static_cast<void>(root.choice("schema", {"hybridtest/1"}));
-  scenario.name = plain_name(root, "name", 64);
-  if (root.has("description")) static_cast<void>(root.text("description"));
+  scenario.name = plain_name(root, "name", kTestNameLongest);
+  if (root.has("description")) static_cast<void>(root.text("description", ""));
   read_time(root.section("time"), scenario.time);
   read_excitation(root.section("excitation"), document.directory(), scenario);
 

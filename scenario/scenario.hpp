@@ -102,6 +102,10 @@ struct Scenario {
   [[nodiscard]] SubstructureIndex index_of(const SubstructureScenario& substructure) const noexcept;
 };
 
+/// Names of tests become names of folders and of DDS partitions.
+inline constexpr std::string_view kTestNameRule = "1 to 64 letters, digits, '_', '-' or '.', the first not a '.'";
+[[nodiscard]] bool is_test_name(std::string_view name) noexcept;
+
 /// @param overrides   `key.path=value`, as given to --set.
 /// @throws ConfigError with everything that is wrong.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides);

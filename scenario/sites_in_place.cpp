@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/config/section.hpp"
+#include "scenario/named_file.hpp"
 #include "scenario/site_model_file.hpp"
 
 namespace hybridtest {
@@ -12,7 +13,7 @@ namespace {
 using config::Section;
 
 /// The file that a rig is to be read from; nothing for a rig that is written out.
-std::optional<std::string> file_of_rig(Section& substructure) {
+std::optional<std::filesystem::path> file_of_rig(Section& substructure, const std::filesystem::path& directory) {
   if (!substructure.has_mapping("rig")) return {};
   Section rig = substructure.section("rig");
   if (!rig.has("model")) return {};
@@ -21,13 +22,13 @@ std::optional<std::string> file_of_rig(Section& substructure) {
       rig.error(key, "a rig that is read from a `model` file has no keys of its own");
   }
   if (rig.has("type")) static_cast<void>(rig.choice("type", {"simulated"}));
-  return rig.text("model");
+  return named_file(rig, "model", directory);
 }
 
 /// Likewise of the model beside a rig; a numerical substructure's `model` is something else.
-std::optional<std::string> file_of_model(Section& substructure) {
+std::optional<std::filesystem::path> file_of_model(Section& substructure, const std::filesystem::path& directory) {
   if (!substructure.has("rig") || !substructure.has("model") || substructure.has_mapping("model")) return {};
-  return substructure.text("model");
+  return named_file(substructure, "model", directory);
 }
 
 /// The setting of one compensator cannot be corrected by what was found beside another: it would be counted twice.
@@ -60,15 +61,15 @@ std::vector<std::string> with_sites_in_place(const std::filesystem::path& scenar
   };
   for (Section& substructure : root.sections("substructures")) {
     const std::string path = substructure.path();
-    const std::optional<std::string> rig = file_of_rig(substructure);
-    const std::optional<std::string> model = file_of_model(substructure);
+    const std::optional<std::filesystem::path> rig = file_of_rig(substructure, document.directory());
+    const std::optional<std::filesystem::path> model = file_of_model(substructure, document.directory());
     document.throw_if_errors();
     if (rig) {
-      const SiteModelFile site = read_site_model(document.directory() / *rig);
-      require_its_compensator(site, *rig, substructure);
+      const SiteModelFile site = read_site_model(*rig);
+      require_its_compensator(site, rig->string(), substructure);
       put(path + ".rig", site);
     }
-    if (model) put(path + ".model", read_site_model(document.directory() / *model));
+    if (model) put(path + ".model", read_site_model(*model));
     document.throw_if_errors();
   }
   overrides.insert(overrides.end(), in_place.begin(), in_place.end());

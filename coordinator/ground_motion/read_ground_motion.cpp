@@ -1,14 +1,11 @@
 #include "coordinator/ground_motion/read_ground_motion.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <system_error>
 
 #include "coordinator/ground_motion/at2_format.hpp"
 #include "coordinator/ground_motion/column_format.hpp"
 #include "coordinator/ground_motion/motion_text.hpp"
+#include "core/input_file.hpp"
 
 namespace hybridtest {
 namespace {
@@ -18,28 +15,6 @@ void check_options(const GroundMotionOptions& options, const std::string& name) 
   if (options.dt_s && !(std::isfinite(*options.dt_s) && *options.dt_s > 0.0)) {
     motion_text::refuse(name, 0, "the step given for the file is not positive, expected seconds such as 0.005");
   }
-}
-
-std::string read_file(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) motion_text::refuse(name, 0, "is a folder, expected a ground motion");
-  errno = 0;
-  std::ifstream stream{file, std::ios::binary};
-  if (!stream) {
-    motion_text::refuse(name, 0, "cannot be opened: " + std::generic_category().message(errno == 0 ? EIO : errno));
-  }
-  std::string text;
-  char block[1 << 16];
-  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
-    text.append(block, static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kGroundMotionBytesMax) {
-      motion_text::refuse(name, 0,
-                          "is too large, expected at most " + std::to_string(kGroundMotionBytesMax >> 20U) + " MiB");
-    }
-  }
-  if (stream.bad()) motion_text::refuse(name, 0, "cannot be read to the end");
-  return text;
 }
 
 }  // namespace
@@ -63,7 +38,7 @@ GroundMotion parse_ground_motion(std::string_view text, const std::string& name,
 }
 
 GroundMotion read_ground_motion(const std::filesystem::path& file, const GroundMotionOptions& options) {
-  return parse_ground_motion(read_file(file), file.string(), options);
+  return parse_ground_motion(read_input_file(file, kGroundMotionBytesMax, "a ground motion"), file.string(), options);
 }
 
 }  // namespace hybridtest

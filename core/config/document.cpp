@@ -1,6 +1,3 @@
-#include <cerrno>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "core/config/override.hpp"
@@ -8,26 +5,10 @@
 #include "core/config/section_state.hpp"
 #include "core/config/wording.hpp"
 #include "core/config/yaml_reader.hpp"
+#include "core/input_file.hpp"
 
 namespace hybridtest::config {
 namespace {
-
-/// One byte more than the limit is read, to detect a file that is too large.
-std::string read_file(const std::filesystem::path& file) {
-  const auto fail = [&file](const std::string& why) {
-    throw ConfigError{{ConfigIssue{.file = file.string(), .line = 0, .column = 0, .what = "cannot be read: " + why}}};
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail("it is a directory");
-  errno = 0;
-  std::ifstream stream{file, std::ios::binary};
-  if (!stream) fail(std::generic_category().message(errno));
-  std::string text(kBytesMax + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) fail(std::generic_category().message(errno));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
 
 std::unique_ptr<DocumentState> read_document(std::string_view text, std::string name,
                                              const std::vector<std::string>& overrides) {
@@ -57,7 +38,8 @@ std::unique_ptr<DocumentState> read_document(std::string_view text, std::string 
 }  // namespace
 
 Document Document::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return Document{read_document(read_file(file), file.string(), overrides)};
+  const std::string text = read_input_file(file, kBytesMax, "a configuration file (YAML)");
+  return Document{read_document(text, file.string(), overrides)};
 }
 
 Document Document::parse(std::string_view text, std::string name, const std::vector<std::string>& overrides) {

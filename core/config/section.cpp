@@ -192,7 +192,11 @@ std::string Section::text(std::string_view key, std::optional<std::string> fallb
   const Node* const node = state_->read(key);
   std::string value = fallback.value_or("");
   if (node != nullptr) {
-    value = ValueReader{*state_}.text(*node, state_->path_of(key), "a text").value_or(value);
+    const auto written = ValueReader{*state_}.text(*node, state_->path_of(key), "a text");
+    if (written && written->empty() && !fallback) {
+      state_->report(node->place, state_->path_of(key), "expected a text, found an empty one");
+    }
+    value = written.value_or(value);
   } else if (!fallback) {
     state_->report_missing(key, "a text");
   }

@@ -49,6 +49,7 @@ class Section {
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high,
                                      std::optional<std::int64_t> fallback = {});
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {});
+  /// Without a fallback an empty text is an error: it would be a name or a path.
   [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {});
   /// One of `choices`, at least one; returns its position. The error lists them and the nearest.
   /// @param fallback   one of the choices.

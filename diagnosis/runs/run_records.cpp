@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/config_error.hpp"
+#include "core/input_file.hpp"
 #include "core/text/shown.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/tuning.hpp"
@@ -200,16 +199,7 @@ RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_
 namespace {
 
 std::string content_of(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw ConfigError{path.string() + ": cannot be read (" + error.message() + ")"};
-  if (size > tuning::kFileSizeMax_bytes)
-    throw ConfigError{path.string() +
-                      ": this file is larger than 2 GiB; expected a smaller one, export a part of the recording"};
-  std::ifstream stream{path, std::ios::binary};
-  std::string text{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
-  if (!stream || text.size() != size) throw ConfigError{path.string() + ": cannot be read"};
-  return text;
+  return read_input_file(path, tuning::kFileSizeMax_bytes, "a recording; of a larger one, export a part");
 }
 
 Recording accepted(Intake intake, const std::string& file) {

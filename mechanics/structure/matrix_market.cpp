@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "core/config_error.hpp"
+#include "core/input_file.hpp"
 #include "core/text/scalar.hpp"
 #include "core/text/shown.hpp"
 
@@ -18,7 +18,7 @@ namespace hybridtest {
 namespace {
 
 constexpr std::size_t kMaxIssues = 20;
-constexpr std::uintmax_t kMaxFileSize = 64U << 20U;
+constexpr std::size_t kMaxFileSize = 64U << 20U;
 
 using Words = std::vector<std::string_view>;
 
@@ -221,21 +221,10 @@ class MatrixMarketParser {
   Eigen::MatrixXi given_in_line_;
 };
 
-[[noreturn]] void fail_to_read(const std::filesystem::path& file, std::string what) {
-  throw ConfigError{{ConfigIssue{.file = file.string(), .line = 0, .column = 0, .what = std::move(what)}}};
-}
-
 }  // namespace
 
 Eigen::MatrixXd read_matrix_market(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) fail_to_read(file, "no such file; expected a Matrix Market file");
-  if (std::filesystem::file_size(file, error) > kMaxFileSize || error)
-    fail_to_read(file, "is too large; expected a Matrix Market file of at most 64 MiB");
-  std::ifstream stream{file, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
-  if (!stream) fail_to_read(file, "cannot be read");
-  return parse_matrix_market(text, file.string());
+  return parse_matrix_market(read_input_file(file, kMaxFileSize, "a Matrix Market file"), file.string());
 }
 
 Eigen::MatrixXd parse_matrix_market(std::string_view text, const std::string& name) {

@@ -10,6 +10,7 @@
 #include "numerical_substructure/shear_building.hpp"
 #include "numerical_substructure/springs.hpp"
 #include "scenario/catalogue/laws.hpp"
+#include "scenario/named_file.hpp"
 
 namespace hybridtest {
 namespace {
@@ -18,7 +19,7 @@ using config::Section;
 /// A full stiffness: a number for one degree of freedom, a matrix, or a Matrix Market file.
 std::function<Eigen::MatrixXd()> read_stiffness(Section& section, int dofs, const std::filesystem::path& directory) {
   if (section.has("matrix_market")) {
-    const std::filesystem::path file = directory / section.text("matrix_market");
+    const std::filesystem::path file = named_file(section, "matrix_market", directory).value_or("");
     return [file, dofs] {
       Eigen::MatrixXd matrix = read_matrix_market(file);
       if (matrix.rows() != dofs || matrix.cols() != dofs) {

@@ -18,6 +18,7 @@
 #include "scenario/catalogue/part.hpp"
 #include "scenario/catalogue/simulated_rig.hpp"
 #include "scenario/measurement_file.hpp"
+#include "scenario/named_file.hpp"
 
 namespace hybridtest {
 namespace {
@@ -54,7 +55,7 @@ RigReading read_udp_rig(Section& section, int actuators) {
 }
 
 RigReading read_replay_rig(Section& section, int actuators, const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / section.text("recording");
+  const std::filesystem::path file = named_file(section, "recording", directory).value_or("");
   const bool holds = section.choice("at_end", {"fault", "hold"}, "fault") == 1;
   RigReading reading;
   reading.transfer_delay_s.assign(static_cast<std::size_t>(actuators), 0.0);

@@ -67,10 +67,10 @@ StartedProgram SystemTest::start_run(const std::filesystem::path& scenario, cons
 }
 
 StartedProgram SystemTest::start_simulate(const std::filesystem::path& scenario, const std::string& run,
-                                          const Arguments& more) const {
+                                          const Arguments& more, const ProgramOptions& options) const {
   Arguments arguments = shared(scenario, run, more);
   arguments.insert(arguments.begin(), {"simulate", "--seed", "1"});
-  return {program("hybridtest"), arguments, output(run, "hybridtest")};
+  return {program("hybridtest"), arguments, output(run, "hybridtest"), options};
 }
 
 StartedProgram SystemTest::start_participant(const std::string& program_name, const std::string& id,

@@ -30,7 +30,7 @@ class SystemTest : public ::testing::Test {
   [[nodiscard]] StartedProgram start_run(const std::filesystem::path& scenario, const std::string& run,
                                          const Arguments& more = {}, const ProgramOptions& options = {}) const;
   [[nodiscard]] StartedProgram start_simulate(const std::filesystem::path& scenario, const std::string& run,
-                                              const Arguments& more = {}) const;
+                                              const Arguments& more = {}, const ProgramOptions& options = {}) const;
   /// One of the three programs, as started from its own terminal on this machine.
   [[nodiscard]] StartedProgram start_participant(const std::string& program, const std::string& id,
                                                  const std::filesystem::path& scenario, const std::string& run,

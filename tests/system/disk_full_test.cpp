@@ -15,7 +15,9 @@
 namespace hybridtest {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::Optional;
 
 constexpr double kSteps = 6000.0;
@@ -77,6 +79,35 @@ TEST_F(DiskFull, StopEndsTestSafelyWithInvalidData) {
   expect_all_steps_from_the_first(recorded("run"), "coordinator");
   EXPECT_LT(recorded("run").last_step("storey_2"), kSteps);
 }
+
+class SimulatedDiskFull : public DiskFull, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(SimulatedDiskFull, KeepsItsRowsAsRunDoes) {
+  StartedProgram simulate = start_simulate(shipped_scenario("two_storey_one_site"), "run", six_seconds(GetParam()),
+                                           {.file_bytes_max = kRoom_bytes});
+  ASSERT_THAT(simulate.wait(), Optional(kExitDataInvalid)) << simulate.standard_error();
+  EXPECT_THAT(simulate.standard_output(), HasSubstr("DATA INVALID"));
+  EXPECT_THAT(simulate.standard_error(),
+              AllOf(HasSubstr("recording failed (File too large): data are missing from here on; check the free space"),
+                    HasSubstr("the recording failed: "), HasSubstr("file write failed: File too large (errno = 27)\n"),
+                    Not(HasSubstr("lock"))));
+  const bool stops = GetParam() == "stop";
+  const std::string end = stops ? "test stopped: recording_failed" : "test completed";
+  EXPECT_THAT(simulate.standard_error(), HasSubstr(end));
+  // With disk space again the files are repaired.
+  StartedProgram summary = start_hybridtest({"summary", recorded("run").directory().string()}, "summary");
+  ASSERT_THAT(summary.wait(), Optional(kExitDataInvalid)) << summary.standard_error();
+  for (const char* participant : {"coordinator", "storey_1"}) {
+    expect_opens_with_h5dump(recorded("run").file(participant), directory());
+    expect_all_steps_from_the_first(recorded("run"), participant);
+    EXPECT_GT(recorded("run").last_step(participant), 500.0) << participant;
+  }
+  const double reached = recorded("run").last_step("storey_2");
+  EXPECT_TRUE(stops ? reached < kSteps : reached == kSteps) << reached;
+}
+
+INSTANTIATE_TEST_SUITE_P(OnFailure, SimulatedDiskFull, ::testing::Values("continue", "stop"),
+                         [](const auto& instance) { return instance.param; });
 
 /// One participant of three has no room; it runs by hand, the others from `hybridtest run` or by hand.
 struct OneFullDisk {

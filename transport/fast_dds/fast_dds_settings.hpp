@@ -45,4 +45,9 @@ struct FastDdsSettings {
   bool is_observer = false;
 };
 
+/// Reads the profile and looks up the host names, as joining a test does later.
+/// @throws ConfigError for a value out of range, an address or host name that does not work, or a profile file that
+///         cannot be used.
+void require_usable(const FastDdsSettings& settings);
+
 }  // namespace hybridtest::fast_dds

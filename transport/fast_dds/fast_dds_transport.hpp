@@ -14,8 +14,8 @@ namespace hybridtest::fast_dds {
 /// ports must be gone before the transport.
 ///
 /// @param test_name   1 to 64 characters without `*?[]/`, which have a meaning in partitions.
-/// @throws std::invalid_argument for settings or names out of range.
-/// @throws std::runtime_error when Fast DDS refuses: profile file not readable, no free port.
+/// @throws ConfigError for such a name, and for settings as require_usable().
+/// @throws std::runtime_error when Fast DDS refuses: no free port.
 [[nodiscard]] std::unique_ptr<Transport> make_fast_dds_transport(const FastDdsSettings& settings,
                                                                  std::string_view test_name);
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/config_error.hpp"
 #include "transport/fast_dds/participant_qos.hpp"
 
 namespace hybridtest::fast_dds {
@@ -11,8 +12,7 @@ namespace {
 
 std::string checked_name(std::string_view test_name) {
   if (test_name.empty() || test_name.size() > 64 || test_name.find_first_of("*?[]/") != std::string_view::npos) {
-    throw std::invalid_argument{"test name `" + std::string{test_name} +
-                                "`: expected 1 to 64 characters without * ? [ ] /"};
+    throw ConfigError{"test name '" + std::string{test_name} + "': expected 1 to 64 characters without * ? [ ] /"};
   }
   return std::string{test_name};
 }

@@ -4,11 +4,12 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "core/config_error.hpp"
+#include "core/input_file.hpp"
 #include "transport/fast_dds/dds_version.hpp"
 #include "transport/fast_dds/topics.hpp"
 
@@ -22,24 +23,28 @@ constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
 constexpr std::uint16_t kServerPort = 11811;
 
 void check(const FastDdsSettings& settings) {
-  if (settings.domain > 232) throw std::invalid_argument{"the DDS domain must be 0 to 232"};
+  if (settings.domain > 232) throw ConfigError{"the DDS domain must be 0 to 232"};
   if (settings.loopback_participants < 1 || settings.loopback_participants > 200) {
-    throw std::invalid_argument{"loopback_participants must be 1 to 200"};
+    throw ConfigError{"loopback_participants must be 1 to 200"};
   }
   if (settings.lease < std::chrono::milliseconds{100} || settings.heartbeat_deadline < std::chrono::milliseconds{100}) {
-    throw std::invalid_argument{"the lease and the heartbeat deadline must be 0.1 s or longer"};
+    throw ConfigError{"the lease and the heartbeat deadline must be 0.1 s or longer"};
   }
 }
 
-// `host` or `host:port`; a port of 0 leaves the choice to Fast DDS.
-Locator to_locator(std::string_view address, std::uint16_t default_port) {
+// `host` or `host:port`; a port of 0 leaves the choice to Fast DDS. `what` names the address in messages.
+Locator to_locator(std::string_view what, std::string_view address, std::uint16_t default_port) {
+  const auto refuse = [&](const char* why) {
+    throw ConfigError{std::string{what} + " '" + std::string{address} + "': " + why};
+  };
   const std::string_view host = address.substr(0, address.find(':'));
+  if (host.empty()) refuse("expected host or host:port");
   std::uint16_t port = default_port;
   if (host.size() < address.size()) {
     const std::string_view digits = address.substr(host.size() + 1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
     if (error != std::errc{} || end != digits.data() + digits.size() || port == 0) {
-      throw std::invalid_argument{"peer `" + std::string{address} + "`: expected host or host:port, port 1 to 65535"};
+      refuse("expected host or host:port, port 1 to 65535");
     }
   }
   Locator locator;
@@ -48,9 +53,7 @@ Locator to_locator(std::string_view address, std::uint16_t default_port) {
   std::string numeric{host};
   if (!IpLocator::isIPv4(numeric)) {
     const auto addresses = IpLocator::resolveNameDNS(numeric);
-    if (addresses.first.empty()) {
-      throw std::runtime_error{"peer `" + std::string{address} + "`: host has no IPv4 address; check its name"};
-    }
+    if (addresses.first.empty()) refuse("this host has no IPv4 address; check its name");
     numeric = *addresses.first.begin();
   }
   IpLocator::setIPv4(locator, numeric);
@@ -83,37 +86,44 @@ void add_discovery(const FastDdsSettings& settings, dds::DomainParticipantQos& q
   if (settings.discovery_server) {
     RemoteServer server;
     server.ReadguidPrefix(kServerPrefix);
-    server.metatrafficUnicastLocatorList.push_back(to_locator(*settings.discovery_server, kServerPort));
+    server.metatrafficUnicastLocatorList.push_back(
+        to_locator("discovery server", *settings.discovery_server, kServerPort));
     builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::CLIENT;
     builtin.discovery_config.m_DiscoveryServers.push_back(server);
     return;
   }
   if (settings.loopback_only) {
     // With explicit metatraffic locators Fast DDS does not add its multicast locators.
-    builtin.metatrafficUnicastLocatorList.push_back(to_locator(kLoopback, 0));
-    builtin.initialPeersList.push_back(to_locator(kLoopback, 0));
+    builtin.metatrafficUnicastLocatorList.push_back(to_locator("peer", kLoopback, 0));
+    builtin.initialPeersList.push_back(to_locator("peer", kLoopback, 0));
   }
-  for (const std::string& peer : settings.initial_peers) builtin.initialPeersList.push_back(to_locator(peer, 0));
+  for (const std::string& peer : settings.initial_peers)
+    builtin.initialPeersList.push_back(to_locator("peer", peer, 0));
   if (!settings.loopback_only && !settings.initial_peers.empty()) {
     // A list of peers replaces multicast discovery unless multicast is one of them.
-    builtin.initialPeersList.push_back(to_locator("239.255.0.1", 0));
+    builtin.initialPeersList.push_back(to_locator("peer", "239.255.0.1", 0));
   }
 }
 
 dds::DomainParticipantQos profile_qos(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw ConfigError{{ConfigIssue{.file = file.string(), .what = why}}};
+  };
+  const std::string expected =
+      std::string{"expected Fast DDS XML with a participant profile named '"} + kProfileName + "'";
+  if (const auto why = why_unreadable(file)) refuse("cannot be read: " + *why + "; " + expected);
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  if (factory->load_XML_profiles_file(file.string()) != kReturnOk) {
-    throw std::runtime_error{"Fast DDS profile file `" + file.string() + "` cannot be read or is not valid"};
-  }
+  if (factory->load_XML_profiles_file(file.string()) != kReturnOk) refuse("is not a valid profile file; " + expected);
   dds::DomainParticipantQos qos;
   if (factory->get_participant_qos_from_profile(kProfileName, qos) != kReturnOk) {
-    throw std::runtime_error{"Fast DDS profile file `" + file.string() + "` has no participant profile named `" +
-                             kProfileName + "`"};
+    refuse("has no such profile; " + expected);
   }
   return qos;
 }
 
 }  // namespace
+
+void require_usable(const FastDdsSettings& settings) { static_cast<void>(participant_qos(settings)); }
 
 dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
   check(settings);

@@ -7,7 +7,7 @@
 namespace hybridtest::fast_dds {
 
 /// Translates the settings for Fast DDS: transports, discovery, leases.
-/// @throws std::invalid_argument, std::runtime_error as make_fast_dds_transport().
+/// @throws ConfigError as require_usable().
 [[nodiscard]] eprosima::fastdds::dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings);
 
 }  // namespace hybridtest::fast_dds

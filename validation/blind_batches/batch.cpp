@@ -5,13 +5,13 @@
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/input_file.hpp"
 #include "validation/blind_batches/library_terms.hpp"
 
 namespace hybridtest::blind {
@@ -157,7 +157,7 @@ using Json = nlohmann::ordered_json;
 /// Reads and parses; `take` reports missing fields.
 template <class Take>
 auto from_json(const fs::path& path, Take take) {
-  const std::string text = read_whole_file(path);
+  const std::string text = read_batch_file(path);
   try {
     return take(Json::parse(text));
   } catch (const Json::exception& error) {
@@ -170,16 +170,13 @@ auto from_json(const fs::path& path, Take take) {
 
 fs::path answer_file(const fs::path& answers, const std::string& name) { return answers / name / "diagnosis.json"; }
 
-std::string digest_of(const fs::path& path, const Digest& digest) { return digest(read_whole_file(path)); }
+std::string digest_of(const fs::path& path, const Digest& digest) { return digest(read_batch_file(path)); }
 
 }  // namespace
 
-std::string read_whole_file(const fs::path& path) {
-  std::ifstream file{path, std::ios::binary};
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) refuse(path, "cannot be read; expected a file that exists and may be read");
-  return std::move(text).str();
+std::string read_batch_file(const fs::path& path) {
+  constexpr std::size_t kBytesMax = std::size_t{1} << 30U;
+  return read_input_file(path, kBytesMax, "a file of a blind batch");
 }
 
 std::vector<CaseFiles> open_batch(const fs::path& batch, const Digest& digest) {
@@ -223,7 +220,7 @@ std::size_t seal_answers(const fs::path& batch, const fs::path& answers, const D
 }
 
 std::string open_key(const fs::path& batch, const fs::path& key, const Digest& digest) {
-  std::string text = read_whole_file(key);
+  std::string text = read_batch_file(key);
   const auto named =
       from_json(batch / "batch.json", [](const Json& json) { return json.at("key_sha256").get<std::string>(); });
   if (digest(text) != named)
@@ -237,7 +234,7 @@ GivenAnswers open_answers(const fs::path& batch, const fs::path& answers, const 
   GivenAnswers given;
   for (const std::string& name : names) {
     const fs::path file = answer_file(answers, name);
-    given.texts.push_back(fs::exists(file) ? std::optional{read_whole_file(file)} : std::nullopt);
+    given.texts.push_back(fs::exists(file) ? std::optional{read_batch_file(file)} : std::nullopt);
   }
   const fs::path seal = answers / "answers.json";
   if (!fs::exists(seal)) return given;

@@ -41,8 +41,8 @@ struct CaseFiles {
   std::filesystem::path held_out;
 };
 
-/// The text of a file. @throws std::runtime_error if it cannot be read.
-[[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
+/// The text of a file of a batch, its key or its answers. @throws ConfigError if it cannot be read.
+[[nodiscard]] std::string read_batch_file(const std::filesystem::path& path);
 
 /// The cases of a batch, after its files were checked against batch.json. The key is not needed.
 /// @throws std::runtime_error for a batch that is incomplete or changed.

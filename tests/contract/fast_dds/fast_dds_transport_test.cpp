@@ -3,6 +3,7 @@
 
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -18,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "core/config_error.hpp"
 #include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
@@ -200,7 +202,7 @@ TEST(FastDdsSettings, RejectsValuesOutOfRange) {
   const auto refused = [](auto change) {
     fast_dds::FastDdsSettings settings = test_settings();
     change(settings);
-    EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings)), ConfigError);
   };
   refused([](auto& s) { s.domain = 233; });
   refused([](auto& s) { s.loopback_participants = 0; });
@@ -210,12 +212,33 @@ TEST(FastDdsSettings, RejectsValuesOutOfRange) {
   refused([](auto& s) { s.initial_peers = {"127.0.0.1:"}; });
   refused([](auto& s) { s.initial_peers = {"127.0.0.1:70000"}; });
   refused([](auto& s) { s.initial_peers = {"127.0.0.1:7x"}; });
+  refused([](auto& s) { s.initial_peers = {""}; });
+  refused([](auto& s) { s.initial_peers = {"no.such.host.invalid"}; });
+  refused([](auto& s) { s.discovery_server = ":11811"; });
   EXPECT_NO_THROW(static_cast<void>(fast_dds::participant_qos(test_settings())));
+}
+
+TEST(FastDdsSettings, NamesTheSettingThatIsWrong) {
+  fast_dds::FastDdsSettings settings = test_settings();
+  settings.initial_peers = {"lab:70000"};
+  EXPECT_THAT([&] { fast_dds::require_usable(settings); },
+              ::testing::ThrowsMessage<ConfigError>("peer 'lab:70000': expected host or host:port, port 1 to 65535"));
+  settings = test_settings();
+  settings.discovery_server = "lab:x";
+  EXPECT_THAT(
+      [&] { fast_dds::require_usable(settings); },
+      ::testing::ThrowsMessage<ConfigError>("discovery server 'lab:x': expected host or host:port, port 1 to 65535"));
+  settings = test_settings();
+  settings.profile_file = "nowhere.xml";
+  EXPECT_THAT(
+      [&] { fast_dds::require_usable(settings); },
+      ::testing::ThrowsMessage<ConfigError>("nowhere.xml: cannot be read: no such file; expected Fast DDS XML with a "
+                                            "participant profile named 'hybridtest'"));
 }
 
 TEST(FastDdsSettings, RejectsInvalidTestName) {
   for (const std::string& name : {std::string{}, std::string{"a*"}, std::string{"a/b"}, std::string(65, 'a')}) {
-    EXPECT_THROW(static_cast<void>(fast_dds::make_fast_dds_transport(test_settings(), name)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(fast_dds::make_fast_dds_transport(test_settings(), name)), ConfigError);
   }
 }
 
@@ -235,12 +258,12 @@ class ProfileFile : public ::testing::Test {
 
 // Fast DDS keeps the profiles of every file that a process has read: this test comes first.
 TEST_F(ProfileFile, RejectsInvalidFileAndMissingProfile) {
-  EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with("no xml"))), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with("no xml"))), ConfigError);
   EXPECT_THROW(static_cast<void>(fast_dds::participant_qos(settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <participant profile_name="somebody_else"><rtps/></participant>
 </profiles>)"))),
-               std::runtime_error);
+               ConfigError);
 }
 
 TEST_F(ProfileFile, ReplacesTransportsAndPeersButNotTheLease) {

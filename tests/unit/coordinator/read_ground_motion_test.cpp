@@ -207,7 +207,8 @@ TEST(GroundMotionFile, ReportsFileThatCannotBeRead) {
     static_cast<void>(read_ground_motion("no_such_folder/motion.AT2"));
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("no_such_folder/motion.AT2"), HasSubstr("cannot be opened")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("no_such_folder/motion.AT2"),
+                                    HasSubstr("cannot be read: no such file; expected a ground motion")));
   }
   EXPECT_THROW(static_cast<void>(read_ground_motion(std::filesystem::temp_directory_path())), ConfigError);
 }

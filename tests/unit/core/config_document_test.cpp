@@ -52,7 +52,7 @@ void read_everything(Section root) {
   for (Section site : root.sections("sites")) {
     (void)site.text("id");
     (void)site.number("force_n_max", kPositive, std::numeric_limits<double>::infinity());
-    for (Section interface : site.sections("interface", true)) (void)interface.text("dof");
+    for (Section interface : site.sections("interface", true)) (void)interface.text("dof", "none");
     if (auto rig = site.optional_section("rig")) (void)rig->boolean("armed", false);
     site.finish();
   }
@@ -195,7 +195,7 @@ TEST(ConfigDocument, ReportsWhyFileCannotBeRead) {
     (void)Document::load("no/such/file.yaml");
     FAIL() << "loaded";
   } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(), "no/such/file.yaml: cannot be read: No such file or directory");
+    EXPECT_STREQ(error.what(), "no/such/file.yaml: cannot be read: no such file; expected a configuration file (YAML)");
   }
   EXPECT_THROW((void)Document::load(testing::TempDir()), ConfigError);
 }

@@ -281,7 +281,7 @@ BatchScore score_batch(const std::filesystem::path& batch, const std::filesystem
   }
   const Score score = score_of(marked);
   nlohmann::ordered_json json = score_json(score);
-  json["batch_sha256"] = digest(read_whole_file(batch / "batch.json"));
+  json["batch_sha256"] = digest(read_batch_file(batch / "batch.json"));
   json["answers_sealed"] = given.are_sealed;
   const std::string seal =
       given.are_sealed ? "The answers are as they were sealed.\n" : "The answers are not sealed.\n";

@@ -48,7 +48,7 @@ TEST_F(SealedBatch, OpensWithItsKeyWithoutRevealingTruth) {
   EXPECT_GE(cases[0].fit.size(), 1U);
   EXPECT_TRUE(fs::exists(cases[1].held_out));
   EXPECT_EQ(read_key(open_key(batch_, key_, digest)).size(), 2U);
-  EXPECT_THAT(read_whole_file(batch_ / "batch.json"), testing::Not(testing::HasSubstr("seed")));
+  EXPECT_THAT(read_batch_file(batch_ / "batch.json"), testing::Not(testing::HasSubstr("seed")));
   for (const auto& entry : fs::recursive_directory_iterator{batch_}) {
     EXPECT_THAT(entry.path().filename().string(), testing::Not(testing::HasSubstr("key")));
   }
