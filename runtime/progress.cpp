@@ -1,11 +1,14 @@
 #include "runtime/progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "core/event_text.hpp"
+#include "core/text/short_number.hpp"
 #include "runtime/participant.hpp"
 
 namespace hybridtest {
@@ -13,6 +16,24 @@ namespace {
 
 constexpr Duration kOnTerminal = std::chrono::milliseconds{200};
 constexpr Duration kInPlainText = std::chrono::seconds{5};
+/// Of events that are alike, this number is printed in each window; the others are counted.
+constexpr Duration kRepeatWindow = std::chrono::seconds{10};
+constexpr int kPrintedOfRepeats = 3;
+
+/// Columns where there is no terminal to ask, or it does not know.
+constexpr std::size_t kPlainWidth = 100;
+constexpr std::size_t kWidthMin = 20;
+/// For "  +32 sites".
+constexpr std::size_t kRoomForRest = 11;
+/// Of each state.
+constexpr std::size_t kIdsShown = 2;
+
+/// The last column stays free: a cursor in it would start a new line.
+std::size_t terminal_width(std::FILE* terminal) {
+  winsize size{};
+  const bool is_known = ioctl(fileno(terminal), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return is_known ? std::max<std::size_t>(kWidthMin, size.ws_col - 1U) : kPlainWidth;
+}
 
 std::string clock_text(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
@@ -39,6 +60,7 @@ Progress::Progress(const Scenario& scenario, std::FILE* out)
     : scenario_{scenario}, out_{out}, is_terminal_{isatty(fileno(out)) == 1} {}
 
 Progress::~Progress() {
+  print_repeated(kNever);
   if (line_is_shown_) std::fputc('\n', out_);
 }
 
@@ -64,24 +86,52 @@ void Progress::set_completed(Step step, Instant now) {
 }
 
 void Progress::print(const Event& event) {
+  Repeated& repeated =
+      repeated_[fmt::format("{}/{}/{}", event.source.view(), static_cast<int>(event.code), event.subject.view())];
+  if (now_ >= repeated.window_end) {
+    repeated.window_end = now_ + kRepeatWindow;
+    repeated.printed = 0;
+  }
+  if (repeated.printed < kPrintedOfRepeats) {
+    ++repeated.printed;
+    print_line(event, "");
+  } else {
+    ++repeated.unprinted;
+    repeated.last = event;
+  }
+}
+
+void Progress::print_line(const Event& event, const std::string& suffix) {
   clear_line();
   const char* mark = event.severity == Severity::fault     ? "FAULT   "
                      : event.severity == Severity::warning ? "warning "
                                                            : "";
-  fmt::print(out_, "{}{}: {}\n", mark, event.source.view(), describe(event));
+  fmt::print(out_, "{}{}: {}{}\n", mark, event.source.view(), describe(event), suffix);
   std::fflush(out_);
 }
 
+/// At the end of their window, the last of each kind that was left out, and how many there were.
+void Progress::print_repeated(Instant now) {
+  for (auto& [key, repeated] : repeated_) {
+    if (repeated.unprinted == 0 || now < repeated.window_end) continue;
+    print_line(repeated.last, repeated.unprinted == 1 ? "" : fmt::format(" ({} times more)", repeated.unprinted));
+    repeated.unprinted = 0;
+    if (now != kNever) repeated.window_end = now + kRepeatWindow;
+  }
+}
+
 void Progress::show(Instant now) {
+  now_ = now;
+  print_repeated(now);
   if (now < next_show_) return;
   next_show_ = now + (is_terminal_ ? kOnTerminal : kInPlainText);
   clear_line();
-  fmt::print(out_, "{}{}", line(), is_terminal_ ? "" : "\n");
+  fmt::print(out_, "{}{}", line(is_terminal_ ? terminal_width(out_) : kPlainWidth), is_terminal_ ? "" : "\n");
   line_is_shown_ = is_terminal_;
   std::fflush(out_);
 }
 
-std::string Progress::line() const {
+std::string Progress::line(std::size_t width) const {
   const Step planned = scenario_.time.last_step;
   std::string text = fmt::format("step {}/{}  {:.2f} of {:.2f} s", completed_, planned,
                                  scenario_.model_time_s(completed_), scenario_.time.duration_s);
@@ -91,18 +141,40 @@ std::string Progress::line() const {
     text +=
         fmt::format("  {:.0f} steps/s  {} left", rate, clock_text(static_cast<double>(planned - completed_) / rate));
   }
-  if (states_.empty()) return text;  // no statuses, as in a simulation
-  const auto add_state = [&](std::string_view id) {
-    const auto known = states_.find(id);
-    text += fmt::format("  {}: {}", id, known == states_.end() ? "not found yet" : name(known->second));
-  };
-  add_state(kCoordinatorId);
+  if (!states_.empty()) text += "  " + states();  // a simulation has no statuses
+  std::size_t left_out = 0;
   for (const SubstructureScenario& substructure : scenario_.substructures) {
-    add_state(substructure.id);
     const auto signal = signals_.find(scenario_.index_of(substructure));
     if (signal == signals_.end()) continue;
-    text += fmt::format(" ({:+.1f} mm {:+.1f} kN)", signal->second.measured_displacement_m * 1e3,
-                        signal->second.force_n * 1e-3);
+    const std::string shown = fmt::format("  {} {} mm {} kN", substructure.id,
+                                          short_number(signal->second.measured_displacement_m * 1e3, 1, Sign::always),
+                                          short_number(signal->second.force_n * 1e-3, 1, Sign::always));
+    if (left_out > 0 || text.size() + shown.size() + kRoomForRest > width) {
+      ++left_out;
+    } else {
+      text += shown;
+    }
+  }
+  if (left_out > 0) text += fmt::format("  +{} sites", left_out);
+  return text.size() <= width ? text : text.substr(0, width - 3) + "...";
+}
+
+/// `all 3 running`, or `ready: coordinator, storey_1; not found yet: storey_2`.
+std::string Progress::states() const {
+  std::map<std::string_view, std::vector<std::string_view>> groups;
+  const auto add = [&](std::string_view id) {
+    const auto known = states_.find(id);
+    groups[known == states_.end() ? "not found yet" : name(known->second)].push_back(id);
+  };
+  add(kCoordinatorId);
+  for (const SubstructureScenario& substructure : scenario_.substructures) add(substructure.id);
+  if (groups.size() == 1) return fmt::format("all {} {}", groups.begin()->second.size(), groups.begin()->first);
+  std::string text;
+  for (const auto& [state, ids] : groups) {
+    text += fmt::format("{}{}:", text.empty() ? "" : "; ", state);
+    for (std::size_t i = 0; i < ids.size() && i < kIdsShown; ++i)
+      text += fmt::format("{} {}", i > 0 ? "," : "", ids[i]);
+    if (ids.size() > kIdsShown) text += fmt::format(" +{}", ids.size() - kIdsShown);
   }
   return text;
 }

@@ -13,13 +13,14 @@ namespace hybridtest {
 
 [[nodiscard]] std::string_view name(LifecycleState state) noexcept;
 
-/// The display of a running test: on a terminal one line, rewritten in place; otherwise one plain line
-/// every few seconds. Events are printed above it.
+/// The display of a running test: on a terminal one line, rewritten in place and never longer than the terminal is
+/// wide; otherwise one plain line every few seconds. Events are printed above it. Of an event that repeats, the first
+/// three are printed, and from time to time how often it has come since.
 class Progress {
  public:
   /// @param out   usually standard error; standard output is for the summary.
   Progress(const Scenario& scenario, std::FILE* out);
-  /// Ends the rewritten line.
+  /// Prints what is left of repeated events and ends the rewritten line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -34,19 +35,35 @@ class Progress {
   /// Takes the rewritten line off the terminal, before something else is printed there.
   void clear_line();
 
+  /// The state in at most `width` columns: step, time and rate, then the states of the participants, then as many
+  /// signals as fit.
+  [[nodiscard]] std::string line(std::size_t width) const;
+
  private:
-  [[nodiscard]] std::string line() const;
+  /// Events that are alike but for their numbers.
+  struct Repeated {
+    Event last;
+    int printed = 0;  // in the present window
+    int unprinted = 0;
+    Instant window_end{};
+  };
+
+  void print_line(const Event& event, const std::string& suffix);
+  void print_repeated(Instant now);
+  [[nodiscard]] std::string states() const;
 
   const Scenario& scenario_;
   std::FILE* out_;
   bool is_terminal_;
   bool line_is_shown_ = false;
+  Instant now_{};  // of the last show()
   Instant next_show_{};
   Step completed_ = 0;
   Instant first_step_at_{};
   Instant last_step_at_{};
   std::map<std::string, LifecycleState, std::less<>> states_;
   std::map<SubstructureIndex, SignalSample> signals_;
+  std::map<std::string, Repeated> repeated_;  // by source, code and subject
 };
 
 }  // namespace hybridtest
