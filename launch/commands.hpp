@@ -9,6 +9,7 @@ namespace hybridtest {
 
 using CommandAction = std::function<int()>;
 
+void add_new_command(CLI::App& app, CommandAction& action);
 void add_check_command(CLI::App& app, CommandAction& action);
 void add_run_command(CLI::App& app, CommandAction& action);
 void add_simulate_command(CLI::App& app, CommandAction& action);

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 completed; 2 configuration error, or a participant missing or refused; 3 ended early\n"
       "(interlock, lost participant, stopped by the operator); 4 data missing or invalid; 70 internal error.");
   hybridtest::CommandAction action;
+  hybridtest::add_new_command(app, action);
   hybridtest::add_check_command(app, action);
   hybridtest::add_run_command(app, action);
   hybridtest::add_simulate_command(app, action);

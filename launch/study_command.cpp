@@ -7,6 +7,7 @@
 
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
+#include "launch/shipped_scenarios.hpp"
 #include "validation/studies/compensator_character/character_study.hpp"
 #include "validation/studies/founding_study/founding_report.hpp"
 #include "validation/studies/output_file.hpp"
@@ -28,12 +29,6 @@ struct RthsOptions : StudyOptions {
   std::vector<std::string> compensators;
   std::filesystem::path ground_motions;
 };
-
-/// Beside the folder of this program, in the build folder as where it is installed.
-std::filesystem::path shipped_scenarios() {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  return program.parent_path().parent_path() / "share/hybridtest/scenarios";
-}
 
 struct FoundingOptions : StudyOptions {
   std::filesystem::path scenarios = shipped_scenarios() / "founding_study";
