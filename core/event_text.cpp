@@ -1,8 +1,12 @@
 #include "core/event_text.hpp"
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <system_error>
+
+#include "core/rig_fault.hpp"
 
 namespace hybridtest {
 namespace {
@@ -24,12 +28,13 @@ std::string_view unit_of(std::string_view fault) {
 }
 
 std::string interlock_text(const Event& event) {
-  const auto subject = event.subject.text();
-  // These have no observed value and no limit.
-  if (subject == "not_finite" || subject == "rig_fault" || subject == "emergency_stop") return "interlock: " + subject;
-  const std::string unit{unit_of(subject)};
-  return "interlock: " + subject + " (observed " + number(event.values[0]) + unit + ", limit " +
-         number(event.values[1]) + unit + ")";
+  return "interlock: " + interlock_cause(event.subject.view(), event.values);
+}
+
+/// A number that came over the network.
+template <class Enumeration>
+Enumeration code_of(double value) noexcept {
+  return value >= 0.0 && value < 256.0 ? static_cast<Enumeration>(static_cast<std::uint8_t>(value)) : Enumeration{};
 }
 
 /// Of an errno; empty when it is not known.
@@ -59,6 +64,28 @@ std::string refused_text(const Event& event) {
 }
 
 }  // namespace
+
+bool has_observed_value(std::string_view fault) noexcept {
+  return fault != "not_finite" && fault != "rig_fault" && fault != "emergency_stop";
+}
+
+std::string interlock_cause(std::string_view fault, const std::array<double, 2>& values) {
+  const std::string name{fault};
+  if (fault == "rig_fault") return name + ": " + std::string{describe(code_of<RigFault>(values[0]))};
+  if (fault == "not_finite") {
+    const std::string dof = values[1] >= 1.0 ? " of interface degree of freedom " + number(values[1]) : "";
+    return name + ": " + std::string{describe(code_of<SiteSignal>(values[0]))} + dof + " is not a finite number";
+  }
+  if (!has_observed_value(fault)) return name;
+  if (fault == "energy_error") {
+    const char* const did = values[0] < 0.0 ? "added energy to the structure, as a late actuator does"
+                                            : "removed energy from the structure, as an actuator that leads does";
+    return name + ": tracking errors " + did + " (" + number(std::abs(values[0])) +
+           " of its largest strain energy, limit " + number(values[1]) + ")";
+  }
+  const std::string unit{unit_of(fault)};
+  return name + " (observed " + number(values[0]) + unit + ", limit " + number(values[1]) + unit + ")";
+}
 
 std::string describe(const Event& event) {
   const std::string subject = "'" + event.subject.text() + "'";

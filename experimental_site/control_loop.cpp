@@ -1,6 +1,7 @@
 #include "experimental_site/control_loop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -104,7 +105,8 @@ void ControlLoop::arm(Instant now) noexcept {
     rig_.arm();
   } catch (...) {
     faults_ |= FaultFlags::rig_fault;
-    ports_.reports.send(loop_report::ArmFailed{});
+    const RigFault fault = rig_.fault();
+    ports_.reports.send(loop_report::ArmFailed{fault == RigFault::unknown ? RigFault::did_not_arm : fault});
     return;
   }
   for (auto& compensator : compensation_.commands) compensator->reset();
@@ -375,12 +377,39 @@ void ControlLoop::go_on() noexcept {
 
 void ControlLoop::report(const InterlockTrip& trip) noexcept {
   const FaultFlags fault = fault_of(trip.kind);
+  const auto [observed, limit] = values_of(trip);
   if (!trip.is_final) {
-    ports_.reports.send(loop_report::Warning{fault, trip.observed, trip.limit, model_time_s()});
+    ports_.reports.send(loop_report::Warning{fault, observed, limit, model_time_s()});
     return;
   }
   faults_ |= fault;
-  ports_.reports.send(loop_report::Fault{fault, trip.observed, trip.limit, model_time_s()});
+  ports_.reports.send(loop_report::Fault{fault, observed, limit, model_time_s()});
+}
+
+/// The values of a report, see interlock_cause(). An interlock itself knows magnitudes alone.
+std::pair<double, double> ControlLoop::values_of(const InterlockTrip& trip) const noexcept {
+  switch (trip.kind) {
+    case InterlockKind::rig_status: return {static_cast<double>(rig_.fault()), 0.0};
+    case InterlockKind::not_finite: return first_not_finite();
+    case InterlockKind::energy_error: return {energy_error_.ratio(), trip.limit};
+    default: return {trip.observed, trip.limit};
+  }
+}
+
+/// A SiteSignal, and its interface degree of freedom from 1.
+std::pair<double, double> ControlLoop::first_not_finite() const noexcept {
+  const InterlockInput input = interlock_input(false);
+  const std::array<std::pair<SiteSignal, const InterfaceVector*>, 4> signals{
+      {{SiteSignal::measured_force, &input.force_n},
+       {SiteSignal::measured_displacement, &input.measured_displacement_m},
+       {SiteSignal::target, &input.target_displacement_m},
+       {SiteSignal::command, &input.command_displacement_m}}};
+  for (const auto& [signal, values] : signals) {
+    for (Eigen::Index k = 0; k < values->size(); ++k) {
+      if (!std::isfinite((*values)[k])) return {static_cast<double>(signal), static_cast<double>(k + 1)};
+    }
+  }
+  return {static_cast<double>(SiteSignal::unknown), 0.0};
 }
 
 void ControlLoop::report_cleared() noexcept { ports_.reports.send(loop_report::Cleared{model_time_s()}); }

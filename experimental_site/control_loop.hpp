@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "compensation/compensator.hpp"
@@ -98,6 +99,8 @@ class ControlLoop final : public Node {
   void hold(bool is_final) noexcept;
   void go_on() noexcept;
   void report(const InterlockTrip& trip) noexcept;
+  [[nodiscard]] std::pair<double, double> values_of(const InterlockTrip& trip) const noexcept;
+  [[nodiscard]] std::pair<double, double> first_not_finite() const noexcept;
   void report_cleared() noexcept;
   void report_measurement() noexcept;
   void record() noexcept;

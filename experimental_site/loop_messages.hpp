@@ -5,6 +5,7 @@
 
 #include "core/faults.hpp"
 #include "core/messages.hpp"
+#include "core/rig_fault.hpp"
 
 /// What the site link and the control loop tell each other: variants, so that a message carries what
 /// its kind needs and nothing else. They are passed through a lock-free queue when the link and the
@@ -45,7 +46,9 @@ namespace loop_report {
 
 struct Armed {};
 /// The rig did not arm.
-struct ArmFailed {};
+struct ArmFailed {
+  RigFault fault = RigFault::did_not_arm;
+};
 /// Captured at arming for one interface degree of freedom; subtracted from what is measured.
 struct ZeroOffset {
   int dof = 0;
@@ -55,8 +58,8 @@ struct ZeroOffset {
 /// An interlock that does not end the test.
 struct Warning {
   FaultFlags fault = FaultFlags::none;  // exactly one
-  double observed = 0.0;                // in the unit of the fault
-  double limit = 0.0;                   // likewise
+  double observed = 0.0;                // in the unit of the fault; what the two mean, see interlock_cause()
+  double limit = 0.0;
   double model_time_s = 0.0;
 };
 /// What an interlock warned of or held for is over.
@@ -66,8 +69,8 @@ struct Cleared {
 /// An interlock that ends the test.
 struct Fault {
   FaultFlags fault = FaultFlags::none;  // exactly one
-  double observed = 0.0;                // in the unit of the fault
-  double limit = 0.0;                   // likewise
+  double observed = 0.0;                // in the unit of the fault; what the two mean, see interlock_cause()
+  double limit = 0.0;
   double model_time_s = 0.0;
 };
 /// The rig has stopped.

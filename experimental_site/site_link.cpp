@@ -100,8 +100,8 @@ void SiteLink::handle(const LoopReport& report, Instant now) noexcept {
     Instant now;
 
     void operator()(const loop_report::Armed&) const noexcept { link.presence_.set_state(LifecycleState::armed); }
-    void operator()(const loop_report::ArmFailed&) const noexcept {
-      (*this)(loop_report::Fault{.fault = FaultFlags::rig_fault});
+    void operator()(const loop_report::ArmFailed& failed) const noexcept {
+      (*this)(loop_report::Fault{.fault = FaultFlags::rig_fault, .observed = static_cast<double>(failed.fault)});
     }
     void operator()(const loop_report::ZeroOffset& offset) const noexcept {
       link.presence_.report(now, Severity::information, EventCode::zero_offset, "dof " + std::to_string(offset.dof + 1),

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/site_model_file.hpp"
 #include "scenario/test_stability.hpp"
 
 namespace hybridtest {
@@ -93,7 +95,22 @@ void print_site(const Scenario& scenario, const SiteStability& stability) {
   print_interlocks(site.loop.limits);
 }
 
+int check_site_file(const std::filesystem::path& file) {
+  const SiteModelFile model = read_site_model(file);
+  fmt::print(
+      "{}: a valid site file, {} interface degree(s) of freedom. It is no test by itself: use it as\n"
+      "  --model {} of `diagnose` and `replay`, or as `rig: {{model: {}}}` in a scenario\n",
+      file.string(), model.dofs.size(), file.string(), file.filename().string());
+  return kExitCompleted;
+}
+
 int check(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  if (is_site_file(file)) {
+    if (!overrides.empty()) {
+      throw ConfigError{"--set " + overrides.front() + ": a site file takes no overrides; change the file itself"};
+    }
+    return check_site_file(file);
+  }
   const Scenario scenario = read_scenario(file, overrides);
   const VibrationModes modes = vibration_modes(scenario.structure);
   const TestStability stability = test_stability(scenario, modes);
@@ -123,8 +140,8 @@ void add_check_command(CLI::App& app, CommandAction& action) {
   auto overrides = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand(
       "check",
-      "Check a scenario and list all its errors; print the ground motion, modes, the stability limit of the step,\n"
-      "and the critical delay and delay margin of each site. An unstable test or\n"
+      "Check a scenario or a site file and list all its errors; of a scenario, print the ground motion, modes, the\n"
+      "stability limit of the step, and the critical delay and delay margin of each site. An unstable test or\n"
       "a wrong stiffness of a simulated specimen is exit code 2");
   command->add_option("FILE", *file, "Scenario file (YAML)")->required();
   command->add_option("--set", *overrides, "Override one value of the scenario: key.path=value; repeatable");

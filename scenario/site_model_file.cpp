@@ -191,6 +191,16 @@ std::string compensators_of_site(const std::filesystem::path& scenario, std::str
   return list;
 }
 
+bool is_site_file(const std::filesystem::path& file) {
+  config::Document document = config::Document::load(file);
+  const Section root = document.root();
+  const auto has_any = [&](const std::vector<const char*>& keys) {
+    return std::ranges::any_of(keys, [&](const char* key) { return root.has(key); });
+  };
+  return has_any({"rig", "transfer_system", "specimen", "effects", "sensors"}) &&
+         !has_any({"schema", "time", "structure", "substructures"});
+}
+
 SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
                               const std::string& compensators) {
   config::Document document = config::Document::load(file);

@@ -37,6 +37,10 @@ struct SiteModelFile : SiteModelText {
   [[nodiscard]] SiteModelText with_effects(std::span<const ListedEffect> effects) const;
 };
 
+/// Whether a file has the keys of a site and not those of a scenario.
+/// @throws ConfigError when it cannot be read at all.
+[[nodiscard]] bool is_site_file(const std::filesystem::path& file);
+
 /// @param substructure   of a whole scenario: the id; empty where it has one site only.
 /// @param compensators   for a site file that names none, as SiteModelFile::compensators. A scenario's site without
 ///                       `compensator` has none.

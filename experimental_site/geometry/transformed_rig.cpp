@@ -43,6 +43,7 @@ RigStatus TransformedRig::exchange(const ActuatorCommand& command, RigFeedback& 
   const auto fits = [this](const InterfaceVector& vector) { return vector.size() == geometry_->dofs(); };
   if (!fits(command.displacement_m) || !command.displacement_m.allFinite() || !fits(feedback.displacement_m) ||
       !fits(feedback.force_n)) {
+    fault_ = RigFault::invalid_command;
     return RigStatus::fault;
   }
   command_.sample = command.sample;
@@ -51,7 +52,11 @@ RigStatus TransformedRig::exchange(const ActuatorCommand& command, RigFeedback& 
   const bool is_within_limit = limit_strokes();
   const RigStatus status = rig_->exchange(command_, feedback_);
   record();
-  if (status != RigStatus::healthy || !find_pose(*geometry_, feedback_.displacement_m, pose_)) return RigStatus::fault;
+  fault_.reset();
+  if (status != RigStatus::healthy) return RigStatus::fault;
+  fault_ = RigFault::no_pose;
+  if (!find_pose(*geometry_, feedback_.displacement_m, pose_)) return RigStatus::fault;
+  fault_ = RigFault::stroke_limit;
   feedback.displacement_m = pose_;
   transfer_forces(*geometry_, pose_, feedback_.force_n, feedback.force_n);
   return is_within_limit ? RigStatus::healthy : RigStatus::fault;

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "experimental_site/geometry/setup_geometry.hpp"
@@ -29,6 +30,7 @@ class TransformedRig final : public Rig {
   void connect() override;
   void arm() override { rig_->arm(); }
   [[nodiscard]] RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override;
+  [[nodiscard]] RigFault fault() const noexcept override { return fault_.value_or(rig_->fault()); }
   void stop_motion() noexcept override { rig_->stop_motion(); }
 
  private:
@@ -40,9 +42,10 @@ class TransformedRig final : public Rig {
   double stroke_limit_m_;
   RowSink* actuators_record_ = nullptr;
   std::vector<double> row_;
-  ActuatorCommand command_;  // in actuators
-  RigFeedback feedback_;     // in actuators
-  InterfaceVector pose_;     // measured
+  ActuatorCommand command_;        // in actuators
+  RigFeedback feedback_;           // in actuators
+  InterfaceVector pose_;           // measured
+  std::optional<RigFault> fault_;  // of the geometry; otherwise the inner rig has it
 };
 
 }  // namespace hybridtest

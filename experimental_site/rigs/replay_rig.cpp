@@ -64,8 +64,10 @@ RigStatus ReplayRig::exchange(const ActuatorCommand& command, RigFeedback& feedb
   const auto fits = [this](const InterfaceVector& vector) { return vector.size() == present_.force_n.size(); };
   if (phase == Phase::disconnected || !fits(command.displacement_m) || !command.displacement_m.allFinite() ||
       !fits(feedback.displacement_m) || !fits(feedback.force_n)) {
+    fault_ = phase == Phase::disconnected ? RigFault::not_connected : RigFault::invalid_command;
     return RigStatus::fault;
   }
+  fault_ = RigFault::end_of_recording;
   const bool has_record = phase != Phase::armed || move_to(record_.time_s.front() + command.time_s);
   feedback.displacement_m = present_.displacement_m;
   feedback.force_n = present_.force_n;

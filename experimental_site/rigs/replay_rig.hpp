@@ -36,6 +36,7 @@ class ReplayRig final : public Rig {
   /// @throws std::runtime_error without a connect() before, or when stopped since then.
   void arm() override;
   [[nodiscard]] RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override;
+  [[nodiscard]] RigFault fault() const noexcept override { return fault_; }
   void stop_motion() noexcept override { phase_ = Phase::stopped; }
 
  private:
@@ -46,6 +47,7 @@ class ReplayRig final : public Rig {
 
   RecordedMeasurement record_;
   AtEnd at_end_;
+  RigFault fault_ = RigFault::unknown;
   std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() uses
   std::size_t row_ = 0;                            // the last one that is not later than now
   RigFeedback present_;

@@ -6,6 +6,7 @@
 
 #include "core/interface_vector.hpp"
 #include "core/records.hpp"
+#include "core/rig_fault.hpp"
 
 namespace hybridtest {
 
@@ -46,6 +47,8 @@ class Rig {
   /// Sends the command and returns the newest measurement; bounded time, no allocation.
   /// @param feedback   vectors sized one per actuator by the caller.
   [[nodiscard]] virtual RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept = 0;
+  /// Why the last exchange() or arm() failed. The control thread, after such a failure.
+  [[nodiscard]] virtual RigFault fault() const noexcept { return RigFault::unknown; }
   /// Any thread, any state, idempotent.
   virtual void stop_motion() noexcept = 0;
 };

@@ -80,6 +80,7 @@ void SimulatedRig::arm() {
 
 RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {
   const Phase phase = phase_;
+  fault_ = phase == Phase::disconnected ? RigFault::not_connected : RigFault::invalid_command;
   if (phase == Phase::disconnected || !is_usable(command.displacement_m)) return RigStatus::fault;
   if (feedback.displacement_m.size() != specimen_->dofs() || feedback.force_n.size() != specimen_->dofs())
     return RigStatus::fault;
@@ -91,6 +92,7 @@ RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& fe
     move(actuators_[i], sample, phase == Phase::armed);
   }
   load_specimen(command.time_s);
+  fault_ = RigFault::simulation_not_finite;
   if (!displacement_m_.allFinite() || !force_n_.allFinite()) return RigStatus::fault;
 
   for (std::size_t i = 0; i < actuators_.size(); ++i) {

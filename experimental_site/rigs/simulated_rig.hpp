@@ -53,6 +53,7 @@ class SimulatedRig final : public Rig {
   /// @throws std::runtime_error without a connect() before, or when stopped since then.
   void arm() override;
   [[nodiscard]] RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override;
+  [[nodiscard]] RigFault fault() const noexcept override { return fault_; }
   void stop_motion() noexcept override;
 
  private:
@@ -80,6 +81,7 @@ class SimulatedRig final : public Rig {
   std::unique_ptr<Specimen> specimen_;
   std::vector<Actuator> actuators_;
   double control_period_s_;
+  RigFault fault_ = RigFault::unknown;
   std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() uses
   InterfaceVector displacement_m_;                 // this and the following: input of the specimen
   InterfaceVector velocity_m_per_s_;

@@ -133,6 +133,16 @@ RigStatus UdpRig::exchange(const ActuatorCommand& command, RigFeedback& feedback
   return status(phase);
 }
 
+RigFault UdpRig::fault() const noexcept {
+  if (phase_ == Phase::disconnected) return RigFault::not_connected;
+  const MeasurementDatagram& newest = answers_.newest();
+  if ((newest.status & kEmergencyStopped) != 0) return RigFault::controller_emergency_stop;
+  if (newest.state == ControllerState::fault) return RigFault::controller_fault;
+  if (silent_samples_ >= watchdog_samples_) return RigFault::no_answer;
+  if ((newest.status & kWatchdogExpired) != 0) return RigFault::controller_watchdog;
+  return newest.state == ControllerState::active ? RigFault::invalid_command : RigFault::controller_stopped;
+}
+
 void UdpRig::stop_motion() noexcept {
   phase_ = Phase::stopped;
   for (int i = 0; i < kStopDatagrams; ++i) send(ControllerRequest::stop, rest_);

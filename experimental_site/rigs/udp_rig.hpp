@@ -48,6 +48,7 @@ class UdpRig final : public Rig {
   ///         become active in time.
   void arm() override;
   [[nodiscard]] RigStatus exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept override;
+  [[nodiscard]] RigFault fault() const noexcept override;
   void stop_motion() noexcept override;
 
   [[nodiscard]] const UdpAnswers::Counts& counts() const noexcept { return answers_.counts(); }

@@ -68,10 +68,11 @@ struct SubstructureSummary {
 struct InterlockSummary {
   std::string participant;  // the site of the limit
   std::string limit_name;   // a FaultFlags name
-  double observed = 0.0;    // SI
-  double limit = 0.0;       // SI
+  double observed = 0.0;    // SI; NaN for a fault without an observed value
+  double limit = 0.0;       // likewise
   Step step = kNoStep;
   double model_time_s = 0.0;
+  std::string cause;  // interlock_cause()
 };
 
 /// The state of one participant's file.

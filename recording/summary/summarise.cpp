@@ -190,6 +190,18 @@ std::string interlock_key(const Event& event) {
   return event.source.text() + "/" + event.subject.text() + "/" + std::to_string(event.step);
 }
 
+InterlockSummary interlock_of(const Event& event) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool has_value = has_observed_value(event.subject.view());
+  return {.participant = event.source.text(),
+          .limit_name = event.subject.text(),
+          .observed = has_value ? event.values[0] : kNone,
+          .limit = has_value ? event.values[1] : kNone,
+          .step = event.step,
+          .model_time_s = event.model_time_s,
+          .cause = interlock_cause(event.subject.view(), event.values)};
+}
+
 /// Puts a summary together from the files of a run.
 class Summariser {
  public:
@@ -408,8 +420,10 @@ void Summariser::summarise_events() {
     const Event& event = recorded.event;
     if (event.code == EventCode::interlock_tripped) {
       if (!seen.insert(interlock_key(event)).second) continue;
-      summary_.interlocks.push_back({event.source.text(), event.subject.text(), event.values[0], event.values[1],
-                                     event.step, event.model_time_s});
+      summary_.interlocks.push_back(interlock_of(event));
+    } else if (event.code == EventCode::real_time_refused) {
+      const std::string text = event.source.text() + ": " + recorded.text;
+      if (told.insert(text).second) summary_.remarks.push_back(text);
     } else if (event.severity == Severity::fault) {
       const std::string text = event.source.text() + ": " + recorded.text;
       if (told.insert(text).second) summary_.faults.push_back(text);

@@ -95,6 +95,7 @@ Json json(const InterlockSummary& interlock) {
           {"limit_name", interlock.limit_name},
           {"observed", number(interlock.observed)},
           {"limit", number(interlock.limit)},
+          {"cause", interlock.cause},
           {"step", interlock.step},
           {"model_time_s", number(interlock.model_time_s)}};
 }

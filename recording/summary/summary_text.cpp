@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ostream>
 
+#include "core/text/short_number.hpp"
 #include "recording/summary/run_summary.hpp"
 
 namespace hybridtest {
@@ -18,9 +19,7 @@ constexpr double kPercent = 1e2;
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
-  std::array<char, 352> text{};  // the longest double in fixed notation
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+  return short_number(value, decimals);
 }
 
 std::string fixed(const std::optional<double>& value, double scale, int decimals) {
@@ -96,9 +95,12 @@ std::pair<double, std::string> unit_of(const std::string& limit_name) {
 
 std::string sentence(const InterlockSummary& interlock) {
   const auto [scale, unit] = unit_of(interlock.limit_name);
-  return interlock.participant + ": " + interlock.limit_name + ", observed " + fixed(interlock.observed * scale, 3) +
-         unit + ", limit " + fixed(interlock.limit * scale, 3) + unit + ", at step " + std::to_string(interlock.step) +
-         " (" + fixed(interlock.model_time_s, 3) + " s)";
+  const bool has_values = std::isfinite(interlock.observed) && interlock.limit_name != "energy_error";
+  const std::string cause = has_values ? interlock.limit_name + ", observed " + fixed(interlock.observed * scale, 3) +
+                                             unit + ", limit " + fixed(interlock.limit * scale, 3) + unit
+                                       : interlock.cause;
+  return interlock.participant + ": " + cause + ", at step " + std::to_string(interlock.step) + " (" +
+         fixed(interlock.model_time_s, 3) + " s)";
 }
 
 void print_peaks(const RunSummary& summary, std::ostream& stream) {

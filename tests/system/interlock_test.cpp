@@ -72,6 +72,8 @@ TEST_F(Interlock, NonFiniteForceEndsTestAtSite) {
   ASSERT_EQ(summary["interlocks"].size(), 1U);
   EXPECT_EQ(summary["interlocks"][0]["participant"], "storey_1");
   EXPECT_EQ(summary["interlocks"][0]["limit_name"], "rig_fault");
+  EXPECT_EQ(summary["interlocks"][0]["cause"],
+            "rig_fault: the simulated specimen moved to a number that is not finite");
   for (const double force_n : record.column("storey_1", "steps", "measured_force_n")) {
     ASSERT_TRUE(std::isfinite(force_n));
   }

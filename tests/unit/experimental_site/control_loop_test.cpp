@@ -205,6 +205,8 @@ TEST(ControlLoop, TargetBeyondLimitTripsAndCommandStaysInside) {
   fault = not_a_number.take_fault();
   ASSERT_TRUE(fault.has_value());
   EXPECT_EQ(fault->fault, FaultFlags::not_finite);
+  EXPECT_EQ(fault->observed, static_cast<double>(SiteSignal::target));
+  EXPECT_EQ(fault->limit, 1.0) << "the interface degree of freedom";
   EXPECT_EQ(not_a_number.command_m(), 0.0);
 }
 
@@ -219,8 +221,12 @@ TEST(ControlLoop, HoldsAfterNonFiniteValuesAlsoWhenStopped) {
   bench.start();
   bench.target(1, 0.001, 0.2);
   for (int i = 0; i < 4; ++i) bench.advance();
+  static_cast<void>(bench.take_reports());
   is_broken = true;
   bench.advance();
+  const auto fault = bench.take_fault();
+  ASSERT_TRUE(fault.has_value());
+  EXPECT_EQ(fault->observed, static_cast<double>(SiteSignal::measured_force));
   const double held_m = bench.command_m();
   EXPECT_GT(held_m, 0.0);
   bench.take_reports();

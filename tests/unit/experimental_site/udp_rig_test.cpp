@@ -100,6 +100,7 @@ TEST(UdpRig, DoesNotWaitAfterItsCommandIsAnswered) {
 TEST(UdpRig, CausesNoMotionBeforeArmingOrAfterStop) {
   Bench bench;
   EXPECT_EQ(bench.exchange(0.01), RigStatus::fault) << "not connected";
+  EXPECT_EQ(bench.rig->fault(), RigFault::not_connected);
   bench.rig->connect();
   EXPECT_EQ(bench.exchange(0.01), RigStatus::healthy);
   EXPECT_EQ(bench.controller.commands.back().request, ControllerRequest::inactive);
@@ -156,6 +157,7 @@ TEST(UdpRig, SilentControllerIsAFaultAfterWatchdogTime) {
     EXPECT_EQ(bench.feedback.displacement_m[0], 0.01) << "the newest measurement there is";
   }
   EXPECT_EQ(bench.exchange(0.02), RigStatus::fault);
+  EXPECT_EQ(bench.rig->fault(), RigFault::no_answer);
   bench.controller.is_alive = true;
   EXPECT_EQ(bench.exchange(0.02), RigStatus::healthy) << "whether to go on is not the rig's to decide";
 }

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/rig_fault.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
 #include "tests/unit/recording/child_process.hpp"
@@ -138,6 +141,36 @@ TEST(RunSummary, InterlockIsListedOnceWithLimitAndExitCode) {
   EXPECT_EQ(summary.interlocks[0].step, 4711);
   EXPECT_THAT(printed(summary), HasSubstr("storey_1: displacement_limit, observed 123.400 mm, limit 120.000 mm, at "
                                           "step 4711 (4.711 s)"));
+}
+
+TEST(RunSummary, RigFaultHasAReasonInPlaceOfValues) {
+  ExampleRun run;
+  Event fault = example_event();
+  fault.subject = "rig_fault";
+  fault.values = {static_cast<double>(RigFault::no_answer), 0.0};
+  run.coordinator_events = {fault};
+  const RunSummary summary = summary_of(run);
+  ASSERT_EQ(summary.interlocks.size(), 1U);
+  EXPECT_TRUE(std::isnan(summary.interlocks[0].observed));
+  EXPECT_THAT(printed(summary), HasSubstr("storey_1: rig_fault: the controller has not answered"));
+}
+
+TEST(RunSummary, RefusedRealTimeIsARemark) {
+  ExampleRun run;
+  Event refused = example_event();
+  refused.code = EventCode::real_time_refused;
+  refused.severity = Severity::warning;
+  run.coordinator_events = {refused, refused};
+  const std::vector<std::string> remarks = summary_of(run).remarks;
+  EXPECT_EQ(std::ranges::count(remarks, "storey_1: it happened"), 1);
+}
+
+TEST(RunSummary, WritesHugeNumbersShort) {
+  ExampleRun run;
+  Event fault = example_event();
+  fault.values = {1e300, 0.12};
+  run.coordinator_events = {fault};
+  EXPECT_THAT(printed(summary_of(run)), HasSubstr("displacement_limit, observed 1.00e+303 mm, limit 120.000 mm"));
 }
 
 TEST(RunSummary, ListsFaultsWithoutInformationEvents) {
