@@ -74,7 +74,8 @@ class OperatorNode final : public Node {
   /// Those that the coordinator announced and that were not found.
   [[nodiscard]] std::vector<std::string> missing() const {
     std::vector<std::string> missing;
-    if (test_is_over_) return missing;
+    // A coordinator that obeys brings to rest everyone whom it announced.
+    if (test_is_over_ || coordinator_obeyed()) return missing;
     if (!contains(std::string{kCoordinatorId})) missing.emplace_back(kCoordinatorId);
     for (const auto& one : announced()) {
       if (!contains(one.id.text())) missing.push_back(one.id.text());
@@ -84,8 +85,7 @@ class OperatorNode final : public Node {
   /// Whoever has to obey has done so. For `pause` and `resume` that is the coordinator.
   [[nodiscard]] bool is_obeyed() const {
     if (stops()) return std::ranges::all_of(found_, [](const Found& one) { return one.obeyed_after.has_value(); });
-    return std::ranges::any_of(found_,
-                               [](const Found& one) { return one.role == Role::coordinator && one.obeyed_after; });
+    return coordinator_obeyed();
   }
   [[nodiscard]] bool stops() const noexcept {
     return verb_ == ControlVerb::stop || verb_ == ControlVerb::emergency_stop;
@@ -120,6 +120,10 @@ class OperatorNode final : public Node {
   void note_obeyed(const std::string& id, Instant now) {
     const auto one = std::ranges::find(found_, id, &Found::id);
     if (one != found_.end() && !one->obeyed_after) one->obeyed_after = now - one->discovered;
+  }
+  [[nodiscard]] bool coordinator_obeyed() const {
+    return std::ranges::any_of(found_,
+                               [](const Found& one) { return one.role == Role::coordinator && one.obeyed_after; });
   }
   [[nodiscard]] bool contains(const std::string& id) const {
     return std::ranges::find(found_, id, &Found::id) != found_.end();

@@ -48,8 +48,9 @@ const RecordedEvent* find_stop(const std::vector<RecordedEvent>& events) {
 /// Whether the end of a process may explain a test that ended for this reason. What the coordinator and the sites
 /// decided themselves stays.
 bool may_explain(const ProcessEnd& process, StopReason reason) {
-  // The coordinator exits with an error code of its own after any test that did not complete.
-  if (process.participant == kCoordinatorId && process.signal == 0 && reason != StopReason::none) return false;
+  // The coordinator exits with an error code of its own after any test that did not complete with all data.
+  const bool exited_in_order = process.participant == kCoordinatorId && process.signal == 0;
+  if (exited_in_order && (reason != StopReason::none || !process.before_start)) return false;
   switch (reason) {
     case StopReason::none:
     case StopReason::participant_failed: return true;
