@@ -152,6 +152,11 @@ bool tells_of_interlock(const KeptSimulation& run) {
          0;
 }
 
+/// Events of the coordinator that name a participant which no longer answers.
+std::size_t tells_of_loss(const KeptSimulation& run) {
+  return run.count(EventCode::participant_lost, kCoordinatorId) + run.count(EventCode::answer_overdue, kCoordinatorId);
+}
+
 /// The faults drawn explain the coordinator's stop reason, and an event reports it.
 void expect_explained(const KeptSimulation& run, const KeptSimulation& reference, const Scenario& scenario,
                       const DrawnCase& drawn, Violations& found) {
@@ -173,7 +178,7 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
       if (!tells_of_interlock(run)) found.push_back(what + ", and no site says why");
       break;
     case StopReason::participant_lost:
-      if (run.count(EventCode::participant_lost, kCoordinatorId) == 0) found.push_back(what + " and does not say who");
+      if (tells_of_loss(run) == 0) found.push_back(what + " and does not say who");
       break;
     case StopReason::not_assembled:
       if (run.count(EventCode::participant_missing, kCoordinatorId) == 0) {
@@ -187,6 +192,8 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::coordinator_lost:
     case StopReason::not_finite:
     case StopReason::refused:
+    case StopReason::emergency_stop:
+    case StopReason::participant_failed:
     case StopReason::recording_failed: found.push_back(what); break;
   }
 }
@@ -204,9 +211,7 @@ void expect_kills_told(const KeptSimulation& run, Violations& found) {
       }
     } else if (run.result.coordinator.reason != StopReason::completed &&
                run.result.coordinator.reason != StopReason::interlock &&
-               run.count(EventCode::participant_lost, kCoordinatorId) +
-                       run.count(EventCode::participant_missing, kCoordinatorId) ==
-                   0) {
+               tells_of_loss(run) + run.count(EventCode::participant_missing, kCoordinatorId) == 0) {
       // Another participant may have ended the test before the lease of the killed one expired.
       found.push_back(outcome.participant + " was killed and nobody is named");
     }

@@ -26,6 +26,13 @@ TEST_F(ByHand, ThreeProgramsStartedInAnyOrderCompleteATest) {
   EXPECT_THAT(site.wait(), Optional(kExitCompleted)) << site.standard_error();
   EXPECT_THAT(numerical.wait(), Optional(kExitCompleted)) << numerical.standard_error();
 
+  // Each said what it waited for and where; the coordinator showed how far the test was, and a summary.
+  EXPECT_THAT(site.standard_error(), HasSubstr("waiting up to 30 s for the coordinator"));
+  EXPECT_THAT(numerical.standard_error(), HasSubstr("DDS domain " + network().back()));
+  EXPECT_THAT(coordinator.standard_error(), HasSubstr("waiting up to 30 s for the substructures"));
+  EXPECT_THAT(coordinator.standard_error(), HasSubstr("step "));
+  EXPECT_THAT(coordinator.standard_output(), HasSubstr("COMPLETED"));
+
   // The records of the coordinator alone are not the whole test, but a valid part of it.
   const std::filesystem::path together = directory() / "at_control";
   std::filesystem::copy(recorded("at_site").file("storey_1"), together);
