@@ -91,7 +91,9 @@ TEST(KilledSubstructure, SiteHoldsAndCoordinatorNamesTheSilentOne) {
   SimulationSettings settings = slow_network();
   settings.kills.push_back({"storey_2", milliseconds{2000}});
   const KeptSimulation run = keep_simulation(scenario, settings);
-  EXPECT_EQ(run.result.coordinator.reason, StopReason::interlock);
+  // The site's overdue command is the consequence; the silent participant is the cause.
+  EXPECT_EQ(run.result.coordinator.reason, StopReason::participant_lost);
+  EXPECT_EQ(run.count(EventCode::answer_overdue, "coordinator", "storey_2"), 1U);
   EXPECT_EQ(run.count(EventCode::command_overdue, "storey_1"), 1U);
   EXPECT_GE(run.count(EventCode::command_repeated, "coordinator", "storey_2"), 1U);
   EXPECT_EQ(run.count(EventCode::command_repeated, "coordinator", "storey_1"), 0U);
@@ -320,12 +322,14 @@ TEST_F(Paced, ActuatorHoldsDuringOutageAndContinues) {
       << "path time is set back by 40 % of a step at most";
 }
 
-TEST_F(Paced, OutageBeyondCommandAgeTripsInterlock) {
+TEST_F(Paced, OutageBeyondCommandAgeNamesTheSilentOne) {
   const Scenario scenario = ideal({"substructures[storey_1].limits.command_age_s=0.3"});
   SimulationSettings settings;
   settings.network.outages.push_back({"storey_2", milliseconds{600}, milliseconds{1500}});
   const KeptSimulation run = keep_simulation(scenario, settings);
-  EXPECT_EQ(run.result.coordinator.reason, StopReason::interlock);
+  // The site's overdue command is the consequence; the silent participant is the cause.
+  EXPECT_EQ(run.result.coordinator.reason, StopReason::participant_lost);
+  EXPECT_EQ(run.count(EventCode::answer_overdue, "coordinator", "storey_2"), 1U);
   EXPECT_EQ(run.count(EventCode::command_overdue, "storey_1"), 1U);
   EXPECT_EQ(run.outcome("storey_1").faults, FaultFlags::command_age);
   // It holds until it receives the stop, then returns.

@@ -280,9 +280,9 @@ TEST_F(NodeBenchTest, EmergencyStopEndsMotionAtOnce) {
     operator_says(desk, ControlVerb::emergency_stop);
     const std::size_t before = site_->tables.find("control")->second.size();
     ASSERT_TRUE(bench.run_to_end(seconds{60}));
-    EXPECT_EQ(coordinator_->reason(), StopReason::interlock);
-    EXPECT_EQ(site_->reason(), StopReason::interlock);
-    EXPECT_EQ(model_->reason(), StopReason::interlock);
+    EXPECT_EQ(coordinator_->reason(), StopReason::emergency_stop);
+    EXPECT_EQ(site_->reason(), StopReason::emergency_stop);
+    EXPECT_EQ(model_->reason(), StopReason::emergency_stop);
     EXPECT_EQ(site_->participant->presence().faults(), FaultFlags::emergency_stop);
     // What was under way when it was pressed: the network's 50 us, in lockstep one step of two
     // control periods at most.
