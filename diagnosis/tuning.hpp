@@ -212,8 +212,9 @@ inline constexpr double kAtBound = 1e-3;
 /// other would cancel in huge numbers, and in the covariance.
 inline constexpr double kProjectionRidge = 1e-10;
 inline constexpr double kCovarianceRidge = 1e-9;
-/// Several effects are linear together when their prediction is what their columns say, to this share of the
-/// residual; else they are linearised again where they are, so many times and by that step (in units of the parameter).
+/// Several effects count as linear together when their prediction equals the sum of their columns, within this share
+/// of the residual. Otherwise they are linearised again at their present values, at most so many times. The step is in
+/// units of the parameter.
 inline constexpr double kAsGoodAsLinear = 1e-3;
 inline constexpr int kRelinearisations = 3;
 inline constexpr double kCoefficientStep = 1e-2;
@@ -222,42 +223,46 @@ inline constexpr double kNeighbourCorrelationMax = 0.999;
 
 // Score of a candidate [nats].
 
-/// Independent samples that a second of a structured residual is worth.
+/// Independent samples per second of a structured residual.
 inline constexpr double kIndependentPerSecond = 5.0;
-/// Penalty of a candidate for freeing slightly wrong parameters of the model [nats].
+/// Penalty of a candidate that also corrects slightly wrong parameters of the model [nats].
 inline constexpr double kNuisanceCost = 3.0;
-/// Share of the secant stiffness by which a slightly wrong model may be off.
+/// Largest error of a slightly wrong model, as a share of the secant stiffness.
 inline constexpr double kSlightlyWrong = 0.25;
-/// By how much a sensor's effect has to be better than a stage's of equal shape [nats].
+/// Advantage that an effect of a sensor needs over an effect of a stage with the same shape [nats].
 inline constexpr double kSensorPrior = 1.0;
-/// By how much an effect has to be better for each parameter that it has more than another [nats]: of two that do
-/// equally well on data not fitted, the simpler one is meant. Half the logarithm of the independent samples of 30 s.
+/// Advantage that an effect needs for each parameter that it has more than another effect [nats]. Of two effects that
+/// do equally well on held-out data the simpler one is chosen. Half the logarithm of the independent samples of 30 s.
 inline constexpr double kParameterPrior = 2.5;
-/// Share of its range by which a ratio may be off its fallback and still count as left out: the search resolves no
-/// less.
+/// A ratio that differs from its fallback by less than this share of its range counts as left out. The search has no
+/// finer resolution.
 inline constexpr double kRangeUnresolved = 1e-3;
-/// An effect so far behind the best one on the coarse record is not looked at again, nor paired [nats].
+/// An effect that is worse than the best one by more than this on the coarse record is not fitted again and not
+/// paired [nats].
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are searched together with the first.
 inline constexpr std::size_t kRefittedPairs = 5;
 
 // Which effects are chosen.
 
-/// Gain over the model as it is above which there is something to explain [nats].
+/// Gain over the unchanged model above which there is a gap to explain [nats].
 inline constexpr double kDetectionGain = 5.0;
-/// A further effect is taken when it gains so much [nats] and leaves less than this share of what was left
-/// in the median recording.
+/// A further effect is accepted when it gains at least this much [nats] and leaves less than this share of the
+/// remaining gap in the median recording.
 inline constexpr double kAnotherEffectGain = 6.0;
 inline constexpr double kAnotherEffectLeaves = 0.6;
-/// Share of that recording's whole gap [variance] that it has to explain, unless it is a wrong number of the model.
+/// Share of the whole gap of that recording [variance] that it must explain, unless it is a wrong parameter of the
+/// model.
 inline constexpr double kAnotherEffectExplains = 0.03;
-/// Or unless it leaves less than this share of what was left.
+/// Or unless it leaves less than this share of the remaining gap.
 inline constexpr double kSmallEffectLeaves = 0.15;
-/// Of what the best further effect explains: a wrong number of the model that explains so much is taken in its place.
+/// A wrong parameter of the model is chosen instead of the best further effect when it explains at least this share of
+/// what that effect explains.
 inline constexpr double kNumberInstead = 0.95;
-/// Share of the gap: with less left than this, or not clearly above the floor, no further effect is looked for.
+/// No further effect is searched when less than this share of the gap remains, or when the rest is not clearly above
+/// the floor.
 inline constexpr double kNothingLeft = 0.002;
-/// How many of the best single effects a second one is looked for beside, and how many are chosen together at most.
+/// Number of best single effects for which a second effect is searched, and largest number of effects chosen together.
 inline constexpr std::size_t kLeadersPaired = 2;
 inline constexpr std::size_t kEffectsMax = 4;
 
@@ -288,24 +293,24 @@ inline constexpr double kTestRerun = 0.98;
 inline constexpr double kGapOverFloor = 0.3;
 /// A gap above this multiple of its floor that nothing reduces is unknown.
 inline constexpr double kUnknownOverFloor = 2.0;
-/// A signal within this multiple of its noise [standard deviations] shows nothing, and that no gap is seen in it means
-/// nothing; at the larger one an effect of a tenth of the signal stands out as far.
+/// A signal smaller than this multiple of its noise [standard deviations] cannot show a gap, so that an absent gap is
+/// no evidence. At the larger multiple an effect of a tenth of the signal is as visible.
 inline constexpr double kExcitedOverNoise = 3.0;
 inline constexpr double kWellExcitedOverNoise = 30.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
-/// Beside a gap of more than this multiple of its floor smaller ones count as none.
+/// When one gap exceeds its floor by more than this factor, gaps below this factor count as none.
 inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
 inline constexpr double kNamedLeaves = 0.0625;
 inline constexpr double kPartialLeaves = 0.3;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;
-/// A cause that changes a held-out prediction by less than this share of the floor does not act there: a limit that is
-/// not reached changes nothing at all.
+/// A cause that changes a held-out prediction by less than this share of the floor does not act there. Example: a limit
+/// that is not reached.
 inline constexpr double kCauseActs = 0.1;
-/// Probabilities are the softmax of the scores over this: fitted on development batches, where the first of a set was
-/// right more often than the scores alone say.
+/// Probabilities are the softmax of the scores divided by this temperature. Fitted on development batches, in which the
+/// first effect of a set was right more often than the scores alone predict.
 inline constexpr double kTemperature = 0.5;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;

@@ -60,8 +60,11 @@ std::string ChildProcess::last_words() const {
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
   }
   // An event is written as `2026-01-31T12:00:00.000Z error id: text`.
-  const auto time_end = last.find("Z error ");
-  return time_end == std::string::npos ? last : last.substr(time_end + std::strlen("Z error "));
+  for (const std::string level : {"Z error ", "Z warning ", "Z info "}) {
+    const auto time_end = last.find(level);
+    if (time_end != std::string::npos) return last.substr(time_end + level.size());
+  }
+  return last;
 }
 
 void ChildProcess::send_signal(int signal) noexcept {

@@ -41,10 +41,10 @@ bool EventLog::send(const Event& event) noexcept {
   return waiting_.send(event);
 }
 
-void EventLog::write(const std::function<void()>& before_line) {
+void EventLog::write(const std::function<void(const Event&)>& also) {
   Event event;
   while (waiting_.take(event)) {
-    if (before_line) before_line();
+    if (also) also(event);
     const std::string at =
         event.step == kNoStep ? "" : fmt::format(" [step {}, model time {:.4g} s]", event.step, event.model_time_s);
     logger_->log(level_of(event.severity), "{}: {}{}", event.source.view(), describe(event), at);

@@ -20,14 +20,14 @@ namespace hybridtest {
 class EventLog final : public Outbox<Event> {
  public:
   /// @param directory   of the run; the events are appended to its `events.log`.
-  /// @param to_terminal   also to standard error, for a participant that was started by hand.
+  /// @param to_terminal   also to standard error, with the time.
   EventLog(Outbox<Event>& network, Outbox<Event>& record, const std::filesystem::path& directory, bool to_terminal);
   ~EventLog() override;
 
   bool send(const Event& event) noexcept override;
   /// Writes the events sent since the last call. Not for a control thread.
-  /// @param before_line   called before each of them, if given.
-  void write(const std::function<void()>& before_line = {});
+  /// @param also   called with each of them, if given.
+  void write(const std::function<void(const Event&)>& also = {});
 
  private:
   Outbox<Event>& network_;

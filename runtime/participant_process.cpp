@@ -33,39 +33,8 @@ namespace {
 /// Capacity of the tables at control rate while the disk is busy: two minutes at 1 kHz.
 constexpr std::size_t kRingRows = 1U << 17U;
 
-/// All parts of a process except its node.
-class ProcessSurroundings {
- public:
-  ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
-                      const std::vector<TableLayout>& tables)
-      : incarnation_{draw_incarnation()},
-        transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
-        network_events_{transport_->event_outbox()},
-        recorder_{run_file(options.run_directory, options.id),
-                  run_file_header(scenario, options.id, role, incarnation_), recorded(tables)},
-        event_log_{*network_events_, recorder_.events(), options.run_directory, true} {}
-
-  [[nodiscard]] ParticipantSurroundings surroundings() {
-    return {*transport_, event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
-            incarnation_};
-  }
-  [[nodiscard]] Transport& transport() { return *transport_; }
-  [[nodiscard]] Recorder& recorder() { return recorder_; }
-  [[nodiscard]] EventLog& event_log() { return event_log_; }
-
- private:
-  static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
-    std::vector<RecordedTable> result;
-    for (const TableLayout& table : tables) result.push_back({table, kRingRows});
-    return result;
-  }
-
-  Incarnation incarnation_;
-  std::unique_ptr<Transport> transport_;
-  std::unique_ptr<Outbox<Event>> network_events_;
-  Recorder recorder_;
-  EventLog event_log_;
-};
+/// After an emergency stop, with the rig at rest: longer than a discovery takes.
+constexpr Duration kLinger = std::chrono::milliseconds{500};
 
 /// What a process that was started by hand shows on standard error: what it waits for, then how far the test is.
 class ParticipantProgress {
@@ -84,49 +53,93 @@ class ParticipantProgress {
     progress_.set_completed(presence.own_status().last_step, now);
     progress_.show(now);
   }
+  void print(const Event& event) { progress_.print(event); }
   void clear_line() { progress_.clear_line(); }
 
  private:
   Progress progress_;
 };
 
+/// All parts of a process except its node.
+class ProcessSurroundings {
+ public:
+  ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
+                      const std::vector<TableLayout>& tables)
+      : incarnation_{draw_incarnation()},
+        transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
+        network_events_{transport_->event_outbox()},
+        recorder_{run_file(options.run_directory, options.id),
+                  run_file_header(scenario, options.id, role, incarnation_), recorded(tables)},
+        event_log_{*network_events_, recorder_.events(), options.run_directory, !options.shows_progress} {
+    if (options.shows_progress) progress_.emplace(scenario, options, role);
+  }
+
+  [[nodiscard]] ParticipantSurroundings surroundings() {
+    return {*transport_, event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
+            incarnation_};
+  }
+  [[nodiscard]] Transport& transport() { return *transport_; }
+  [[nodiscard]] Recorder& recorder() { return recorder_; }
+
+  /// Writes the events that wait to `events.log` and to the terminal.
+  void write_events() {
+    event_log_.write([this](const Event& event) {
+      if (progress_) progress_->print(event);
+    });
+  }
+  void show_progress(const Presence& presence, Instant now) {
+    if (progress_) progress_->show(presence, now);
+  }
+  /// A line of this process alone on standard error.
+  void print(const std::string& text) {
+    if (progress_) progress_->clear_line();
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+
+ private:
+  static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
+    std::vector<RecordedTable> result;
+    for (const TableLayout& table : tables) result.push_back({table, kRingRows});
+    return result;
+  }
+
+  Incarnation incarnation_;
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<Outbox<Event>> network_events_;
+  Recorder recorder_;
+  EventLog event_log_;
+  std::optional<ParticipantProgress> progress_;  // none is shown for a child of `hybridtest run`
+};
+
 /// Runs after each advance() of the node: passes on stop requests, writes events, checks the recording.
 class Housekeeping {
  public:
-  /// @param progress   nullptr: none is shown.
-  Housekeeping(Participant& participant, ProcessSurroundings& process, ParticipantProgress* progress, bool may_wait)
-      : participant_{participant}, process_{process}, progress_{progress}, may_wait_{may_wait} {}
+  Housekeeping(Participant& participant, ProcessSurroundings& process, bool may_wait)
+      : participant_{participant}, process_{process}, may_wait_{may_wait} {}
 
   void operator()(Instant now) {
     if (stop_was_requested() && !stop_passed_on_) {
       stop_passed_on_ = true;
-      clear_line();
-      std::fprintf(stderr, "%s: received %s: stopping safely\n", participant_.presence().identity().id.text().c_str(),
-                   stop_signal().c_str());
+      process_.print(participant_.presence().identity().id.text() + ": received " + stop_signal() +
+                     ": stopping safely");
       participant_.request_stop(StopReason::interrupted);
     }
     watch_recording(now);
-    process_.event_log().write([&] { clear_line(); });
-    if (progress_ != nullptr) progress_->show(participant_.presence(), now);
+    process_.write_events();
+    process_.show_progress(participant_.presence(), now);
     // Lockstep has no deadlines: it waits for the disk so that no record is lost.
     if (may_wait_) wait_while([&] { return process_.recorder().should_drain() && !process_.recorder().failed(); });
   }
 
  private:
-  void clear_line() {
-    if (progress_ != nullptr) progress_->clear_line();
-  }
-
   void watch_recording(Instant now) {
     if (watch_.look(process_.recorder(), participant_.presence(), now)) {
-      clear_line();
-      std::fprintf(stderr, "the recording failed: %s\n", process_.recorder().error_text().c_str());
+      process_.print("the recording failed: " + process_.recorder().error_text());
     }
   }
 
   Participant& participant_;
   ProcessSurroundings& process_;
-  ParticipantProgress* progress_;
   bool may_wait_;
   bool stop_passed_on_ = false;
   RecordingWatch watch_;
@@ -142,16 +155,15 @@ int exit_code_of(const Participant& participant, const Recorder& recorder) {
 /// @param at_the_end   called before the recording is closed, for its last rows.
 void run_to_the_end(
     Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, const Scenario& scenario,
-    const ParticipantProcessOptions& options, const std::function<void()>& at_the_end = [] {}) {
+    const std::function<void()>& at_the_end = [] {}) {
   RecorderThread recording{process.recorder()};
-  std::optional<ParticipantProgress> progress;
-  if (options.shows_progress) progress.emplace(scenario, options, participant.presence().identity().role);
-  Housekeeping housekeeping{participant, process, progress ? &*progress : nullptr,
-                            scenario.time.mode == CouplingMode::lockstep};
+  Housekeeping housekeeping{participant, process, scenario.time.mode == CouplingMode::lockstep};
   run_until(
       participant.node(), process.transport().waker(), clock, [&] { return participant.is_done(); },
       [&](Instant now) { housekeeping(now); });
-  process.event_log().write();
+  process.write_events();
+  // The tool that sent an emergency stop may discover this participant only now; it then hears that it obeyed.
+  if (participant.stop_reason() == StopReason::emergency_stop) rest_until(clock, clock.now() + kLinger);
   at_the_end();
 }
 
@@ -161,7 +173,7 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
   ProcessSurroundings process{scenario, options, Role::coordinator, tables};
   CoordinatorParticipant participant{scenario, process.surroundings()};
   wake_on_stop(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario, options, [&] {
+  run_to_the_end(participant, process, clock, scenario, [&] {
     const CoordinatorReport report = participant.report();
     process.recorder().sink("test").append(test_row(scenario, report, exit_code_for(report.reason)));
   });
@@ -173,7 +185,7 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
   ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure)};
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
   wake_on_stop(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario, options);
+  run_to_the_end(participant, process, clock, scenario);
   return exit_code_of(participant, process.recorder());
 }
 
@@ -193,20 +205,19 @@ void report_grant(Presence& presence, Instant now, const RealTimeRequest& reques
 
 /// Runs the link on this thread and the control loop on its own thread.
 void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
-                               const Scenario& scenario, const SubstructureScenario& substructure,
-                               const ParticipantProcessOptions& options) {
+                               const Scenario& scenario, const SubstructureScenario& substructure) {
   const RealTimeRequest& request = substructure.site.real_time;
   LoopThread loop{participant.control_loop(), clock, request,
                   from_seconds(scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step)};
   report_grant(participant.presence(), clock.now(), request, loop.grant());
-  process.event_log().write();
+  process.write_events();
   if (!loop.grant().is_complete() && !request.allow_degraded) {
     throw ConfigError{
         substructure.id +
         ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
         "real_time.allow_degraded: true to start without them"};
   }
-  run_to_the_end(participant, process, clock, scenario, options, [&] {
+  run_to_the_end(participant, process, clock, scenario, [&] {
     loop.stop();
     record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
                        process.recorder().sink("loop_start_lateness"));
@@ -223,9 +234,9 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
   set_assert_action([](void* rig) noexcept { static_cast<Rig*>(rig)->stop_motion(); }, &participant.rig());
   wake_on_stop(process.transport().waker());
   if (has_loop_thread) {
-    run_site_with_loop_thread(participant, process, clock, scenario, substructure, options);
+    run_site_with_loop_thread(participant, process, clock, scenario, substructure);
   } else {
-    run_to_the_end(participant, process, clock, scenario, options);
+    run_to_the_end(participant, process, clock, scenario);
   }
   set_assert_action(nullptr, nullptr);
   return exit_code_of(participant, process.recorder());

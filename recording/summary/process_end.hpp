@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/exit_code.hpp"
+
 namespace hybridtest {
 
 /// How a process of a test ended, as its parent saw it. A process that was killed cannot record that itself.
@@ -15,8 +17,12 @@ struct ProcessEnd {
   bool was_asked = false;     // it had been asked to stop, or another process had ended before it
   bool before_start = false;  // of the first step
 
-  /// Whether this process ended the test: it failed before anyone asked it to stop.
-  [[nodiscard]] bool is_cause() const noexcept { return !was_asked && (signal != 0 || exit_code != 0); }
+  /// Whether this process failed before anyone asked it to stop. One that left the test in order, completed or ended
+  /// early, did not fail.
+  [[nodiscard]] bool is_cause() const noexcept {
+    const bool left_in_order = exit_code == kExitCompleted || exit_code == kExitEndedEarly;
+    return !was_asked && (signal != 0 || !left_in_order);
+  }
   /// "killed by signal 9 (Killed)", or its own words.
   [[nodiscard]] std::string text() const;
 };

@@ -121,6 +121,14 @@ TEST(EndOfRun, ProcessThatWasAskedToStopIsNoCause) {
   EXPECT_THAT(summary.end.why, IsEmpty());
 }
 
+TEST(EndOfRun, ProcessThatLeftInOrderIsNoCause) {
+  // Stopped through the network: nobody sent it a signal.
+  ProcessEnd numerical{.participant = "storey_2", .exit_code = kExitEndedEarly, .signal = 0, .words = "ready"};
+  EXPECT_FALSE(numerical.is_cause());
+  numerical.exit_code = kExitInternal;
+  EXPECT_TRUE(numerical.is_cause());
+}
+
 TEST(EndOfRun, InterlockStaysWhenASiteIsKilledAfterwards) {
   RunSummary summary = running(StopReason::interlock);
   find_end(summary, {killed("storey_2")}, {stopped(StopReason::interlock, "storey_1")});
