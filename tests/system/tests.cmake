@@ -32,4 +32,7 @@ target_compile_options(simulate_digest_unoptimised PRIVATE -O0 -UNDEBUG -g0)
 set_target_properties(simulate_digest_unoptimised PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
   UNITY_BUILD ${HYBRIDTEST_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 4 UNITY_BUILD_UNIQUE_ID hybridtest_unity_id)
+if(HYBRIDTEST_PRECOMPILED_HEADERS)
+  target_precompile_headers(simulate_digest_unoptimised PRIVATE ${hybridtest_common_headers})
+endif()
 add_dependencies(system simulate_digest simulate_digest_unoptimised)
