@@ -1,5 +1,6 @@
 #include "transport/fast_dds/participant_qos.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
@@ -17,6 +18,7 @@ namespace hybridtest::fast_dds {
 namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
+constexpr Duration kAnnouncementPeriodMax = std::chrono::milliseconds{500};
 constexpr const char* kProfileName = "hybridtest";
 // GUID prefix of a discovery server started with `fastdds discovery -i 0`.
 constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
@@ -136,7 +138,8 @@ dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
   }
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration = to_dds(settings.lease);
-  discovery.leaseDuration_announcementperiod = to_dds(settings.lease / 4);
+  // An announcement can be lost. Whoever joins later, such as the tool of an emergency stop, waits for the next one.
+  discovery.leaseDuration_announcementperiod = to_dds(std::min(settings.lease / 4, kAnnouncementPeriodMax));
   // Existing participants answer the first announcement at once. The repeats are for participants
   // that open their socket a little later.
   discovery.initial_announcements.count = 10;
