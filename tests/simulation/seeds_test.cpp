@@ -5,12 +5,13 @@
 #include "tests/simulation/drawn_case.hpp"
 #include "tests/simulation/invariants.hpp"
 #include "tests/simulation/kept_simulation.hpp"
+#include "tests/support/sanitizers.hpp"
 
 /// Whole-system runs with faults drawn by a seed. A failure prints the command that repeats it.
 namespace hybridtest {
 namespace {
 
-constexpr std::uint64_t kSeeds = 200;
+constexpr std::uint64_t kSeeds = 200 / kShortenedBy;
 
 class Seeds : public testing::TestWithParam<CouplingMode> {
  protected:
@@ -47,12 +48,12 @@ TEST_P(Seeds, KeepTheInvariants) {
   for (std::uint64_t seed = 1; seed <= kSeeds && !HasFailure(); ++seed) run(seed);
   for (const auto& [reason, count] : endings_) RecordProperty(std::string{name(reason)}, count);
   // The faults drawn reach the nodes, and do not end every test.
-  EXPECT_GE(endings_[StopReason::completed], 80);
-  EXPECT_GE(endings_[StopReason::participant_lost], 10);
-  EXPECT_GE(endings_[StopReason::interlock], 10);
-  EXPECT_GE(network_.lost, 1000U);
-  EXPECT_GE(network_.duplicated, 1000U);
-  EXPECT_GE(network_.reordered, 1000U);
+  EXPECT_GE(endings_[StopReason::completed], 80 / kShortenedBy);
+  EXPECT_GE(endings_[StopReason::participant_lost], 10 / kShortenedBy);
+  EXPECT_GE(endings_[StopReason::interlock], 10 / kShortenedBy);
+  EXPECT_GE(network_.lost, 1000U / kShortenedBy);
+  EXPECT_GE(network_.duplicated, 1000U / kShortenedBy);
+  EXPECT_GE(network_.reordered, 1000U / kShortenedBy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Seeds, testing::Values(CouplingMode::lockstep, CouplingMode::paced),
