@@ -70,7 +70,7 @@ bool has_observed_value(std::string_view fault) noexcept {
 }
 
 std::string interlock_cause(std::string_view fault, const std::array<double, 2>& values) {
-  const std::string name{fault};
+  std::string name{fault};
   if (fault == "rig_fault") return name + ": " + std::string{describe(code_of<RigFault>(values[0]))};
   if (fault == "not_finite") {
     const std::string dof = values[1] >= 1.0 ? " of interface degree of freedom " + number(values[1]) : "";

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <ranges>
+#include <sstream>
 
 #include "core/config/section.hpp"
 #include "core/text/scalar.hpp"
@@ -111,9 +111,9 @@ constexpr double kUsualControlRate_hz = 1024.0;
 
 std::string indented(std::string_view lines, std::string_view first, std::string_view others) {
   std::string text;
-  for (const auto line : std::views::split(lines, '\n')) {
-    if (line.empty()) continue;
-    text.append(text.empty() ? first : others).append(line.begin(), line.end()) += '\n';
+  std::istringstream stream{std::string{lines}};
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty()) text.append(text.empty() ? first : others).append(line) += '\n';
   }
   return text;
 }
@@ -186,7 +186,7 @@ std::string written_compensators(Section section) {
 std::string compensators_of_site(const std::filesystem::path& scenario, std::string_view substructure) {
   config::Document document = config::Document::load(scenario);
   Section root = document.root();
-  const std::string list = written_compensators(site_in(root, substructure).beside);
+  std::string list = written_compensators(site_in(root, substructure).beside);
   document.throw_if_errors();
   return list;
 }

@@ -95,7 +95,9 @@ TEST_F(WrongInput, NetworkOptionsAreRefusedBeforeAnythingIsWritten) {
       {{"--peer", "no.such.host.invalid"}, "peer 'no.such.host.invalid': this host has no IPv4 address"},
       {{"--discovery-server", "lab:x"}, "discovery server 'lab:x': expected host or host:port"},
       {{"--profile", "no_profile.xml"}, "no_profile.xml: is not a valid profile file"}};
-  for (const auto& [option, message] : cases) {
+  for (const auto& one : cases) {
+    const Arguments& option = one.first;
+    const std::string& message = one.second;
     const auto with_option = [&option](Arguments arguments) {
       arguments.insert(arguments.end(), option.begin(), option.end());
       return arguments;
