@@ -92,6 +92,10 @@ bool SystemTest::has_recorded(const std::string& run, std::string_view participa
   return wait_until([&] { return recorded(run).last_step(participant) >= step; });
 }
 
+pid_t participant_of(const StartedProgram& run, std::string_view id) {
+  return id == kCoordinatorId ? run.child({program("coordinator")}) : run.child({"--id", std::string{id}});
+}
+
 std::filesystem::path shipped_scenario(const std::string& name) {
   return std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios" / (name + ".yaml");
 }

@@ -55,6 +55,9 @@ class SystemTest : public ::testing::Test {
   int domain_ = 0;
 };
 
+/// The running process of a participant that `hybridtest run` started; 0 when there is none.
+[[nodiscard]] pid_t participant_of(const StartedProgram& run, std::string_view id);
+
 /// A scenario that ships with the program.
 [[nodiscard]] std::filesystem::path shipped_scenario(const std::string& name);
 /// One written for these tests.

@@ -35,17 +35,9 @@ class Ends : public SystemTest {
     EXPECT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
     return run;
   }
-  /// @param id   of a participant; the coordinator has none on its command line.
-  static pid_t child(const StartedProgram& run, const std::string& id) {
-    if (id != kCoordinatorId) return run.child({"--id", id});
-    for (const pid_t process : run.children()) {
-      if (process != run.child({"--id", "storey_1"}) && process != run.child({"--id", "storey_2"})) return process;
-    }
-    return 0;
-  }
   static void kill_child(const StartedProgram& run, const std::string& id, int signal) {
     pid_t process = 0;
-    ASSERT_TRUE(wait_until([&] { return (process = child(run, id)) != 0; }, std::chrono::seconds{20}))
+    ASSERT_TRUE(wait_until([&] { return (process = participant_of(run, id)) != 0; }, std::chrono::seconds{20}))
         << run.standard_error();
     ASSERT_EQ(::kill(process, signal), 0);
   }

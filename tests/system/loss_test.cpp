@@ -102,13 +102,9 @@ TEST_F(Loss, KilledSiteEndsTestWithinLeaseAndKeepsItsRecord) {
 TEST_F(Loss, KilledCoordinatorBringsOthersToRest) {
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", kEndless});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
-  const std::vector<pid_t> children = run.children();
-  const auto is_coordinator = [&](pid_t process) {
-    return process != run.child({"--id", "storey_1"}) && process != run.child({"--id", "storey_2"});
-  };
-  const auto coordinator = std::ranges::find_if(children, is_coordinator);
-  ASSERT_NE(coordinator, children.end());
-  ASSERT_EQ(::kill(*coordinator, SIGKILL), 0);
+  const pid_t coordinator = participant_of(run, kCoordinatorId);
+  ASSERT_NE(coordinator, 0);
+  ASSERT_EQ(::kill(coordinator, SIGKILL), 0);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_THAT(run.standard_output(), HasSubstr("ENDED: THE COORDINATOR WAS LOST (coordinator, at"));
   EXPECT_THAT(run.standard_output(), HasSubstr("DATA INVALID"));

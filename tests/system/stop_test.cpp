@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <csignal>
 #include <string>
 #include <utility>
@@ -112,12 +111,9 @@ TEST_F(Stop, EmergencyStopReachesTheSiteWithoutTheCoordinator) {
                                  {"--set", "time.duration_s=600", "--set", "timeouts={liveliness_lease_s: 30}", "--set",
                                   "substructures[storey_1].limits.command_age_s=60"});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
-  const auto children = run.children();
-  const auto coordinator = std::ranges::find_if(children, [&](pid_t process) {
-    return process != run.child({"--id", "storey_1"}) && process != run.child({"--id", "storey_2"});
-  });
-  ASSERT_NE(coordinator, children.end());
-  ASSERT_EQ(::kill(*coordinator, SIGSTOP), 0);
+  const pid_t coordinator = participant_of(run, kCoordinatorId);
+  ASSERT_NE(coordinator, 0);
+  ASSERT_EQ(::kill(coordinator, SIGSTOP), 0);
   Arguments arguments{"emergency-stop", test_name()};
   for (const std::string& argument : network()) arguments.push_back(argument);
   StartedProgram command = start_hybridtest(arguments, "emergency_stop");
@@ -126,7 +122,7 @@ TEST_F(Stop, EmergencyStopReachesTheSiteWithoutTheCoordinator) {
   EXPECT_THAT(command.standard_output(), HasSubstr("storey_1"));
   EXPECT_THAT(command.standard_error(), HasSubstr("NOT found: coordinator"));
   ASSERT_TRUE(wait_until([&] { return run.child({"--id", "storey_1"}) == 0; })) << "the site goes on";
-  ::kill(*coordinator, SIGCONT);
+  ::kill(coordinator, SIGCONT);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "emergency_stop");
 }
