@@ -433,7 +433,7 @@ void Coordinator::end_unassembled(Instant now, LifecycleState wanted) noexcept {
     const Peer* peer = presence_.find(substructure.id);
     if (peer != nullptr && has_reached(peer->status.state, wanted)) continue;
     report(now, Severity::fault, EventCode::participant_missing, substructure.id);
-    if (first.view().empty()) first = substructure.id;
+    if (first.empty()) first = substructure.id;
   }
   begin_stop(now, StopReason::not_assembled, first);
 }

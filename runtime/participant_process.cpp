@@ -48,6 +48,9 @@ class ParticipantProgress {
   }
 
   void show(const Presence& presence, Instant now) {
+    // Called after every message: looks at the others far less often.
+    if (now < next_look_) return;
+    next_look_ = now + kLook;
     progress_.learn(presence.own_status());
     for (const Peer& peer : presence.peers()) progress_.learn(peer.status);
     progress_.set_completed(presence.own_status().last_step, now);
@@ -57,7 +60,10 @@ class ParticipantProgress {
   void clear_line() { progress_.clear_line(); }
 
  private:
+  static constexpr Duration kLook = std::chrono::milliseconds{50};
+
   Progress progress_;
+  Instant next_look_{};
 };
 
 /// All parts of a process except its node.
