@@ -8,6 +8,8 @@
 #include "mechanics/laws/gap_spring.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 #include "mechanics/laws/parallel.hpp"
+#include "mechanics/laws/peak_oriented.hpp"
+#include "mechanics/laws/pinched_reloading.hpp"
 #include "mechanics/laws/viscous.hpp"
 
 namespace hybridtest {
@@ -45,6 +47,8 @@ const std::vector<PartType<Maker<Law>>>& laws() {
       law<GiuffreMenegottoPinto>("giuffre_menegotto_pinto"),
       law<BoucWen>("bouc_wen"),
       law<BoucWenBaberNoori>("bouc_wen_baber_noori"),
+      law<PeakOriented>("peak_oriented"),
+      law<PinchedReloading>("pinching"),
       law<Friction>("friction"),
       law<GapSpring>("gap"),
       law<Viscous>("viscous"),

@@ -1,0 +1,20 @@
+#include "tests/unit/mechanics/material_path.hpp"
+
+#include <fstream>
+#include <stdexcept>
+
+namespace hybridtest {
+
+std::vector<PathPoint> read_material_path(const std::string& name) {
+  const std::string path = std::string{HYBRIDTEST_SOURCE_DIR} + "/tests/reference/law_" + name + ".csv";
+  std::ifstream stream{path};
+  std::string head;
+  if (!std::getline(stream, head)) throw std::runtime_error{"no path in " + path};
+  std::vector<PathPoint> points;
+  PathPoint point;
+  char comma = ',';
+  while (stream >> point.displacement_m >> comma >> point.force_n) points.push_back(point);
+  return points;
+}
+
+}  // namespace hybridtest
