@@ -8,6 +8,7 @@
 
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -93,6 +94,7 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
   series.recording = recording.file;
   series.is_held_out = recording.role == RecordingRole::held_out;
   series.sample_period_s = segment.period_s;
+  series.is_quasi_static = segment.is_quasi_static;
   series.unit = segment.to == Channel::measured_force ? "N" : "m";
   for (const Motion& motion : segment.input) series.input_m.push_back(motion.displacement_m);
   series.measured = segment.measured;
@@ -111,6 +113,7 @@ GapPlace place_of(const report::InterfaceSeries& series) {
   const GapSignals signals{series.sample_period_s, series.input_m, series.measured, residual};
   place.time_windows =
       windows_holding(gap_over_time(signals, std::min(tuning::kPlaceWindows, signals.size())), tuning::kMainShare);
+  if (series.is_quasi_static) return place;  // frequencies and velocities have no meaning
   const Spectra spectra = welch(signals.input_m, signals.residual, signals.period_s, welch_segment(signals.size()));
   place.bands = bands_holding(gap_over_frequency(signals, spectra), tuning::kMainShare);
   place.regions =
@@ -196,6 +199,27 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
   diagnosis.causes.clear();
 }
 
+/// What is not known of a test without time.
+void add_quasi_static_notes(const SiteModel& model, std::span<const Recording> recordings,
+                            std::vector<std::string>& notes) {
+  std::vector<std::string> files;
+  for (const Recording& recording : recordings) {
+    if (recording.is_quasi_static) files.push_back(recording.file);
+  }
+  if (files.empty()) return;
+  notes.push_back("Quasi-static, without time: " + report::joined(files) +
+                  ". Path takes the place of time: where this answer gives seconds, one stands for a cycle over the "
+                  "whole range of the motion. Effects of rate, time and inertia are not judged. If this test was not "
+                  "slow, give its time in an evenly sampled column time_s.");
+  std::vector<std::string> left_out;
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type->traits.needs_time) left_out.emplace_back(effect.type->name);
+  }
+  if (!left_out.empty()) {
+    notes.push_back("Left out of the model there, because it needs time: " + report::joined(left_out) + ".");
+  }
+}
+
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -231,7 +255,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   for (const Recording& recording : recordings) {
     report.recordings.push_back({recording.file, recording.sha256, recording.role,
                                  recording.sample_period_s * static_cast<double>(recording.samples),
-                                 recording.sample_period_s});
+                                 recording.sample_period_s, recording.is_quasi_static});
   }
   for (const Recording& recording : recordings) {
     if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
@@ -297,6 +321,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   worst_first(report.series);
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
   report.why_no_response = "it needs a run directory; these recordings contain only the site, not the structure";
+  add_quasi_static_notes(model, recordings, report.notes);
   add_notes(diagnosis, segments);
   return diagnosis;
 }

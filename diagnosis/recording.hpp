@@ -35,11 +35,16 @@ struct DofRecording {
 
 enum class RecordingRole : std::uint8_t { fit, held_out };
 
-/// A recording that has passed the intake's checks: evenly sampled, finite, without gaps.
+/// A recording that has passed the intake's checks: finite, and evenly sampled without gaps or without any time.
+///
+/// A quasi-static recording has no time: the points of a slow test in their order. Path takes the place of time.
+/// `sample_period_s` is then nominal: as if the test passed one cycle over its whole range per second, at a constant
+/// rate of points. Nothing depends on a time base that someone invented for such a test.
 struct Recording {
   std::string file;    // as the user named it
   std::string sha256;  // of the file, hexadecimal
   RecordingRole role = RecordingRole::fit;
+  bool is_quasi_static = false;
   double sample_period_s = 0.0;
   std::size_t samples = 0;
   std::size_t first_row = 1;  // row number of the first sample in findings: its line in a CSV file

@@ -79,11 +79,11 @@ std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& rec
 
 std::string replay_csv(const Recording& recording, const std::vector<std::vector<ReplayedChannel>>& replays) {
   const std::vector<CsvColumn> columns = columns_of(recording, replays);
-  std::string text = "time_s";
+  std::string text{recording.is_quasi_static ? "step" : "time_s"};
   for (const CsvColumn& column : columns) text += "," + column.name;
   for (std::size_t i = 0; i < recording.samples; ++i) {
     text += '\n';
-    append(text, static_cast<double>(i) * recording.sample_period_s);
+    append(text, static_cast<double>(i) * (recording.is_quasi_static ? 1.0 : recording.sample_period_s));
     for (const CsvColumn& column : columns) {
       text += ',';
       append(text, (*column.values)[i]);

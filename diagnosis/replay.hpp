@@ -29,9 +29,9 @@ struct ReplayedChannel {
 /// @throws ConfigError for parameters that a part of the model does not accept at this sample period.
 [[nodiscard]] std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof);
 
-/// A recording with what was predicted of it, as CSV: `time_s`, the recorded channels, then
-/// `predicted_<channel>`; suffixes `_1`, `_2` … where there are several degrees of freedom. It is a
-/// recording itself, which the intake takes.
+/// A recording with what was predicted of it, as CSV: `time_s` (`step` of a quasi-static one), the recorded channels,
+/// then `predicted_<channel>`; suffixes `_1`, `_2` … where there are several degrees of freedom. It is a recording
+/// itself, which the intake takes.
 /// @param replays   one list per degree of freedom.
 [[nodiscard]] std::string replay_csv(const Recording& recording,
                                      const std::vector<std::vector<ReplayedChannel>>& replays);

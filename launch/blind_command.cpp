@@ -68,8 +68,9 @@ int make(const BlindOptions& options) {
 void diagnose_case(const blind::CaseFiles& files, const fs::path& out, std::uint64_t seed) {
   const SiteModelFile model = read_site_model(files.site, {});
   std::vector<Recording> recordings;
-  for (const fs::path& file : files.fit) recordings.push_back(read_recording(file, RecordingRole::fit));
-  recordings.push_back(read_recording(files.held_out, RecordingRole::held_out));
+  for (const fs::path& file : files.fit)
+    recordings.push_back(read_recording(file, RecordingRole::fit, {}, time_base_of(model)));
+  recordings.push_back(read_recording(files.held_out, RecordingRole::held_out, {}, time_base_of(model)));
   DiagnoseSettings settings;
   settings.seed = seed;
   settings.threads = 1;  // the cases themselves run side by side

@@ -49,10 +49,10 @@ int run_diagnosis(const DiagnoseOptions& options) {
   const SiteModelFile model = read_model_for(files, options.model, options.site);
   std::vector<Recording> recordings;
   for (const std::filesystem::path& file : options.recordings) {
-    recordings.push_back(read_recording(file, RecordingRole::fit, options.site));
+    recordings.push_back(read_recording(file, RecordingRole::fit, options.site, time_base_of(model)));
   }
   for (const std::filesystem::path& file : options.held_out) {
-    recordings.push_back(read_recording(file, RecordingRole::held_out, options.site));
+    recordings.push_back(read_recording(file, RecordingRole::held_out, options.site, time_base_of(model)));
   }
   DiagnoseSettings settings;
   settings.seed = options.seed;

@@ -34,7 +34,8 @@ void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
 
 int replay_recording(const ReplayOptions& options) {
   const SiteModelFile model = read_model_for({&options.recording, 1}, options.model, options.site);
-  const Recording recording = read_recording(options.recording, RecordingRole::held_out, options.site);
+  const Recording recording =
+      read_recording(options.recording, RecordingRole::held_out, options.site, time_base_of(model));
   require_match(model, {&recording, 1});
   std::vector<std::vector<ReplayedChannel>> replays;
   std::size_t channels = 0;

@@ -221,6 +221,9 @@ SiteModelFile read_site_model(const std::filesystem::path& file, std::string_vie
   } else if (place.beside.has_optional("name")) {
     model.name = place.beside.text("name");
   }
+  if (!is_scenario && place.beside.has_optional("quasi_static")) {
+    model.is_quasi_static = place.beside.boolean("quasi_static");
+  }
   if (place.beside.has_optional("control_rate_hz")) {
     model.control_rate_hz = place.beside.number("control_rate_hz", {.low = 1.0, .high = 20e3});
   }
@@ -253,6 +256,7 @@ SiteModelFile read_site_model(const std::filesystem::path& file, std::string_vie
     if (model.control_rate_hz > 0.0) {
       model.text += "control_rate_hz: " + written_number(model.control_rate_hz) + "\n";
     }
+    if (model.is_quasi_static) model.text += "quasi_static: true\n";
     if (place.beside.has("compensator")) model.text += place.beside.effective("compensator");
   }
   model.text += place.rig.effective();

@@ -20,15 +20,16 @@ struct SiteModelText {
 };
 
 /// A file that describes a site: a scenario's `rig` section at the top level (`type` may be omitted), the same under
-/// `rig`, or a whole scenario. Beside it, optional: `name`, `compensator`, `control_rate_hz`. If a scenario's site has
-/// both `model` and `rig`, `model` is read. Omitted parts are an ideal transfer system, a specimen without force, no
-/// compensator.
+/// `rig`, or a whole scenario. Beside it, optional: `name`, `compensator`, `control_rate_hz`, `quasi_static`. If a
+/// scenario's site has both `model` and `rig`, `model` is read. Omitted parts are an ideal transfer system, a specimen
+/// without force, no compensator.
 struct SiteModelFile : SiteModelText {
   std::filesystem::path file;
   std::string name;                      // of the site; empty when the file gives none
   std::string part;                      // of a scenario, which part was read: `the rig of storey_1`
   std::vector<SiteModel> dofs;           // one per degree of freedom, at least one
   double control_rate_hz = 0.0;          // 0 when the file gives none
+  bool is_quasi_static = false;          // time stamps of its recordings have no meaning
   bool compensators_were_given = false;  // to read_site_model(), because the file names none
   bool has_effects = false;              // in `text` and `rig`, as their last key
 

@@ -174,6 +174,9 @@ std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& 
 
 std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
   SiteModel extended = model;
+  if (segment.is_quasi_static) {
+    std::erase_if(extended.effects, [](const EffectSetting& effect) { return effect.type->traits.needs_time; });
+  }
   for (const EffectSetting& effect : added) {
     if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
   }

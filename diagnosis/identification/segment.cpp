@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/random.hpp"
+#include "diagnosis/identification/quasi_static.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -111,7 +112,7 @@ bool passes(const Segment& segment, EffectInterface stage) noexcept {
 }  // namespace
 
 bool Segment::touched_by(const EffectType& effect) const noexcept {
-  if (!passes(*this, effect.interface)) return false;
+  if (!passes(*this, effect.interface) || (is_quasi_static && effect.traits.needs_time)) return false;
   return effect.interface != displacement_sensor || to == Channel::measured_displacement ||
          effect.make_inverse != nullptr;
 }
@@ -157,6 +158,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
 
 std::vector<Segment> segments_of(const Recording& recording, std::size_t dof_index, std::size_t position) {
   const DofRecording& dof = recording.dofs[dof_index];
+  if (recording.is_quasi_static) return quasi_static_segments(recording, dof, position);
   std::vector<Segment> segments;
   const Channel* previous = nullptr;
   for (const Channel& channel : kDisplacementChain) {
@@ -209,7 +211,8 @@ std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& 
   std::vector<Segment> segments;
   for (Segment& segment : segments_of(recording, dof, position)) {
     if (!is_modelled(model, segment)) continue;
-    const bool is_smoothed = segment.to == Channel::measured_force && follows_derivatives(model);
+    const bool is_smoothed =
+        segment.to == Channel::measured_force && !segment.is_quasi_static && follows_derivatives(model);
     segments.push_back(is_smoothed ? best_smoothed(model, segment, recording.dofs[dof]) : std::move(segment));
   }
   return segments;

@@ -21,6 +21,7 @@ struct Segment {
   EffectInterface interface {};  // to which a gap here is attributed until an effect shows another one
   std::size_t recording = 0;     // position in the list that was given
   double period_s = 0.0;
+  bool is_quasi_static = false;  // see Recording; the velocity of `input` is a sign, its acceleration zero
   std::vector<Motion> input;     // motion of `from` without its noise, one per sample
   std::vector<double> load_n;    // measured force at the sample before; empty: unknown
   std::vector<double> measured;  // `to` as recorded, or smoothed
@@ -40,11 +41,12 @@ struct Segment {
   // Standard deviation of the error of a coarse converter in `measured`, which may be correlated. 0: none found.
   double step_noise = 0.0;
 
-  /// An effect at that interface changes what this segment predicts.
+  /// An effect at that interface changes what this segment predicts. One that needs time changes no quasi-static one.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
 };
 
-/// All segments of the chain that one degree of freedom of a recording contains.
+/// All segments of the chain that one degree of freedom of a recording contains; of a quasi-static one, that of the
+/// specimen (quasi_static_segment()).
 [[nodiscard]] std::vector<Segment> segments_of(const Recording& recording, std::size_t dof, std::size_t position);
 
 /// The specimen's segment with force and motion smoothed by the same weights (FlatSmoother). The derivatives of the

@@ -9,6 +9,7 @@
 
 #include "core/text/shown.hpp"
 #include "diagnosis/intake/units.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -88,13 +89,27 @@ bool is_left_aside(std::string_view header) {
 }
 
 std::string unknown_column_advice(std::string_view header) {
-  std::vector<std::string> known{std::string{kTimeColumn}};
+  std::vector<std::string> known{std::string{kTimeColumn}, std::string{kStepColumn}};
   for (std::size_t i = 0; i < kChannels; ++i) known.emplace_back(column_name(channel_at(i)));
   return "unknown column" + name_advice(header, known, "known here") +
          "; with several degrees of freedom, add _1, _2, ... to the name";
 }
 
 namespace {
+
+/// Deviation of the interval before a sample that rounding of the time stamps explains.
+double interval_tolerance_s(const RawRecording& raw, double usual_s) {
+  const double digits_s = raw.time_resolution_s <= tuning::kLastDigitOfPeriodMax * usual_s
+                              ? tuning::kLastDigits * raw.time_resolution_s
+                              : 0.0;
+  // Time stamps far from zero have few digits left behind the point.
+  const double rounding_s = tuning::kTimeRounding * std::max(std::abs(raw.time_s.front()), std::abs(raw.time_s.back()));
+  return std::max({tuning::kEvenSpacing * usual_s, digits_s, rounding_s});
+}
+
+double mean_interval(const std::vector<double>& time_s) {
+  return (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+}
 
 double median_interval(const std::vector<double>& time_s) {
   std::vector<double> intervals(time_s.size() - 1);
@@ -120,26 +135,54 @@ std::string judged(double interval_s, double period_s, double tolerance_s) {
                      period_s);
 }
 
-/// Every interval can be within its tolerance while the period slowly changes.
-void check_drift(const RawRecording& raw, double period_s, FindingList& findings) {
-  std::size_t worst = 0;
-  double worst_s = 0.0;
+/// The time stamp farthest from a grid of constant period.
+struct OffGrid {
+  std::size_t sample = 0;
+  double off_s = 0.0;
+  bool is_outside = false;  // by more than half a period
+};
+
+OffGrid farthest_off_grid(const RawRecording& raw, double period_s) {
+  OffGrid worst;
   for (std::size_t i = 0; i < raw.time_s.size(); ++i) {
     const double off_s = std::abs(raw.time_s[i] - raw.time_s.front() - static_cast<double>(i) * period_s);
-    if (off_s > worst_s) {
-      worst_s = off_s;
-      worst = i;
-    }
+    if (off_s > worst.off_s) worst = {i, off_s, off_s > 0.5 * period_s + raw.time_resolution_s};
   }
-  if (worst_s <= 0.5 * period_s + raw.time_resolution_s) return;
+  return worst;
+}
+
+/// Every interval can be within its tolerance while the period slowly changes.
+void check_drift(const RawRecording& raw, double period_s, FindingList& findings) {
+  const OffGrid worst = farthest_off_grid(raw, period_s);
+  if (!worst.is_outside) return;
   findings.add(
-      raw.first_row + worst, std::string{kTimeColumn}, fmt::format("{}", raw.time_s[worst]),
+      raw.first_row + worst.sample, std::string{kTimeColumn}, fmt::format("{}", raw.time_s[worst.sample]),
       fmt::format("uneven sampling: the sample period changes during the recording; this row is {:.3g} s away from a "
                   "constant period of {:.6g} s. Resample to a constant period",
-                  worst_s, period_s));
+                  worst.off_s, period_s));
 }
 
 }  // namespace
+
+std::size_t RawRecording::samples() const noexcept {
+  return columns.empty() ? std::max(time_s.size(), step.size()) : columns.front().values.size();
+}
+
+bool has_invented_time(const RawRecording& raw) {
+  const bool is_of_specimen = std::ranges::all_of(raw.columns, [](const RawColumn& column) {
+    return column.channel == Channel::measured_displacement || column.channel == Channel::measured_force;
+  });
+  const double usual_s = median_interval(raw.time_s);
+  if (!is_of_specimen || !(usual_s > 0.0)) return false;
+  const double tolerance_s = interval_tolerance_s(raw, usual_s);
+  std::size_t uneven = 0;
+  for (std::size_t i = 1; i < raw.time_s.size(); ++i) {
+    const double interval_s = raw.time_s[i] - raw.time_s[i - 1];
+    if (interval_s < 0.0) return false;
+    if (std::abs(interval_s - usual_s) > tolerance_s) ++uneven;
+  }
+  return 2 * uneven > raw.time_s.size() - 1 && farthest_off_grid(raw, mean_interval(raw.time_s)).is_outside;
+}
 
 double check_sampling(const RawRecording& raw, FindingList& findings) {
   const std::vector<double>& time_s = raw.time_s;
@@ -151,12 +194,7 @@ double check_sampling(const RawRecording& raw, FindingList& findings) {
         "from row to row");
     return 0.0;
   }
-  const double digits_s = raw.time_resolution_s <= tuning::kLastDigitOfPeriodMax * usual_s
-                              ? tuning::kLastDigits * raw.time_resolution_s
-                              : 0.0;
-  // Time stamps far from zero have few digits left behind the point.
-  const double rounding_s = tuning::kTimeRounding * std::max(std::abs(time_s.front()), std::abs(time_s.back()));
-  const double tolerance_s = std::max({tuning::kEvenSpacing * usual_s, digits_s, rounding_s});
+  const double tolerance_s = interval_tolerance_s(raw, usual_s);
   bool is_even = true;
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     const std::string wrong = judged(time_s[i] - time_s[i - 1], usual_s, tolerance_s);
@@ -164,7 +202,7 @@ double check_sampling(const RawRecording& raw, FindingList& findings) {
     is_even = false;
     findings.add(raw.first_row + i, std::string{kTimeColumn}, fmt::format("{}", time_s[i]), wrong);
   }
-  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  const double period_s = mean_interval(time_s);
   if (is_even) check_drift(raw, period_s, findings);
   return period_s;
 }
@@ -197,11 +235,54 @@ void check_columns(const RawRecording& raw, FindingList& findings) {
   }
 }
 
+/// Numbers of points increase: the order of the rows is all that is known of a quasi-static test.
+void check_steps(const RawRecording& raw, FindingList& findings) {
+  for (std::size_t i = 1; i < raw.step.size(); ++i) {
+    if (raw.step[i] > raw.step[i - 1]) continue;
+    findings.add(raw.first_row + i, std::string{kStepColumn}, fmt::format("{}", raw.step[i]),
+                 "step is not larger than the one before; steps must increase from row to row");
+  }
+}
+
+/// Inertia is judged by acceleration over time: what has one was not quasi-static.
+void check_no_acceleration(const RawRecording& raw, FindingList& findings) {
+  for (const RawColumn& column : raw.columns) {
+    if (column.channel != Channel::measured_acceleration) continue;
+    findings.add(0, column.name, {},
+                 "a recording without time is quasi-static, and an acceleration has no meaning there; expected a "
+                 "column time_s with the time in seconds, or no acceleration");
+  }
+}
+
+/// The time of a point if the motion passed one cycle over its whole range per second and the points followed each
+/// other evenly. Reversals within a fiftieth of the range are noise and no path.
+double nominal_period_s(const RawRecording& raw) {
+  double cycles = 0.0;
+  for (const RawColumn& column : raw.columns) {
+    if (column.channel > Channel::measured_displacement) continue;
+    const double range_m = span_of(column.values);
+    if (!(range_m > 0.0)) continue;
+    double path_m = 0.0;
+    double last_m = column.values.front();
+    const auto go_to = [&](double place_m) {
+      path_m += std::abs(place_m - last_m);
+      last_m = place_m;
+    };
+    for (const Reversal& reversal : reversals_of(column.values, reversal_threshold_m(column.values))) {
+      go_to(reversal.displacement_m);
+    }
+    go_to(column.values.back());
+    cycles = std::max(cycles, path_m / (2.0 * range_m));
+  }
+  return (cycles > 0.0 ? cycles : 1.0) / static_cast<double>(raw.samples() - 1);
+}
+
 Recording taken(RawRecording raw, double period_s) {
   Recording recording;
   recording.file = raw.file;
+  recording.is_quasi_static = raw.time_s.empty();
   recording.sample_period_s = period_s;
-  recording.samples = raw.time_s.size();
+  recording.samples = raw.samples();
   recording.first_row = raw.first_row;
   recording.dofs.resize(dof_count(raw));
   for (RawColumn& column : raw.columns) recording.dofs[column.dof].of(column.channel) = std::move(column.values);
@@ -210,18 +291,27 @@ Recording taken(RawRecording raw, double period_s) {
 
 }  // namespace
 
-Intake check_recording(RawRecording raw) {
+Intake check_recording(RawRecording raw, TimeBase time) {
   FindingList findings;
   check_columns(raw, findings);
   check_finite(raw, std::string{kTimeColumn}, raw.time_s, findings);
   for (const RawColumn& column : raw.columns) check_finite(raw, column.name, column.values, findings);
-  if (raw.time_s.size() < tuning::kSamplesMin) {
-    findings.add(0, {}, {},
-                 fmt::format("{} rows of data; expected at least {}", raw.time_s.size(), tuning::kSamplesMin));
+  check_finite(raw, std::string{kStepColumn}, raw.step, findings);
+  if (raw.samples() < tuning::kSamplesMin) {
+    findings.add(0, {}, {}, fmt::format("{} rows of data; expected at least {}", raw.samples(), tuning::kSamplesMin));
   }
   double period_s = 0.0;
   // The next checks use differences and extreme values: they need finite numbers.
-  if (findings.empty()) period_s = check_sampling(raw, findings);
+  if (findings.empty()) {
+    if (time == TimeBase::quasi_static || (!raw.time_s.empty() && has_invented_time(raw))) raw.time_s.clear();
+    if (raw.time_s.empty()) {
+      check_steps(raw, findings);
+      check_no_acceleration(raw, findings);
+      period_s = nominal_period_s(raw);
+    } else {
+      period_s = check_sampling(raw, findings);
+    }
+  }
   if (period_s > 0.0) check_units(raw, period_s, findings);
   if (!findings.empty()) return {{}, findings.sorted()};
   return {taken(std::move(raw), period_s), {}};

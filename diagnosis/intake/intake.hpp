@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,13 +45,19 @@ struct RawColumn {
   std::vector<double> values;
 };
 
+/// What time stamps mean: time as recorded, or nothing, because the test is slow and they were invented.
+enum class TimeBase : std::uint8_t { recorded, quasi_static };
+
 /// A recording as it was read: all columns have the same length.
 struct RawRecording {
-  std::string file;           // as the user named it
-  std::size_t first_row = 1;  // row number of the first sample in findings
-  std::vector<double> time_s;
+  std::string file;                // as the user named it
+  std::size_t first_row = 1;       // row number of the first sample in findings
+  std::vector<double> time_s;      // empty: a quasi-static recording
+  std::vector<double> step;        // numbers of its points; may be empty
   double time_resolution_s = 0.0;  // of the last digit of the time stamps; 0 when they are not rounded
   std::vector<RawColumn> columns;
+
+  [[nodiscard]] std::size_t samples() const noexcept;
 };
 
 /// A column's place in a recording.
@@ -60,6 +67,7 @@ struct ChannelColumn {
 };
 
 inline constexpr std::string_view kTimeColumn = "time_s";
+inline constexpr std::string_view kStepColumn = "step";
 
 /// Channel and degree of freedom that a header names: `measured_force_n` or `measured_force_n_2`, counted from 1.
 /// @return nothing for a header that names no channel.
@@ -81,6 +89,11 @@ inline constexpr std::string_view kTimeColumn = "time_s";
 /// @return the period [s]: length over intervals; meaningless when something was found.
 [[nodiscard]] double check_sampling(const RawRecording& raw, FindingList& findings);
 
+/// Whether time stamps are those of a quasi-static test: most intervals are uneven, the stamps leave every even grid by
+/// more than half a period (those of a jittery clock do not), and only measured displacement and force were recorded.
+/// @param raw   at least two samples, times finite.
+[[nodiscard]] bool has_invented_time(const RawRecording& raw);
+
 /// The result of reading a recording: the recording, or all errors found in it.
 struct Intake {
   std::optional<Recording> recording;  // without hash and role; the reader of the file fills them in
@@ -88,15 +101,18 @@ struct Intake {
 };
 
 /// Reads a recording from CSV: a header of names and units (`time_s`, and any of column_name(), with
-/// `_1`, `_2` … for several degrees of freedom), one row per sample, SI.
+/// `_1`, `_2` … for several degrees of freedom), one row per sample, SI. Without `time_s`, or with `step` in its place,
+/// it is quasi-static.
 ///
 /// Columns of run tables that are not channels are ignored; any other unknown column is a finding.
 /// All findings of check_recording() are added.
 /// @param file   as the user named it.
-[[nodiscard]] Intake read_csv_recording(std::string_view text, const std::string& file);
+/// @param time   quasi_static: the time column has no meaning.
+[[nodiscard]] Intake read_csv_recording(std::string_view text, const std::string& file,
+                                        TimeBase time = TimeBase::recorded);
 
-/// Checks what was read: every value finite, sampling even and without gaps (check_sampling()),
-/// units plausible (check_units()), no missing degree of freedom, enough samples.
-[[nodiscard]] Intake check_recording(RawRecording raw);
+/// Checks what was read: every value finite, sampling even and without gaps (check_sampling()) unless the recording is
+/// quasi-static, units plausible (check_units()), no missing degree of freedom, enough samples.
+[[nodiscard]] Intake check_recording(RawRecording raw, TimeBase time = TimeBase::recorded);
 
 }  // namespace hybridtest

@@ -49,7 +49,7 @@ double resolution_of(std::string_view number) {
 /// Reads a file row by row into columns; a cell that is not a number becomes a finding.
 class CsvReader {
  public:
-  CsvReader(std::string_view text, const std::string& file) : rest_{text} {
+  CsvReader(std::string_view text, const std::string& file, TimeBase time) : rest_{text}, time_{time} {
     raw_.file = file;
     raw_.first_row = kHeaderRow + 1;
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -60,17 +60,18 @@ class CsvReader {
     read_header();
     if (findings_.empty()) read_rows();
     if (!findings_.empty()) return {{}, findings_.sorted()};
-    return check_recording(std::move(raw_));
+    return check_recording(std::move(raw_), time_);
   }
 
  private:
   static constexpr std::size_t kTime = std::numeric_limits<std::size_t>::max() - 1;
+  static constexpr std::size_t kStep = std::numeric_limits<std::size_t>::max() - 2;
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   void read_header() {
     const std::string_view line = cut(rest_, '\n');
     if (trimmed(line).empty())
-      return findings_.add(0, {}, {}, "the file is empty; expected a header row with time_s and the measured columns");
+      return findings_.add(0, {}, {}, "the file is empty; expected a header row with the measured columns, and time_s");
     if (line.find(',') == std::string_view::npos && line.find_first_of(";\t") != std::string_view::npos) {
       return findings_.add(
           kHeaderRow, {}, {},
@@ -82,19 +83,17 @@ class CsvReader {
                            fmt::format("{} columns; expected at most {}", names.size(), tuning::kColumnsMax));
     }
     for (const std::string_view name : names) place(std::string{name}, names);
-    if (std::ranges::find(target_, kTime) == target_.end()) {
-      findings_.add(kHeaderRow, std::string{kTimeColumn}, {},
-                    "missing; expected a column time_s with the time in seconds");
-    }
+    // Beside time, the number of a step says nothing.
+    if (std::ranges::find(target_, kTime) != target_.end()) std::ranges::replace(target_, kStep, kNone);
   }
 
   /// Where the values of the next column go.
   void place(const std::string& name, const std::vector<std::string_view>& names) {
     names_.push_back(name);
     const auto channel = channel_of_header(name);
-    const bool is_time = name == kTimeColumn;
-    target_.push_back(is_time ? kTime : channel ? raw_.columns.size() : kNone);
-    if (!is_time && !channel && !is_left_aside(name)) {
+    const bool is_order = name == kTimeColumn || name == kStepColumn;
+    target_.push_back(name == kTimeColumn ? kTime : is_order ? kStep : channel ? raw_.columns.size() : kNone);
+    if (!is_order && !channel && !is_left_aside(name)) {
       // A header of numbers probably means that the header row is missing.
       double number = 0.0;
       const bool is_number = std::from_chars(name.data(), name.data() + name.size(), number).ptr != name.data();
@@ -102,7 +101,7 @@ class CsvReader {
                     is_number ? "number in the header row; expected a first row with column names such as time_s"
                               : unknown_column_advice(name));
     }
-    if (is_time && std::ranges::count(names, std::string_view{name}) > 1) return twice(name);
+    if (is_order && std::ranges::count(names, std::string_view{name}) > 1) return twice(name);
     if (!channel) return;
     const bool is_there = std::ranges::any_of(raw_.columns, [&](const RawColumn& column) {
       return column.channel == channel->channel && column.dof == channel->dof;
@@ -129,8 +128,7 @@ class CsvReader {
         break;  // blank lines at the end
       }
     }
-    if (raw_.time_s.empty() && findings_.empty())
-      findings_.add(0, {}, {}, "a header without data; expected one row per sample");
+    if (rows_ == 0 && findings_.empty()) findings_.add(0, {}, {}, "a header without data; expected one row per sample");
   }
 
   void read_row(std::size_t row, std::string_view line) {
@@ -140,6 +138,7 @@ class CsvReader {
                     fmt::format("{} cells in this row; expected {} as in the header", cells, names_.size()));
       return;
     }
+    ++rows_;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::string_view cell = trimmed(cut(line, ','));
       if (target_[i] == kNone) continue;
@@ -149,6 +148,8 @@ class CsvReader {
         // Programs drop trailing zeros: the row with the most digits shows the resolution.
         const double resolution_s = resolution_of(cell);
         if (raw_.time_s.size() == 1 || resolution_s < raw_.time_resolution_s) raw_.time_resolution_s = resolution_s;
+      } else if (target_[i] == kStep) {
+        raw_.step.push_back(value);
       } else {
         raw_.columns[target_[i]].values.push_back(value);
       }
@@ -174,14 +175,18 @@ class CsvReader {
   }
 
   std::string_view rest_;
+  TimeBase time_;
+  std::size_t rows_ = 0;
   RawRecording raw_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> target_;  // per column of the file: its place in raw_, kTime or kNone
+  std::vector<std::size_t> target_;  // per column of the file: its place in raw_, kTime, kStep or kNone
   FindingList findings_;
 };
 
 }  // namespace
 
-Intake read_csv_recording(std::string_view text, const std::string& file) { return CsvReader{text, file}.read(); }
+Intake read_csv_recording(std::string_view text, const std::string& file, TimeBase time) {
+  return CsvReader{text, file, time}.read();
+}
 
 }  // namespace hybridtest

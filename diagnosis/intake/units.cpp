@@ -147,7 +147,7 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
     if (column.channel == Channel::measured_acceleration) check_acceleration(raw, column, period_s, findings);
     if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
-    const double speed = fastest(column.values, period_s);
+    const double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
     if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {
       suspect(raw, column, farthest, "seems to be in millimetres: the largest displacement accepted is 10 m", findings);
     } else if (speed > tuning::kSpeedMax_m_per_s) {
@@ -247,7 +247,7 @@ double gap_at(const SiteModel& model, const Recording& recording, std::size_t do
 
 void check_time(const SiteModel& model, const Recording& recording, std::size_t dof,
                 std::vector<IntakeFinding>& findings) {
-  if (recording.sample_period_s < tuning::kControlPeriodMax_s) return;
+  if (recording.is_quasi_static || recording.sample_period_s < tuning::kControlPeriodMax_s) return;
   const double as_written = gap_at(model, recording, dof, recording.sample_period_s);
   for (const TimeUnit& unit : kTimeUnits) {
     const double period_s = recording.sample_period_s / unit.per_second;

@@ -17,6 +17,7 @@ namespace hybridtest {
 /// speed over 20 ms. An acceleration that goes with the second derivative of the measured displacement (correlation
 /// at least 0.8) and is 1/9.81, 100 or 1000 times as large is in g, cm/s2 or mm/s2; at 10^6 or 10^12 times it is
 /// the time that is in milli- or microseconds. Force, and time without an acceleration: check_units_against().
+/// A quasi-static recording has no speed.
 /// @param raw   values finite. @param period_s   positive.
 void check_units(const RawRecording& raw, double period_s, FindingList& findings);
 

@@ -121,10 +121,11 @@ void add_sensor_facts(const Recording& recording, std::size_t dof, report::Diagn
                               .quantum = check.quantum,
                               .repeated_share = check.repeated_share,
                               .clipped_share = check.clipped_share};
-    if (const auto rest = read_at_rest(values, motion_m, recording.sample_period_s)) {
+    const bool has_time = !recording.is_quasi_static;
+    if (const auto rest = read_at_rest(values, motion_m, recording.sample_period_s); has_time && rest) {
       facts.at_rest = report::RestFacts{rest->first, rest->last, rest->drift_per_s, rest->rms};
     }
-    if (sensor.channel == Channel::measured_force && channels.has(Channel::measured_displacement)) {
+    if (has_time && sensor.channel == Channel::measured_force && channels.has(Channel::measured_displacement)) {
       facts.lag_s = force_lag_s(channels.of(Channel::measured_displacement), values, recording.sample_period_s);
     }
     report.sensors.push_back(std::move(facts));

@@ -36,7 +36,7 @@ struct RestReading {
 [[nodiscard]] std::optional<double> force_lag_s(std::span<const double> displacement_m, std::span<const double> force_n,
                                                 double period_s);
 
-/// Sensor checks of the measured channels of one degree of freedom.
+/// Sensor checks of the measured channels of one degree of freedom; rest and lag only where there is time.
 void add_sensor_facts(const Recording& recording, std::size_t dof, report::DiagnosisReport& report);
 
 }  // namespace hybridtest

@@ -99,7 +99,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const report::ReportedRecording& recording : report.recordings) {
     json["recordings"].push_back({{"file", recording.file},
                                   {"sha256", recording.sha256},
-                                  {"role", recording.role == RecordingRole::fit ? "fit" : "held_out"}});
+                                  {"role", recording.role == RecordingRole::fit ? "fit" : "held_out"},
+                                  {"quasi_static", recording.is_quasi_static}});
   }
   json["where"] = Json::array();
   for (const report::InterfaceGap& gap : report.where) {

@@ -140,7 +140,8 @@ std::string recording_rows(const DiagnosisReport& report) {
   for (const ReportedRecording& recording : report.recordings) {
     rows += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
                         escaped(recording.file), recording.role == RecordingRole::fit ? "fit" : "held out",
-                        quantity(recording.duration_s, "s"), quantity(recording.sample_period_s, "s"),
+                        recording.is_quasi_static ? "quasi-static" : quantity(recording.duration_s, "s"),
+                        recording.is_quasi_static ? "no time" : quantity(recording.sample_period_s, "s"),
                         escaped(recording.sha256));
   }
   return rows;

@@ -24,6 +24,11 @@ class SeriesView {
   /// Axis label of the output: `force [kN]`.
   [[nodiscard]] const std::string& output_label() const noexcept { return output_label_; }
 
+  /// Of what takes the place of time in a quasi-static recording, or of time.
+  [[nodiscard]] std::string time_label() const {
+    return series_->is_quasi_static ? "path [cycles over the whole range]" : "time [s]";
+  }
+
   /// The range of samples to draw.
   struct Range {
     std::size_t begin = 0;
@@ -33,7 +38,7 @@ class SeriesView {
   /// About four cycles, where the gap is largest.
   [[nodiscard]] Range close_up() const;
 
-  /// Values of a range over time in seconds.
+  /// Values of a range over time in seconds, or over path.
   [[nodiscard]] plot::Line over_time(std::string name, const std::vector<double>& values, Range range) const;
   /// Output over input in mm.
   [[nodiscard]] plot::Line over_input(std::string name, const std::vector<double>& values, Range range) const;

@@ -133,10 +133,10 @@ std::vector<Line> residuals(const SeriesView& view, SeriesView::Range range) {
 std::string histories(const SeriesView& view) {
   const SeriesView::Range close_up = view.close_up();
   LineFigure figure{
-      .panels = {{"the whole recording", {"time [s]"}, {view.output_label()}, outputs(view, view.whole())},
-                 {"measured less modelled", {"time [s]"}, {view.output_label()}, residuals(view, view.whole())},
-                 {"where the gap is largest", {"time [s]"}, {view.output_label()}, outputs(view, close_up)},
-                 {"measured less modelled", {"time [s]"}, {view.output_label()}, residuals(view, close_up)}},
+      .panels = {{"the whole recording", {view.time_label()}, {view.output_label()}, outputs(view, view.whole())},
+                 {"measured less modelled", {view.time_label()}, {view.output_label()}, residuals(view, view.whole())},
+                 {"where the gap is largest", {view.time_label()}, {view.output_label()}, outputs(view, close_up)},
+                 {"measured less modelled", {view.time_label()}, {view.output_label()}, residuals(view, close_up)}},
       .columns = 1,
       .panel_width = kWide,
       .panel_height = 210.0};
@@ -276,11 +276,13 @@ struct Located {
   }
 };
 
-Panel over_time(const Located& located) {
-  return {
-      "over time", {"time [s]"}, {"error [%]", false, 0.0}, located.lines([](const Localisation& where, Steps& steps) {
-        for (const TimeWindow& window : where.windows) steps.add(window.begin_s, window.end_s, window.nrmse);
-      })};
+Panel over_time(const Located& located, const SeriesView& view) {
+  return {view.series().is_quasi_static ? "over the path" : "over time",
+          {view.time_label()},
+          {"error [%]", false, 0.0},
+          located.lines([](const Localisation& where, Steps& steps) {
+            for (const TimeWindow& window : where.windows) steps.add(window.begin_s, window.end_s, window.nrmse);
+          })};
 }
 
 Panel over_frequency(const Located& located) {
@@ -344,16 +346,20 @@ std::string maps(const Located& located) {
 }
 
 /// The times and the frequency bands that contain half of the gap, as a sentence.
-std::string in_words(const Localisation& where) {
+std::string in_words(const Localisation& where, bool is_quasi_static) {
   std::vector<std::string> times;
   std::vector<std::string> bands;
   for (const TimeWindow& window : where.main_windows)
-    times.push_back(fmt::format("{:.1f} to {:.1f} s", window.begin_s, window.end_s));
+    times.push_back(fmt::format("{:.1f} to {:.1f}{}", window.begin_s, window.end_s, is_quasi_static ? "" : " s"));
   for (const BandShare& band : where.main_bands)
     bands.push_back(fmt::format("{:.2f} to {:.2f} Hz", band.low_hz, band.high_hz));
   constexpr std::size_t kNamedMax = 4;
-  if (times.size() > kNamedMax) times = {"many separate time intervals"};
+  if (times.size() > kNamedMax) times = {is_quasi_static ? "many separate stretches" : "many separate time intervals"};
   if (bands.size() > kNamedMax) bands = {"many separate frequency bands"};
+  if (is_quasi_static) {
+    return fmt::format("<p>Half of the energy of the gap is in the path {}, in cycles over the whole range.</p>\n",
+                       joined(times));
+  }
   return fmt::format("<p>Half of the energy of the gap is in the time {}. By frequency, half of it is in {}.</p>\n",
                      joined(times), joined(bands));
 }
@@ -382,6 +388,16 @@ std::string drift_text(const Localisation& where) {
   return html;
 }
 
+/// Of a quasi-static recording only what has no time, frequency or velocity in it.
+std::string location_without_time(const Located& located, const SeriesView& view) {
+  const LineFigure figure{.panels = {over_time(located, view), over_reversal(located), over_cycles(located)},
+                          .columns = 2,
+                          .panel_width = kHalfWidth,
+                          .panel_height = 230.0};
+  return "<h2>The gap at the " + plain(view.series().interface) + " by path and motion</h2>\n" +
+         in_words(located.before, true) + plot::scrolling(to_svg(figure));
+}
+
 }  // namespace
 
 std::string location_part(const DiagnosisReport& report) {
@@ -392,13 +408,14 @@ std::string location_part(const DiagnosisReport& report) {
   if (view.has_augmented()) located.after = localise(view.after(), kind);
   const auto gap = std::ranges::find(report.where, view.series().interface, &InterfaceGap::interface);
   if (gap != report.where.end()) located.floor_nrmse = gap->floor_nrmse;
+  if (view.series().is_quasi_static) return location_without_time(located, view);
   const LineFigure figure{
-      .panels = {over_time(located), over_frequency(located), over_reversal(located), over_cycles(located)},
+      .panels = {over_time(located, view), over_frequency(located), over_reversal(located), over_cycles(located)},
       .columns = 2,
       .panel_width = kHalfWidth,
       .panel_height = 230.0};
   return "<h2>The gap at the " + plain(view.series().interface) + " by time, frequency and motion</h2>\n" +
-         in_words(located.before) + drift_text(located.before) + plot::scrolling(to_svg(figure)) + maps(located);
+         in_words(located.before, false) + drift_text(located.before) + plot::scrolling(to_svg(figure)) + maps(located);
 }
 
 }  // namespace hybridtest::report

@@ -30,6 +30,7 @@ struct ReportedRecording {
   RecordingRole role = RecordingRole::fit;
   double duration_s = 0.0;
   double sample_period_s = 0.0;
+  bool is_quasi_static = false;  // then a second stands for a cycle over the whole range
 };
 
 /// Difference between the residuals of repeated inputs.
@@ -122,6 +123,7 @@ struct InterfaceSeries {
   std::string recording;  // its file
   bool is_held_out = false;
   double sample_period_s = 0.0;
+  bool is_quasi_static = false;     // then a second stands for a cycle over the whole range
   std::string unit;                 // of the output: "m" or "N"
   std::vector<double> input_m{};    // its input: command of a transfer system, measured displacement of a specimen
   std::vector<double> measured{};   // output

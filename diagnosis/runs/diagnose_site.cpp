@@ -92,6 +92,10 @@ std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& mode
   return listed;
 }
 
+TimeBase time_base_of(const SiteModelFile& model) noexcept {
+  return model.is_quasi_static ? TimeBase::quasi_static : TimeBase::recorded;
+}
+
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings) {
   std::vector<ConfigIssue> issues;
   for (const Recording& recording : recordings) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/intake/intake.hpp"
 #include "scenario/site_model_file.hpp"
 
 namespace hybridtest {
@@ -20,6 +21,9 @@ struct SiteDiagnosis {
   /// The causes as the model's file lists them.
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
 };
+
+/// How the time stamps of recordings are read beside this model.
+[[nodiscard]] TimeBase time_base_of(const SiteModelFile& model) noexcept;
 
 /// @throws ConfigError for each recording whose number of degrees of freedom differs from the model, and for each
 ///         column whose unit seems wrong compared with the prediction of the model.

@@ -212,15 +212,15 @@ Recording accepted(Intake intake, const std::string& file) {
 
 }  // namespace
 
-Recording read_recording(const std::filesystem::path& path, RecordingRole role, std::string_view site) {
+Recording read_recording(const std::filesystem::path& path, RecordingRole role, std::string_view site, TimeBase time) {
   const std::string file = path.string();
   Recording recording;
   if (std::filesystem::is_directory(path)) {
-    recording = accepted(check_recording(raw_recording_of_run(path, site)), file);
+    recording = accepted(check_recording(raw_recording_of_run(path, site), time), file);
     recording.sha256 = hex(sha256(content_of(site_run_file(path, site))));
   } else {
     const std::string text = content_of(path);
-    recording = accepted(read_csv_recording(text, file), file);
+    recording = accepted(read_csv_recording(text, file, time), file);
     recording.sha256 = hex(sha256(text));
   }
   recording.role = role;

@@ -43,9 +43,10 @@ namespace hybridtest {
 /// omitted. The recording ends with the last target: the return to rest after it is not part of the test. The hash
 /// is that of the CSV file, or of the run file of the site.
 /// @param site   id of the substructure; may be empty where the run has one site, and has no meaning for a CSV.
+/// @param time   quasi_static: its time stamps have no meaning, as the model's file says.
 /// @throws ConfigError when it cannot be read, and with every finding of the intake.
 [[nodiscard]] Recording read_recording(const std::filesystem::path& path, RecordingRole role,
-                                       std::string_view site = {});
+                                       std::string_view site = {}, TimeBase time = TimeBase::recorded);
 
 /// The response that the coordinator of a run recorded, one column per completed step.
 /// @throws RecordingError when there is no such record, or of other degrees of freedom.

@@ -221,13 +221,14 @@ std::optional<Trace> trace_of_sensor(EffectInterface sensor, Channel channel, co
   return Trace{.effect = {.type = type, .values = {step}}, .in = channel, .gap_share = variance / all};
 }
 
-std::vector<Trace> traces_of(const DofRecording& dof, double period_s) {
+std::vector<Trace> traces_of(const Recording& recording, const DofRecording& dof) {
   std::vector<Trace> traces;
   const auto add = [&](std::optional<Trace> trace) {
     if (trace) traces.push_back(std::move(*trace));
   };
-  if (dof.has(Channel::sent_displacement) && dof.has(Channel::target_displacement)) {
-    add(trace_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement), period_s));
+  if (!recording.is_quasi_static && dof.has(Channel::sent_displacement) && dof.has(Channel::target_displacement)) {
+    add(trace_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement),
+                         recording.sample_period_s));
   }
   add(trace_of_sensor(EffectInterface::displacement_sensor, Channel::measured_displacement,
                       dof.of(Channel::measured_displacement)));
@@ -243,7 +244,7 @@ std::vector<Trace> find_traces(const SiteModel& model, std::span<const Recording
   std::vector<Trace> found;
   for (const Recording& recording : recordings) {
     if (recording.role != RecordingRole::fit || recording.dofs.size() <= dof) continue;
-    for (Trace& trace : traces_of(recording.dofs[dof], recording.sample_period_s)) {
+    for (Trace& trace : traces_of(recording, recording.dofs[dof])) {
       if (has(model, trace.effect.type)) continue;
       const auto known =
           std::ranges::find_if(found, [&](const Trace& other) { return other.effect.type == trace.effect.type; });

@@ -159,6 +159,8 @@ std::string why_not(const SiteModel& model, std::span<const Recording> recording
   }
   std::string missing = missing_columns(recordings, dof, ends_of(interface));
   if (!missing.empty()) return missing;
+  if (interface != specimen && std::ranges::any_of(recordings, &Recording::is_quasi_static))
+    return "a quasi-static recording has no time, and this interface is judged by its timing";
   return interface == specimen && !model.make_law ? "the model has no law for the force of the specimen"
                                                   : "no recording has all columns of this interface";
 }

@@ -49,6 +49,7 @@ struct EffectTraits {
   ModelNumber number = ModelNumber::none;
   DigitTrace digits = DigitTrace::none;
   bool follows_derivatives = false;  // its force follows velocity or acceleration
+  bool needs_time = false;           // it follows rate, time or acceleration: without time it has no meaning
 };
 
 struct EffectParameter {

@@ -20,7 +20,7 @@ void append(std::string& text, double value) {
 }
 
 std::string csv_of(const Recording& recording) {
-  std::string text = "time_s";
+  std::string text{recording.is_quasi_static ? "step" : "time_s"};
   const auto each_column = [&](const auto& visit) {
     for (std::size_t dof = 0; dof < recording.dofs.size(); ++dof) {
       for (std::size_t i = 0; i < kChannels; ++i) {
@@ -34,7 +34,7 @@ std::string csv_of(const Recording& recording) {
   });
   for (std::size_t sample = 0; sample < recording.samples; ++sample) {
     text += "\n";
-    append(text, static_cast<double>(sample) * recording.sample_period_s);
+    append(text, static_cast<double>(sample) * (recording.is_quasi_static ? 1.0 : recording.sample_period_s));
     each_column([&](std::size_t dof, Channel channel) {
       text += ",";
       append(text, recording.dofs[dof].of(channel)[sample]);
@@ -54,6 +54,7 @@ void check(const Recording& recording) {
   }
   const Intake again = read_csv_recording(csv_of(recording), "again");
   HYBRIDTEST_ASSERT(again.recording.has_value());
+  HYBRIDTEST_ASSERT(again.recording->is_quasi_static == recording.is_quasi_static);
   for (std::size_t dof = 0; dof < recording.dofs.size(); ++dof) {
     HYBRIDTEST_ASSERT(again.recording->dofs[dof].samples == recording.dofs[dof].samples);
   }

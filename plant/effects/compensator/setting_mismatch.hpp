@@ -16,7 +16,7 @@ class SettingMismatch final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = u0 + e u0'";
   static constexpr std::string_view kSource = "Wallace et al. (2005)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "delay_error_s", .unit = "s", .what = "e, made up for beyond its setting", .low = -10.0, .high = 10.0}};
 

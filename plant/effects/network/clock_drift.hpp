@@ -15,7 +15,7 @@ class ClockDrift final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = u0((1 - r) t), at most 1 s behind";
   static constexpr std::string_view kSource = "Mills (2010)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "drift_ratio", .unit = "", .what = "r, seconds lost per second", .low = 0.0, .high = 0.1}};
 

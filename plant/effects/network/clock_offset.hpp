@@ -14,7 +14,7 @@ class ClockOffset final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = u0(t - d)";
   static constexpr std::string_view kSource = "Mills (2010)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "offset_s", .unit = "s", .what = "d, by which its clock is behind", .low = 0.0, .high = 10.0}};
 

@@ -16,7 +16,8 @@ class NetworkJitter final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = newest u0(ti) with ti + J ui <= t, ui even in 0 to 1";
   static constexpr std::string_view kSource = "Mosqueda et al. (2005)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .digits = DigitTrace::lateness};
+  static constexpr EffectTraits kTraits{
+      .family = EffectFamily::arrival, .digits = DigitTrace::lateness, .needs_time = true};
   static constexpr std::array kParameters{
       EffectParameter{.name = "jitter_s", .unit = "s", .what = "J, greatest lateness", .low = 0.0, .high = 1.0},
       EffectParameter{.name = "seed",

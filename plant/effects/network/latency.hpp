@@ -14,7 +14,7 @@ class NetworkLatency final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u(t) = u0(t - L)";
   static constexpr std::string_view kSource = "Mosqueda et al. (2005)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .needs_time = true};
   static constexpr std::array kParameters{
       EffectParameter{.name = "latency_s", .unit = "s", .what = "L", .low = 0.0, .high = 10.0}};
 

@@ -15,7 +15,8 @@ class NetworkLoss final : public Effect {
  public:
   static constexpr std::string_view kEquation = "u = newest target that was not lost, each lost with probability p";
   static constexpr std::string_view kSource = "Mosqueda et al. (2005)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::arrival, .digits = DigitTrace::loss};
+  static constexpr EffectTraits kTraits{
+      .family = EffectFamily::arrival, .digits = DigitTrace::loss, .needs_time = true};
   static constexpr std::array kParameters{
       EffectParameter{.name = "loss_ratio", .unit = "", .what = "p, share of lost targets", .low = 0.0, .high = 1.0},
       EffectParameter{.name = "seed",

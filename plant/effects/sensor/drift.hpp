@@ -13,7 +13,7 @@ class SensorDrift : public Effect {
  public:
   static constexpr std::string_view kEquation = "r = y + d t";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 1.4";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::offset};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::offset, .needs_time = true};
 
   SensorDrift(std::span<const double> values, double /*sample_period_s*/) : drift_per_s_{values[0]} {}
   void after(const StageSample& sample, const Motion& /*motion*/, double& output) noexcept override {

@@ -13,7 +13,7 @@ class SensorLag final : public Effect {
  public:
   static constexpr std::string_view kEquation = "T r' + r = y";
   static constexpr std::string_view kSource = "Figliola and Beasley (2011), section 3.3";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{
       EffectParameter{.name = "time_constant_s", .unit = "s", .what = "T", .low = 0.0, .high = 1e3}};
 

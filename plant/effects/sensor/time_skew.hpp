@@ -14,7 +14,7 @@ class TimeSkew final : public Effect {
  public:
   static constexpr std::string_view kEquation = "r(t) = y(t - s)";
   static constexpr std::string_view kSource = "channels sampled one after the other";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "skew_s", .unit = "s", .what = "s, by which the force is late", .low = 0.0, .high = 10.0}};
 

@@ -15,7 +15,7 @@ class Fracture final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = (1 - r) F0 from t = tf on";
   static constexpr std::string_view kSource = "a member lost";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::degradation};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::degradation, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "lost_ratio",
                                                           .unit = "",
                                                           .what = "r, of the force that is lost",

@@ -13,7 +13,7 @@ class Inertia final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + m a";
   static constexpr std::string_view kSource = "Newton's second law";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::mass, .follows_derivatives = true};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::mass, .follows_derivatives = true, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "mass_kg",
                                                           .unit = "kg",
                                                           .what = "m, real less model mass",

@@ -14,7 +14,7 @@ class QuadraticDamping final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + c v |v|";
   static constexpr std::string_view kSource = "Chopra (2012), section 3.9";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .follows_derivatives = true};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .follows_derivatives = true, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "damping_n_s2_per_m2",
                                                           .unit = "N s2/m2",
                                                           .what = "c",

@@ -14,7 +14,7 @@ class Relaxation final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + f, f' + f / T = k v";
   static constexpr std::string_view kSource = "Maxwell (1867)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "k, of a sudden motion",

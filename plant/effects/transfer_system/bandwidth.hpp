@@ -22,7 +22,7 @@ class Bandwidth final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x0 + T x0' + r T^2 x0'' = u";
   static constexpr std::string_view kSource = "Zhao et al. (2003)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{
       EffectParameter{
           .name = "time_constant_s", .unit = "s", .what = "T, delay of slow motion", .low = 0.0, .high = 1e3},

@@ -15,7 +15,7 @@ class TransferDelay final : public Effect {
  public:
   static constexpr std::string_view kEquation = "x(t) = x0(t - tau)";
   static constexpr std::string_view kSource = "Horiuchi et al. (1999)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .number = ModelNumber::delay};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .number = ModelNumber::delay, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "delay_s", .unit = "s", .what = "tau, real less model delay", .low = -10.0, .high = 10.0}};
 

@@ -14,7 +14,7 @@ class VelocityLimit final : public Effect {
  public:
   static constexpr std::string_view kEquation = "|x'| <= vmax, else x = x0";
   static constexpr std::string_view kSource = "Merritt (1967)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "velocity_limit_m_per_s",
                                                           .unit = "m/s",
                                                           .what = "vmax",

@@ -112,6 +112,21 @@ TEST(EffectLibrary, FamiliesFollowPhysicsAndNotTheName) {
   }
 }
 
+TEST(EffectLibrary, RateArrivalAndMassNeedTime) {
+  std::set<std::string> others;
+  for (const EffectType& type : effect_library()) {
+    const EffectFamily family = type.traits.family;
+    const bool follows_time =
+        family == EffectFamily::rate || family == EffectFamily::arrival || family == EffectFamily::mass;
+    if (follows_time) {
+      EXPECT_TRUE(type.traits.needs_time) << label(type);
+    } else if (type.traits.needs_time) {
+      others.insert(label(type));
+    }
+  }
+  EXPECT_EQ(others, (std::set<std::string>{"displacement_sensor.drift", "force_sensor.drift", "specimen.fracture"}));
+}
+
 TEST(EffectLibrary, FindsEffectsByWhatTheyCorrectOrLeave) {
   using enum EffectInterface;
   EXPECT_EQ(find_effect(specimen, ModelNumber::stiffness)->name, "stiffness_error");

@@ -94,6 +94,16 @@ TEST_F(SiteFile, WrongSettingIsCorrectedInTheCompensator) {
   }
 }
 
+TEST_F(SiteFile, SaysThatItsRecordingsAreQuasiStatic) {
+  const std::string parts = "specimen: {type: elastic, stiffness_n_per_m: 1.0}\n";
+  EXPECT_FALSE(read(parts).is_quasi_static);
+  for (const SiteModelFile& site : {read("quasi_static: true\n" + parts),
+                                    read("quasi_static: true\nrig: {" + parts.substr(0, parts.size() - 1) + "}\n")}) {
+    EXPECT_TRUE(site.is_quasi_static);
+    EXPECT_TRUE(read(site.with_effects({}).text).is_quasi_static);
+  }
+}
+
 TEST_F(SiteFile, WrongSettingIsCorrectedAtItsDegreeOfFreedom) {
   const SiteModelFile site = read(
       "compensator: {type: newmark_kinematics, delay_s: 0.01}\n"
