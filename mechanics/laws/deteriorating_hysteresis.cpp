@@ -7,8 +7,10 @@
 
 namespace hybridtest {
 
-DeterioratingHysteresis::DeterioratingHysteresis(const Parameters& parameters, const Break& bend)
-    : parameters_{checked(parameters)}, break_{bend} {
+DeterioratingHysteresis::DeterioratingHysteresis(const Parameters& parameters, const Form& form)
+    : parameters_{checked(parameters)}, form_{form} {
+  const double crack_n = form.cracking_force_n > 0.0 ? form.cracking_force_n : parameters.yield_force_n;
+  crack_ = {crack_n / parameters.stiffness_n_per_m, crack_n};
   if (has_cap()) {
     const double descent_m = checked("post_capping_displacement_m", parameters.post_capping_displacement_m, kPositive,
                                      "capping_displacement_m is given");
@@ -24,12 +26,11 @@ DeterioratingHysteresis::State DeterioratingHysteresis::virgin() const noexcept 
   Side side;
   side.yield_force_n = parameters_.yield_force_n;
   side.hardening_n_per_m = parameters_.hardening_ratio * k;
-  side.peak = side.turn = {parameters_.yield_force_n / k, parameters_.yield_force_n};
+  side.peak = side.turn = crack_;
   const double highest_n = parameters_.yield_force_n + side.hardening_n_per_m * parameters_.capping_displacement_m;
-  side.capping_force_n =
-      highest_n - post_capping_n_per_m_ * (side.peak.displacement_m + parameters_.capping_displacement_m);
+  side.capping_force_n = highest_n - post_capping_n_per_m_ * (yield_m(side) + parameters_.capping_displacement_m);
   State state;
-  state.unloading_n_per_m = state.unloading_at_begin_n_per_m = k;
+  state.unloading_n_per_m = k;
   state.sides = {side, side};
   return state;
 }
@@ -46,17 +47,17 @@ double DeterioratingHysteresis::trial(double displacement_m, double /*velocity_m
 }
 
 void DeterioratingHysteresis::advance(State& state, double displacement_m) const noexcept {
-  const double yield_m = parameters_.yield_force_n / parameters_.stiffness_n_per_m;
-  if (!state.has_yielded) {
-    const double elastic_m = std::clamp(displacement_m, -yield_m, yield_m);
+  if (state.is_virgin) {
+    const double elastic_m = std::clamp(displacement_m, -crack_.displacement_m, crack_.displacement_m);
     state.side = displacement_m < 0.0 ? -1.0 : 1.0;
     state.displacement_m = elastic_m;
     state.force_n = parameters_.stiffness_n_per_m * elastic_m;
     state.energy_j = 0.5 * state.force_n * elastic_m;
     if (elastic_m == displacement_m) return;
-    state.has_yielded = true;
+    state.is_virgin = false;
     state.corners[0] = {};
-    state.corner_count = 1;
+    state.corners[1] = crack_;
+    state.corner_count = 2;
     add_backbone(state);
   }
   if (!state.is_unloading && state.side * (displacement_m - state.displacement_m) < 0.0) begin_unloading(state);
@@ -112,11 +113,13 @@ void DeterioratingHysteresis::begin_unloading(State& state) const noexcept {
   side.turn_is_inner = side.turn.displacement_m < side.peak.displacement_m;
   if (!side.turn_is_inner) side.peak = side.turn;
   state.is_unloading = true;
-  const double stored_j = 0.5 * state.force_n * state.force_n / state.unloading_at_begin_n_per_m;
+  const double stiffness_n_per_m = form_stiffness_n_per_m(side);
+  const double stored_j = 0.5 * state.force_n * state.force_n / (stiffness_n_per_m * state.unloading_share_at_begin);
   const double dissipated_j = state.energy_j - stored_j;
-  state.unloading_n_per_m =
-      state.unloading_at_begin_n_per_m *
-      (1.0 - beta(state, parameters_.unloading_capacity_m, dissipated_j, dissipated_j - state.energy_at_begin_j));
+  const double lost =
+      beta(state, parameters_.unloading_capacity_m, dissipated_j, dissipated_j - state.energy_at_begin_j);
+  state.unloading_share = state.unloading_share_at_begin * (1.0 - lost);
+  state.unloading_n_per_m = stiffness_n_per_m * state.unloading_share;
 }
 
 /// At zero force, with the side that the motion is heading for.
@@ -124,7 +127,7 @@ void DeterioratingHysteresis::begin_excursion(State& state) const noexcept {
   state.is_unloading = false;
   deteriorate(state);
   state.energy_at_begin_j = state.energy_j;
-  state.unloading_at_begin_n_per_m = state.unloading_n_per_m;
+  state.unloading_share_at_begin = state.unloading_share;
   aim_at_peak(state);
   add_backbone(state);
 }
@@ -171,10 +174,10 @@ void DeterioratingHysteresis::aim_at_peak(State& state) const noexcept {
     return (to.force_n - from.force_n) / (to.displacement_m - from.displacement_m);
   };
   const double break_m =
-      (1.0 - break_.displacement_ratio) * (peak.displacement_m - peak.force_n / state.unloading_n_per_m);
-  if (break_.force_ratio < 1.0 && start_m < break_m) {
+      (1.0 - form_.break_displacement_ratio) * (peak.displacement_m - peak.force_n / state.unloading_n_per_m);
+  if (form_.break_force_ratio < 1.0 && start_m < break_m) {
     const double straight_n = slope(state.corners[0], peak) * (break_m - start_m);
-    state.corners[state.corner_count++] = {break_m, break_.force_ratio * straight_n};
+    state.corners[state.corner_count++] = {break_m, form_.break_force_ratio * straight_n};
   }
   const Point& from = state.corners[state.corner_count - 1];
   const bool is_ahead = from.displacement_m < side.turn.displacement_m && from.force_n < side.turn.force_n;
@@ -186,15 +189,14 @@ void DeterioratingHysteresis::aim_at_peak(State& state) const noexcept {
 /// The corners of the backbone that lie ahead of the last one.
 void DeterioratingHysteresis::add_backbone(State& state) const noexcept {
   const Side& side = side_of(state);
-  const double yield_m = side.yield_force_n / parameters_.stiffness_n_per_m;
   const auto add = [&state](double displacement_m, double force_n) {
     if (displacement_m <= state.corners[state.corner_count - 1].displacement_m) return;
     state.corners[state.corner_count++] = {displacement_m, force_n};
   };
-  if (state.corner_count == 1) add(yield_m, side.yield_force_n);
+  add(yield_m(side), side.yield_force_n);
   state.last_slope_n_per_m = side.hardening_n_per_m;
   if (!has_cap()) return;
-  const double at_zero_n = side.yield_force_n - side.hardening_n_per_m * yield_m;
+  const double at_zero_n = side.yield_force_n - side.hardening_n_per_m * yield_m(side);
   const double highest_m = (side.capping_force_n - at_zero_n) / (side.hardening_n_per_m - post_capping_n_per_m_);
   add(highest_m, at_zero_n + side.hardening_n_per_m * highest_m);
   add((residual_n() - side.capping_force_n) / post_capping_n_per_m_, residual_n());
@@ -202,11 +204,29 @@ void DeterioratingHysteresis::add_backbone(State& state) const noexcept {
 }
 
 double DeterioratingHysteresis::backbone_n(const Side& side, double displacement_m) const noexcept {
-  const double yield_m = side.yield_force_n / parameters_.stiffness_n_per_m;
-  if (displacement_m <= yield_m) return parameters_.stiffness_n_per_m * displacement_m;
-  const double hardening_n = side.yield_force_n + side.hardening_n_per_m * (displacement_m - yield_m);
+  const double hardening_n = side.yield_force_n + side.hardening_n_per_m * (displacement_m - yield_m(side));
+  if (displacement_m <= yield_m(side)) {
+    const double elastic_n = parameters_.stiffness_n_per_m * displacement_m;
+    if (form_.cracking_force_n == 0.0) return elastic_n;
+    return std::min(elastic_n, crack_.force_n + form_.cracked_n_per_m * (displacement_m - crack_.displacement_m));
+  }
   if (!has_cap()) return hardening_n;
   return std::max(std::min(hardening_n, side.capping_force_n + post_capping_n_per_m_ * displacement_m), residual_n());
+}
+
+double DeterioratingHysteresis::yield_m(const Side& side) const noexcept {
+  if (form_.cracking_force_n == 0.0) return side.yield_force_n / parameters_.stiffness_n_per_m;
+  return crack_.displacement_m + (side.yield_force_n - crack_.force_n) / form_.cracked_n_per_m;
+}
+
+/// Unloading stiffness before any deterioration: towards the cracking point of the other side up to yielding, and from
+/// there on falling with the largest displacement.
+double DeterioratingHysteresis::form_stiffness_n_per_m(const Side& side) const noexcept {
+  if (form_.unloading_exponent == 0.0 && form_.cracking_force_n == 0.0) return parameters_.stiffness_n_per_m;
+  const double yield_m_now = yield_m(side);
+  const Point aim = side.peak.displacement_m < yield_m_now ? side.peak : Point{yield_m_now, side.yield_force_n};
+  const double stiffness_n_per_m = (aim.force_n + crack_.force_n) / (aim.displacement_m + crack_.displacement_m);
+  return stiffness_n_per_m * std::pow(aim.displacement_m / side.peak.displacement_m, form_.unloading_exponent);
 }
 
 }  // namespace hybridtest

@@ -8,7 +8,7 @@
 
 namespace hybridtest {
 
-/// What PeakOriented and PinchedReloading have in common: straight branches that reload towards the largest
+/// What PeakOriented, PinchedReloading and Takeda have in common: straight branches that reload towards the largest
 /// displacement reached, and a backbone that deteriorates with the dissipated energy (Ibarra, Medina and Krawinkler,
 /// Earthquake Engng Struct. Dyn. 34, 2005; Lignos and Krawinkler, J. Struct. Eng. 137, 2011).
 ///
@@ -80,15 +80,21 @@ class DeterioratingHysteresis : public Law {
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept final { return parameters_.stiffness_n_per_m; }
 
  protected:
-  /// Where the reloading bends (PinchedReloading): at (1 - `displacement_ratio`) of what the largest displacement
-  /// leaves after unloading, and at `force_ratio` of the straight line's force. A force ratio of 1 does not bend.
-  struct Break {
-    double force_ratio = 1.0;
-    double displacement_ratio = 0.0;
+  /// What the laws differ in.
+  struct Form {
+    /// Where the reloading bends (PinchedReloading): at (1 - `break_displacement_ratio`) of what the largest
+    /// displacement leaves after unloading, and at `break_force_ratio` of the straight line's force; 1 does not bend.
+    double break_force_ratio = 1.0;
+    double break_displacement_ratio = 0.0;
+    /// Where the backbone bends before yielding (Takeda) and its stiffness from there to yielding; a force of 0 does
+    /// not bend.
+    double cracking_force_n = 0.0;
+    double cracked_n_per_m = 0.0;
+    double unloading_exponent = 0.0;  // Takeda
   };
 
   /// @throws ConfigError for values outside the ranges, or capping without a post-capping displacement.
-  explicit DeterioratingHysteresis(const Parameters& parameters, const Break& bend);
+  DeterioratingHysteresis(const Parameters& parameters, const Form& form);
   DeterioratingHysteresis(const DeterioratingHysteresis&) = default;
   DeterioratingHysteresis& operator=(const DeterioratingHysteresis&) = default;
 
@@ -98,8 +104,8 @@ class DeterioratingHysteresis : public Law {
     double force_n = 0.0;
   };
 
-  /// Start, break, last reversal, peak, highest strength, residual strength.
-  static constexpr std::size_t kCornersMax = 6;
+  /// Start, break, last reversal, peak, yielding, highest strength, residual strength.
+  static constexpr std::size_t kCornersMax = 7;
 
   /// Signs as if the side were the positive one.
   struct Side {
@@ -117,9 +123,10 @@ class DeterioratingHysteresis : public Law {
     double energy_j = 0.0;           // work of the force so far
     double energy_at_begin_j = 0.0;  // of the excursion
     double unloading_n_per_m = 0.0;
-    double unloading_at_begin_n_per_m = 0.0;
-    double side = 1.0;  // sign of the force
-    bool has_yielded = false;
+    double unloading_share = 1.0;           // what deterioration leaves of the stiffness
+    double unloading_share_at_begin = 1.0;  // of the excursion
+    double side = 1.0;                      // sign of the force
+    bool is_virgin = true;
     bool is_unloading = false;
     bool is_lost = false;
     std::array<Side, 2> sides;                 // positive, negative
@@ -140,11 +147,14 @@ class DeterioratingHysteresis : public Law {
   void add_backbone(State& state) const noexcept;
   [[nodiscard]] double beta(State& state, double capacity_m, double energy_j, double excursion_j) const noexcept;
   [[nodiscard]] double backbone_n(const Side& side, double displacement_m) const noexcept;
+  [[nodiscard]] double yield_m(const Side& side) const noexcept;
+  [[nodiscard]] double form_stiffness_n_per_m(const Side& side) const noexcept;
   [[nodiscard]] double residual_n() const noexcept { return parameters_.residual_ratio * parameters_.yield_force_n; }
   [[nodiscard]] bool has_cap() const noexcept { return parameters_.capping_displacement_m > 0.0; }
 
   Parameters parameters_;
-  Break break_;
+  Form form_;
+  Point crack_;                        // where the virgin law leaves its first line: cracking or yielding
   double post_capping_n_per_m_ = 0.0;  // not positive
   State committed_;
   State trial_;

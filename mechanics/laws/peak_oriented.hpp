@@ -11,7 +11,7 @@ namespace hybridtest {
 class PeakOriented final : public DeterioratingHysteresis {
  public:
   /// @throws ConfigError for values outside their ranges, or capping without a post-capping displacement.
-  explicit PeakOriented(const Parameters& parameters) : DeterioratingHysteresis{parameters, {}} {}
+  explicit PeakOriented(const Parameters& parameters) : DeterioratingHysteresis{parameters, Form{}} {}
 };
 
 }  // namespace hybridtest

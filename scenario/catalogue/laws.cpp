@@ -10,6 +10,8 @@
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
+#include "mechanics/laws/self_centring.hpp"
+#include "mechanics/laws/takeda.hpp"
 #include "mechanics/laws/viscous.hpp"
 
 namespace hybridtest {
@@ -49,6 +51,8 @@ const std::vector<PartType<Maker<Law>>>& laws() {
       law<BoucWenBaberNoori>("bouc_wen_baber_noori"),
       law<PeakOriented>("peak_oriented"),
       law<PinchedReloading>("pinching"),
+      law<Takeda>("takeda"),
+      law<SelfCentring>("self_centring"),
       law<Friction>("friction"),
       law<GapSpring>("gap"),
       law<Viscous>("viscous"),

@@ -20,6 +20,8 @@
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
+#include "mechanics/laws/self_centring.hpp"
+#include "mechanics/laws/takeda.hpp"
 
 namespace hybridtest {
 namespace {
@@ -274,6 +276,22 @@ INSTANTIATE_TEST_SUITE_P(
                   parameters.pinching_force_ratio = 0.3;
                   parameters.pinching_displacement_ratio = 0.4;
                   return std::make_unique<PinchedReloading>(parameters);
+                }},
+        LawCase{"takeda",
+                [](const Scale& by) {
+                  return std::make_unique<Takeda>(Takeda::Parameters{.stiffness_n_per_m = by.n_per_m(8.0e6),
+                                                                     .yield_force_n = by.n(4.0e4),
+                                                                     .hardening_ratio = 0.03,
+                                                                     .cracking_force_n = by.n(1.5e4),
+                                                                     .cracked_ratio = 0.4,
+                                                                     .unloading_exponent = 0.5});
+                }},
+        LawCase{"self_centring",
+                [](const Scale& by) {
+                  return std::make_unique<SelfCentring>(SelfCentring::Parameters{.stiffness_n_per_m = by.n_per_m(4.0e6),
+                                                                                 .activation_force_n = by.n(4.0e4),
+                                                                                 .hardening_ratio = 0.1,
+                                                                                 .flag_ratio = 0.8});
                 }},
         LawCase{"friction",
                 [](const Scale& by) {
