@@ -6,6 +6,11 @@
 #include "core/parameters/parameter_checker.hpp"
 
 namespace hybridtest {
+namespace {
+
+constexpr double kHardeningExponent = 0.8;  // Filippou, Popov and Bertero (1983)
+
+}  // namespace
 
 GiuffreMenegottoPinto::GiuffreMenegottoPinto(const Parameters& parameters) : parameters_{checked(parameters)} {
   yield_displacement_m_ = parameters.yield_force_n / parameters.stiffness_n_per_m;
@@ -30,18 +35,28 @@ double GiuffreMenegottoPinto::trial(double displacement_m, double /*velocity_m_p
   return next.force_n;
 }
 
+/// How far out the asymptote is that a branch is heading for, over where first loading has it.
+double GiuffreMenegottoPinto::hardening(const State& state, Branch branch) const noexcept {
+  if (state.branch == Branch::virgin) return 1.0;
+  const double amount = branch == Branch::rising ? parameters_.a3 : parameters_.a1;
+  if (amount == 0.0) return 1.0;
+  const double reference = branch == Branch::rising ? parameters_.a4 : parameters_.a2;
+  const double range_m = state.highest_reversal_m - state.lowest_reversal_m;
+  return 1.0 + amount * std::pow(range_m / (2.0 * reference * yield_displacement_m_), kHardeningExponent);
+}
+
 /// The reversal is where `state` stands; the virgin state counts as one.
 void GiuffreMenegottoPinto::begin_branch(State& state, Branch branch) const noexcept {
   const double hardening_ratio = parameters_.hardening_ratio;
   const double side = branch == Branch::rising ? 1.0 : -1.0;
   state.highest_reversal_m = std::max(state.highest_reversal_m, state.displacement_m);
   state.lowest_reversal_m = std::min(state.lowest_reversal_m, state.displacement_m);
+  const double yield_m = side * hardening(state, branch) * yield_displacement_m_;
   state.branch = branch;
   state.reversal_displacement_m = state.displacement_m;
   state.reversal_force_n = state.force_n;
   state.corner_displacement_m =
-      side * yield_displacement_m_ +
-      (state.displacement_m - state.force_n / parameters_.stiffness_n_per_m) / (1.0 - hardening_ratio);
+      yield_m + (state.displacement_m - state.force_n / parameters_.stiffness_n_per_m) / (1.0 - hardening_ratio);
   const double extreme_m = branch == Branch::rising ? state.highest_reversal_m : state.lowest_reversal_m;
   const double xi = std::abs(extreme_m - state.corner_displacement_m) / yield_displacement_m_;
   state.curvature = parameters_.r0 * (1.0 - parameters_.cr1 * xi / (parameters_.cr2 + xi));

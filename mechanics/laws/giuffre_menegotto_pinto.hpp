@@ -7,15 +7,19 @@ namespace hybridtest {
 
 /// Steel spring with a curved transition between the elastic and the hardening asymptote
 /// (Menegotto and Pinto, IABSE Symposium Lisbon, 1973) after Filippou, Popov and Bertero
-/// (EERC 83-19, 1983), without isotropic hardening. From the last reversal (xr, Fr) on
+/// (EERC 83-19, 1983). From the last reversal (xr, Fr) on
 ///
 ///     F = Fr + k (x - xr) (b + (1 - b) / (1 + |r|^R)^(1/R)),   r = (x - xr) / (x0 - xr)
 ///     R = R0 (1 - cR1 xi / (cR2 + xi)),                        xi = |xp - x0| / xy
 ///
 /// where x0 is the displacement at which the line of stiffness k through the reversal meets the
 /// hardening asymptote on the side it is heading for, xp the extreme displacement of an earlier
-/// reversal on that side (at least xy), and xy = Fy / k. Branches change at reversals of
-/// the displacement against the committed one, as in Steel02 of OpenSees.
+/// reversal on that side (at least xy), and xy = Fy / k. Isotropic hardening moves that asymptote out by the factor
+///
+///     1 + a1 ((xmax - xmin) / (2 a2 xy))^0.8 on the negative side, likewise with a3 and a4 on the positive one
+///
+/// with the extreme displacements xmax and xmin of earlier reversals; first loading has none. Branches change at
+/// reversals of the displacement against the committed one, as in Steel02 of OpenSees.
 ///
 /// A known property of the law: after a small unloading it reloads on a new curve and can exceed
 /// the curve it left.
@@ -28,6 +32,10 @@ class GiuffreMenegottoPinto final : public Law {
     double r0 = 20.0;
     double cr1 = 0.925;
     double cr2 = 0.15;
+    double a1 = 0.0;
+    double a2 = 1.0;
+    double a3 = 0.0;
+    double a4 = 1.0;
 
     void serialize(ParameterArchive& archive) {
       archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "before yielding"});
@@ -37,6 +45,10 @@ class GiuffreMenegottoPinto final : public Law {
       archive.optional("r0", r0, {{.low = 0.0, .high = 100.0, .low_open = true}, "R0, curvature of the first branch"});
       archive.optional("cr1", cr1, {kZeroToBelowOne, "cR1, loss of curvature"});
       archive.optional("cr2", cr2, {kPositive, "cR2, displacement of half that loss"});
+      archive.optional("a1", a1, {kNotNegative, "isotropic hardening in compression"});
+      archive.optional("a2", a2, {kPositive, "plastic displacement over the yield displacement that a1 refers to"});
+      archive.optional("a3", a3, {kNotNegative, "isotropic hardening in tension"});
+      archive.optional("a4", a4, {kPositive, "plastic displacement over the yield displacement that a3 refers to"});
     }
   };
 
@@ -65,6 +77,7 @@ class GiuffreMenegottoPinto final : public Law {
   };
 
   [[nodiscard]] State virgin() const noexcept;
+  [[nodiscard]] double hardening(const State& state, Branch branch) const noexcept;
   void begin_branch(State& state, Branch branch) const noexcept;
   [[nodiscard]] double force_n(const State& state, double displacement_m) const noexcept;
 

@@ -10,6 +10,7 @@
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
+#include "mechanics/laws/ramberg_osgood.hpp"
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
 #include "mechanics/laws/viscous.hpp"
@@ -53,6 +54,7 @@ const std::vector<PartType<Maker<Law>>>& laws() {
       law<PinchedReloading>("pinching"),
       law<Takeda>("takeda"),
       law<SelfCentring>("self_centring"),
+      law<RambergOsgood>("ramberg_osgood"),
       law<Friction>("friction"),
       law<GapSpring>("gap"),
       law<Viscous>("viscous"),

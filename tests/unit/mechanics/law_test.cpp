@@ -20,6 +20,7 @@
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
+#include "mechanics/laws/ramberg_osgood.hpp"
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
 
@@ -292,6 +293,22 @@ INSTANTIATE_TEST_SUITE_P(
                                                                                  .activation_force_n = by.n(4.0e4),
                                                                                  .hardening_ratio = 0.1,
                                                                                  .flag_ratio = 0.8});
+                }},
+        LawCase{"ramberg_osgood",
+                [](const Scale& by) {
+                  return std::make_unique<RambergOsgood>(RambergOsgood::Parameters{
+                      .stiffness_n_per_m = by.n_per_m(4.0e6), .yield_force_n = by.n(4.0e4), .exponent = 7.0});
+                }},
+        LawCase{"giuffre_menegotto_pinto_isotropic",
+                [](const Scale& by) {
+                  return std::make_unique<GiuffreMenegottoPinto>(
+                      GiuffreMenegottoPinto::Parameters{.stiffness_n_per_m = by.n_per_m(4.0e6),
+                                                        .yield_force_n = by.n(4.0e4),
+                                                        .hardening_ratio = 0.03,
+                                                        .a1 = 0.04,
+                                                        .a2 = 2.0,
+                                                        .a3 = 0.04,
+                                                        .a4 = 2.0});
                 }},
         LawCase{"friction",
                 [](const Scale& by) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
 #include "mechanics/laws/self_centring.hpp"
@@ -78,20 +79,28 @@ constexpr Takeda::Parameters kTakeda{
     .stiffness_n_per_m = 4.0e6, .yield_force_n = 40.0e3, .hardening_ratio = 0.05, .unloading_exponent = 0.4};
 constexpr SelfCentring::Parameters kSelfCentring{
     .stiffness_n_per_m = 4.0e6, .activation_force_n = 40.0e3, .hardening_ratio = 0.05, .flag_ratio = 0.7};
-
+constexpr GiuffreMenegottoPinto::Parameters kIsotropic{.stiffness_n_per_m = 4.0e6,
+                                                       .yield_force_n = 40.0e3,
+                                                       .hardening_ratio = 0.03,
+                                                       .r0 = 18.0,
+                                                       .a1 = 0.05,
+                                                       .a2 = 1.5,
+                                                       .a3 = 0.03,
+                                                       .a4 = 2.5};
 template <class Part>
 Material material(std::string name, const typename Part::Parameters& parameters, double tolerance) {
   return {std::move(name), [parameters] { return std::make_unique<Part>(parameters); }, tolerance};
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, OpenSeesMaterial,
-                         testing::Values(material<PeakOriented>("peak_oriented",
-                                                                deteriorating<PeakOriented::Parameters>(),
-                                                                kDeteriorationTolerance),
-                                         material<PinchedReloading>("pinching", pinching(), kDeteriorationTolerance),
-                                         material<Takeda>("takeda", kTakeda, kDigitsTolerance),
-                                         material<SelfCentring>("self_centring", kSelfCentring, kStepTolerance)),
-                         [](const auto& instance) { return instance.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Laws, OpenSeesMaterial,
+    testing::Values(material<PeakOriented>("peak_oriented", deteriorating<PeakOriented::Parameters>(),
+                                           kDeteriorationTolerance),
+                    material<PinchedReloading>("pinching", pinching(), kDeteriorationTolerance),
+                    material<Takeda>("takeda", kTakeda, kDigitsTolerance),
+                    material<SelfCentring>("self_centring", kSelfCentring, kStepTolerance),
+                    material<GiuffreMenegottoPinto>("giuffre_menegotto_pinto", kIsotropic, kDigitsTolerance)),
+    [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
 }  // namespace hybridtest
