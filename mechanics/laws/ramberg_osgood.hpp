@@ -19,9 +19,10 @@ namespace hybridtest {
 ///
 /// A branch that comes back to the reversal before ends there, and the motion goes on along the branch that this
 /// reversal left: loops close, and the curve of first loading is never exceeded. Each force is the root of its equation
-/// to rounding, whatever the step. RambergOsgoodSteel of OpenSees doubles the force alone, not the plastic displacement
-/// beside it, and does not close loops: it agrees on the first loading, and with twice its offset on each branch from
-/// there until a loop closes.
+/// to rounding, whatever the step.
+///
+/// OpenSees has a material of this name, RambergOsgoodSteel, which doubles the force alone and not the plastic
+/// displacement beside it; its makers have taken it out of the programs.
 class RambergOsgood final : public Law {
  public:
   struct Parameters {

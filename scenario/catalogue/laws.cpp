@@ -4,9 +4,13 @@
 #include "mechanics/laws/bouc_wen.hpp"
 #include "mechanics/laws/bouc_wen_baber_noori.hpp"
 #include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/elastomer.hpp"
 #include "mechanics/laws/friction.hpp"
+#include "mechanics/laws/friction_pendulum.hpp"
 #include "mechanics/laws/gap_spring.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/lead_rubber.hpp"
+#include "mechanics/laws/mr_damper.hpp"
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
@@ -55,6 +59,10 @@ const std::vector<PartType<Maker<Law>>>& laws() {
       law<Takeda>("takeda"),
       law<SelfCentring>("self_centring"),
       law<RambergOsgood>("ramberg_osgood"),
+      law<FrictionPendulum>("friction_pendulum"),
+      law<LeadRubber>("lead_rubber"),
+      law<MrDamper>("mr_damper"),
+      law<Elastomer>("elastomer"),
       law<Friction>("friction"),
       law<GapSpring>("gap"),
       law<Viscous>("viscous"),

@@ -49,6 +49,31 @@ TEST(GiuffreMenegottoPinto, CurvatureFollowsThePlasticExcursion) {
   EXPECT_NEAR(spring.trial(corner_m, 0.0), turning_n + drop_n, 1e-9 * 4.0e4);
 }
 
+TEST(GiuffreMenegottoPinto, IsotropicHardeningMovesTheAsymptote) {
+  auto parameters = kColumn;
+  parameters.a1 = 0.05;
+  parameters.a2 = 2.0;
+  GiuffreMenegottoPinto spring{parameters};
+  GiuffreMenegottoPinto kinematic{kColumn};
+  impose(spring, 0.04);
+  impose(kinematic, 0.04);
+  const double factor = 1.0 + 0.05 * std::pow((0.04 + 0.01) / (2.0 * 2.0 * 0.01), 0.8);
+  const double asymptote_n = -4.0e4 * factor * 0.97 + 0.03 * 4.0e6 * -3.0;
+  // The curve comes within 1 / R of r^-R of its asymptote: r is 40.
+  EXPECT_NEAR(impose(spring, -3.0), asymptote_n, 2e-5 * 4.0e4);
+  EXPECT_NEAR(impose(kinematic, -3.0), -4.0e4 * 0.97 + 0.03 * 4.0e6 * -3.0, 2e-5 * 4.0e4);
+}
+
+TEST(GiuffreMenegottoPinto, FirstLoadingHasNoIsotropicHardening) {
+  auto parameters = kColumn;
+  parameters.a1 = parameters.a3 = 0.05;
+  for (const double displacement_m : {-0.05, 0.05}) {
+    GiuffreMenegottoPinto isotropic{parameters};
+    GiuffreMenegottoPinto kinematic{kColumn};
+    EXPECT_EQ(impose(isotropic, displacement_m), impose(kinematic, displacement_m));
+  }
+}
+
 TEST(GiuffreMenegottoPinto, ReversalOnAsymptoteStaysFinite) {
   GiuffreMenegottoPinto spring{kColumn};
   impose(spring, 1.0);  // on the asymptote to rounding

@@ -14,9 +14,13 @@
 #include "mechanics/laws/bouc_wen.hpp"
 #include "mechanics/laws/bouc_wen_baber_noori.hpp"
 #include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/elastomer.hpp"
 #include "mechanics/laws/friction.hpp"
+#include "mechanics/laws/friction_pendulum.hpp"
 #include "mechanics/laws/gap_spring.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/lead_rubber.hpp"
+#include "mechanics/laws/mr_damper.hpp"
 #include "mechanics/laws/parallel.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
@@ -309,6 +313,42 @@ INSTANTIATE_TEST_SUITE_P(
                                                         .a2 = 2.0,
                                                         .a3 = 0.04,
                                                         .a4 = 2.0});
+                }},
+        LawCase{"friction_pendulum",
+                [](const Scale& by) {
+                  return std::make_unique<FrictionPendulum>(
+                      FrictionPendulum::Parameters{.weight_n = by.n(4.0e5),
+                                                   .radius_m = by.m(2.0),
+                                                   .friction_coefficient = 0.08,
+                                                   .slow_friction_ratio = 0.5,
+                                                   .friction_rate_s_per_m = 50.0,
+                                                   .presliding_displacement_m = by.m(0.001)});
+                }},
+        LawCase{"lead_rubber",
+                [](const Scale& by) {
+                  return std::make_unique<LeadRubber>(
+                      LeadRubber::Parameters{.rubber_stiffness_n_per_m = by.n_per_m(4.0e5),
+                                             .lead_strength_n = by.n(4.0e4),
+                                             .yield_displacement_m = by.m(0.01),
+                                             .heating_path_m = by.m(3.0)});
+                }},
+        LawCase{"mr_damper",
+                [](const Scale& by) {
+                  return std::make_unique<MrDamper>(
+                      MrDamper::Parameters{.damping_n_s_per_m = 1.0e4 * by.force / by.displacement,
+                                           .stiffness_n_per_m = by.n_per_m(1.0e4),
+                                           .hysteretic_force_n = by.n(2.0e3),
+                                           .hysteretic_displacement_m = by.m(0.01)});
+                }},
+        LawCase{"elastomer",
+                [](const Scale& by) {
+                  return std::make_unique<Elastomer>(Elastomer::Parameters{
+                      .stiffness_n_per_m = by.n_per_m(4.0e5),
+                      .stiffening_n_per_m3 = by.n_per_m(4.0e7) / (by.displacement * by.displacement),
+                      .mullins_softening = 0.4,
+                      .mullins_displacement_m = by.m(0.03),
+                      .payne_force_n = by.n(4.0e3),
+                      .payne_displacement_m = by.m(0.01)});
                 }},
         LawCase{"friction",
                 [](const Scale& by) {

@@ -10,10 +10,15 @@ std::vector<PathPoint> read_material_path(const std::string& name) {
   std::ifstream stream{path};
   std::string head;
   if (!std::getline(stream, head)) throw std::runtime_error{"no path in " + path};
+  const bool has_velocity = head.find("velocity") != std::string::npos;
   std::vector<PathPoint> points;
   PathPoint point;
   char comma = ',';
-  while (stream >> point.displacement_m >> comma >> point.force_n) points.push_back(point);
+  while (stream >> point.displacement_m >> comma) {
+    if (has_velocity) stream >> point.velocity_m_per_s >> comma;
+    stream >> point.force_n;
+    points.push_back(point);
+  }
   return points;
 }
 

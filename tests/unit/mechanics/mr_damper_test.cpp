@@ -1,0 +1,50 @@
+#include "mechanics/laws/mr_damper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/config_error.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr MrDamper::Parameters kDamper{.damping_n_s_per_m = 2.0e3,
+                                       .stiffness_n_per_m = 500.0,
+                                       .hysteretic_force_n = 1.0e3,
+                                       .hysteretic_displacement_m = 0.002,
+                                       .exponent = 1.0};
+
+TEST(MrDamper, MovingOneWayItReachesItsHystereticForce) {
+  MrDamper damper{kDamper};
+  // With the exponent 1, z = 1 - exp(-x / xh).
+  for (const double displacement_m : {0.001, 0.004, 0.05}) {
+    const double expected_n = 2.0e3 * 0.1 + 500.0 * displacement_m - 1.0e3 * std::expm1(-displacement_m / 0.002);
+    EXPECT_NEAR(damper.trial(displacement_m, 0.1), expected_n, 1e-5);
+  }
+}
+
+TEST(MrDamper, AfterAReversalTheHysteresisUnloadsStraight) {
+  MrDamper damper{kDamper};
+  static_cast<void>(damper.trial(0.1, 0.1));
+  damper.commit();
+  const double expected_n = -2.0e3 * 0.1 + 500.0 * 0.0985 + 1.0e3 * (1.0 - 0.0015 / 0.002);
+  EXPECT_NEAR(damper.trial(0.0985, -0.1), expected_n, 1e-5);
+}
+
+TEST(MrDamper, ViscousForceGoesWithTheVelocity) {
+  MrDamper damper{kDamper};
+  EXPECT_NEAR(damper.trial(0.01, 0.3) - damper.trial(0.01, 0.1), 2.0e3 * 0.2, 1e-9);
+}
+
+TEST(MrDamper, RejectsParametersOutOfRange) {
+  auto parameters = kDamper;
+  parameters.hysteretic_displacement_m = 0.0;
+  EXPECT_THROW(MrDamper{parameters}, ConfigError);
+  parameters = kDamper;
+  parameters.exponent = 0.5;
+  EXPECT_THROW(MrDamper{parameters}, ConfigError);
+}
+
+}  // namespace
+}  // namespace hybridtest
