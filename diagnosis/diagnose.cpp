@@ -275,12 +275,13 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
         "The recordings do not contain input and output of any interface that the model predicts.");
     return diagnosis;
   }
-  const IdentificationProblem problem = make_problem(model, segments);
+  IdentificationProblem problem = make_problem(model, segments);
   std::vector<Segment> thin;
   for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
   const IdentificationProblem coarse = make_problem(model, std::move(thin));
   const Selection selection =
       select_effects(problem, coarse, settings.threads, progress.part(tuning::kPrepared, tuning::kSelected));
+  settle_noise(problem, selection.chosen);
   Judgement judgement = judge(problem, selection);
   diagnosis.causes = causes_of(selection, judgement, traces);
   const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);

@@ -135,6 +135,25 @@ inline constexpr std::size_t kCycleReversalsMin = 5;
 /// The period of cycles is searched within this share of the mean period.
 inline constexpr double kCycleSpread = 0.03;
 
+// The discrepancy term: what of a residual follows from the motion at all.
+
+/// Velocity at which the direction of motion is half decided, over its root mean square.
+inline constexpr double kDirectionWidth = 0.03;
+/// Half-widths of the play operators, over the largest displacement.
+inline constexpr std::array kPlayWidths{0.02, 0.05, 0.1, 0.2, 0.4, 0.7};
+/// Knots over the range of displacement and of velocity, between which a force of them is linear.
+inline constexpr std::size_t kMotionKnots = 12;
+/// Earlier motion [averaged samples]: 4 ms to 0.26 s at the rate of the fit, each four times the one before.
+inline constexpr std::array kLags_samples{1.0, 4.0, 16.0, 64.0};
+/// Knots over the travelled path, between which what changes with it is linear.
+inline constexpr std::size_t kPathKnots = 5;
+/// A feature with a larger share of noise [rms over rms] is left out: it would predict the noise of the input.
+inline constexpr double kFeatureNoiseMax = 0.1;
+/// Penalties, over the number of samples; held-out cycles choose.
+inline constexpr std::array kRidges{1e-7, 1e-5, 1e-3, 1e-2, 1e-1, 1.0};
+/// An autocorrelation is summed over this many of its own integrated times (Sokal, 1997).
+inline constexpr double kCorrelationTimes = 5.0;
+
 // Traces: network faults and converter steps, found in the recorded values.
 
 /// Longest delay of a target that is searched.
@@ -223,8 +242,6 @@ inline constexpr double kNeighbourCorrelationMax = 0.999;
 
 // Score of a candidate [nats].
 
-/// Independent samples per second of a structured residual.
-inline constexpr double kIndependentPerSecond = 5.0;
 /// Penalty of a candidate that also corrects slightly wrong parameters of the model [nats].
 inline constexpr double kNuisanceCost = 3.0;
 /// Largest error of a slightly wrong model, as a share of the secant stiffness.

@@ -218,7 +218,7 @@ double noise_floor(const SiteModel& model, const Segment& segment) {
     for (const double value : values) squares += value * value;
     return std::sqrt(squares / static_cast<double>(values.size()));
   });
-  return std::hypot(std::max(segment.measured_noise, segment.step_noise), of_input);
+  return std::hypot(std::max(segment.measured_noise, segment.step_noise), of_input, segment.smoothing_error);
 }
 
 }  // namespace hybridtest

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/identification/discrepancy.hpp"
+#include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -126,6 +128,18 @@ std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit)
   return predicted;
 }
 
+/// @param noise       what no function of the motion explains of a residual.
+/// @param deviation   its root mean square where it is known to be noise, else 0.
+void take_noise(FitSegment& fit, const Eigen::VectorXd& noise, double deviation) {
+  // What smoothing does to the prediction is no noise and comes on top.
+  fit.floor = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
+  const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
+  fit.sample_floor = std::max(fit.channel_sample_floor, std::sqrt(fit.floor * fit.floor + averaged_away));
+  const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
+  fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
+  fit.independent = independent_samples(noise);
+}
+
 FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) {
   FitSegment fit;
   fit.segment = std::move(segment);
@@ -133,17 +147,21 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) 
       1, static_cast<std::size_t>(std::floor(1.0 / (tuning::kFitRate_hz * fit.segment.period_s))));
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
-  fit.sample_floor = noise_floor(model, fit.segment);
+  fit.smoothing_floor = fit.segment.smoothing_error;
+  fit.channel_sample_floor = noise_floor(model, fit.segment);
   const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
-  fit.floor = std::hypot(fit.segment.measured_noise / std::sqrt(independent),
-                         input_floor(model, fit.segment, [&](std::span<const double> values) {
-                           return root_mean_square(fit.average(values));
-                         }));
-  fit.floor = std::hypot(fit.floor, fit.segment.step_noise);
-  const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
-  fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
+  fit.channel_floor = std::hypot(fit.segment.measured_noise / std::sqrt(independent),
+                                 input_floor(model, fit.segment, [&](std::span<const double> values) {
+                                   return root_mean_square(fit.average(values));
+                                 }));
+  fit.channel_floor = std::hypot(fit.channel_floor, fit.segment.step_noise, fit.smoothing_floor);
   fit.block_begins = blocks_of(fit);
   add_nuisances(model, law_is_spring, fit);
+  fit.discrepancy = std::make_shared<Discrepancy>(fit);
+  const ResidualParts parts = fit.discrepancy->parts(fit.measured - fit.baseline);
+  // Of a gap above the noise the remainder may be a part that the features do not hold.
+  const bool is_noise = parts.repeatable < parts.total - parts.repeatable;
+  take_noise(fit, parts.remainder, is_noise ? root_mean_square(parts.remainder) : 0.0);
   return fit;
 }
 
@@ -183,6 +201,17 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
     problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment)));
   mark_suspects(problem.segments);
   return problem;
+}
+
+void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    FitSegment& fit = problem.segments[i];
+    const Eigen::VectorXd& change = best.segments[i].change;
+    Eigen::VectorXd residual = fit.measured - fit.baseline;
+    if (change.size() > 0) residual -= change;
+    const Eigen::VectorXd noise = fit.discrepancy->parts(residual).remainder;
+    take_noise(fit, noise, root_mean_square(noise));
+  }
 }
 
 bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {

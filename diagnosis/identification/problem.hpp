@@ -11,6 +11,9 @@
 
 namespace hybridtest {
 
+class Discrepancy;
+struct FitOutcome;
+
 /// Peaks of a recording, which make the search ranges of the effect library fit any specimen.
 struct SignalScales {
   double displacement_m = 0.0;
@@ -35,8 +38,19 @@ struct FitSegment {
   Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
   std::vector<const EffectType*> nuisance_types;  // one per column
   double weight = 1.0;                            // inverse of the standard deviation used here
-  double floor = 0.0;         // residual of a correct model from noise [standard deviation], after averaging
-  double sample_floor = 0.0;  // the same per sample
+  // Residual that a correct model leaves [standard deviation], after averaging and per sample: what the channels show
+  // of their noise, at least; with nothing repeatable in the residual at hand, or after settle_noise(), also coloured
+  // noise and hum, which only a residual shows.
+  double floor = 0.0;
+  double sample_floor = 0.0;
+  // Of them what the channels show: white noise, steps of converters, and smoothing; the last alone.
+  double channel_floor = 0.0;
+  double channel_sample_floor = 0.0;
+  double smoothing_floor = 0.0;
+  // Samples over the autocorrelation time of the noise (independent_samples()): the same for all candidates.
+  double independent = 1.0;
+  // What of a residual here follows from the motion at all.
+  std::shared_ptr<const Discrepancy> discrepancy;
   // Whether its residual counts as part of the gap: it is well above the floor, or no residual is.
   bool is_suspect = true;
   std::shared_ptr<const LawMemory> law;    // of the specimen, along the recorded motion; null where there is none
@@ -55,6 +69,11 @@ struct IdentificationProblem {
 
 /// @param segments   of recordings of the role fit.
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
+
+/// Takes floors, weights and numbers of independent samples from the residuals of the best fit at hand: of what the
+/// discrepancy term leaves of them on held-out cycles, which no function of the motion explains. Until then the noise
+/// under a gap is not known.
+void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
 /// A slightly wrong number of the user's model.
 [[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;

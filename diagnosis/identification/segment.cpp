@@ -188,6 +188,20 @@ bool follows_derivatives(const SiteModel& model) {
   });
 }
 
+/// See Segment::smoothing_error.
+double smoothing_error(const SiteModel& model, const Segment& smooth, const DofRecording& dof, double deviation) {
+  Segment plain = smooth;
+  plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(dof.of(smooth.from));
+  plain.unjudged = 0;
+  const std::vector<double> first_force = FlatSmoother{deviation}.smooth(predict(model, plain));
+  const std::vector<double> first_motion = predict(model, smooth);
+  double squares = 0.0;
+  for (std::size_t i = smooth.unjudged; i + smooth.unjudged < first_force.size(); ++i) {
+    squares += std::pow(first_force[i] - first_motion[i], 2);
+  }
+  return std::sqrt(squares / static_cast<double>(first_force.size()));
+}
+
 Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
   double best = 0.0;
   double least = std::numeric_limits<double>::infinity();
@@ -201,7 +215,10 @@ Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofR
       best = deviation;
     }
   }
-  return smoothed_alike(segment, dof, tuning::kSmoothingNextStep * best);
+  const double deviation = tuning::kSmoothingNextStep * best;
+  Segment smooth = smoothed_alike(segment, dof, deviation);
+  smooth.smoothing_error = smoothing_error(model, smooth, dof, deviation);
+  return smooth;
 }
 
 }  // namespace

@@ -38,6 +38,9 @@ struct Segment {
   // Standard deviation of the noise of `measured`, and number of neighbouring samples that share the same noise.
   double measured_noise = 0.0;
   double noise_span = 1.0;
+  // Root mean square by which the model's force, smoothed, differs from its force for the smoothed motion: where the
+  // law is not linear they differ, and a correct model leaves that.
+  double smoothing_error = 0.0;
   // Standard deviation of the error of a coarse converter in `measured`, which may be correlated. 0: none found.
   double step_noise = 0.0;
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
@@ -73,12 +74,6 @@ class RatioProblem {
     const double whole = recording_.displacement_m.norm();
     return whole > 0.0 ? residual_m.norm() / whole : 0.0;
   }
-  /// Number of neighbouring samples of the remaining gap that count as one independent sample.
-  [[nodiscard]] double samples_per_independent(Eigen::Index samples) const {
-    const double duration_s = recording_.step_s * static_cast<double>(recording_.steps());
-    const double independent = tuning::kIndependentPerSecond * duration_s;
-    return std::max(1.0, static_cast<double>(samples) / std::max(1.0, independent));
-  }
 
  private:
   const ComputedStructure& model_;
@@ -127,8 +122,7 @@ StructureFit fit_structure(const ComputedStructure& model, const StructureRecord
   fit.nrmse = problem.nrmse_of(residual_m);
   if (fit.ratios.empty()) return fit;
   const Eigen::MatrixXd normal = slopes.transpose() * slopes;
-  const double variance = residual_m.squaredNorm() / static_cast<double>(residual_m.size()) *
-                          problem.samples_per_independent(residual_m.size());
+  const double variance = residual_m.squaredNorm() / independent_samples(residual_m);
   const Eigen::MatrixXd covariance = variance * normal.completeOrthogonalDecomposition().pseudoInverse();
   for (std::size_t i = 0; i < fit.ratios.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);

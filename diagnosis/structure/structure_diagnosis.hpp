@@ -70,7 +70,7 @@ inline constexpr std::array kStructureEffects{StructureEffect{&StructureErrors::
 struct FittedRatio {
   const StructureEffect* effect = nullptr;
   double value = 0.0;
-  double standard_error = 0.0;  // of a remainder that is worth so many independent samples a second
+  double standard_error = 0.0;  // of a remainder as correlated as it is (independent_samples())
   bool at_bound = false;        // of the effect's search range
 };
 

@@ -20,9 +20,7 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double allowed = 1.0 / (fit.weight * fit.weight);
-    const double seconds = fit.segment.period_s * static_cast<double>(fit.segment.input.size());
-    const double independent = tuning::kIndependentPerSecond * seconds;
-    score -= 0.5 * independent * std::log(outcome.segments[i].held_out_mean_square(fit) + allowed);
+    score -= 0.5 * fit.independent * std::log(outcome.segments[i].held_out_mean_square(fit) + allowed);
   }
   return score;
 }

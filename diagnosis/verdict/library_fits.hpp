@@ -11,9 +11,9 @@ namespace hybridtest {
 
 /// Held-out log predictive density of a fit, up to a constant that all fits share [nats].
 ///
-/// Gaussian residuals with the variance of the held-out blocks. The number of independent samples per second is
-/// given in tuning.hpp, because neighbouring samples of a structured residual contain the same
-/// information.
+/// Gaussian residuals with the variance of the held-out blocks. Neighbouring samples of a structured residual contain
+/// the same information: the number of independent ones is that of the segment's noise (FitSegment::independent), the
+/// same for all candidates.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Energy of the residual over all suspect segments, each relative to the variance of its output, held out.

@@ -139,12 +139,20 @@ TEST(Diagnose, FindsActualCompensatorSetting) {
   EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
 }
 
+/// A force that comes back with the place: no effect has such waves.
 TEST(Diagnose, SaysUnknownWhenNoEffectFits) {
-  const Diagnosis diagnosis = diagnosis_of(
-      made_recording(made_motion_m, [](double t) { return spring_n(t) + 2000.0 * std::sin(40.0 * t + std::sin(t)); }));
+  const Diagnosis diagnosis = diagnosis_of(made_recording(
+      made_motion_m, [](double t) { return spring_n(t) + 2000.0 * std::sin(made_motion_m(t) / 0.002); }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_TRUE(diagnosis.causes.empty());
   EXPECT_FALSE(diagnosis.report.next_experiment.empty());
+}
+
+/// Like hum, it does not follow from the motion: no model could reproduce it.
+TEST(Diagnose, DisturbanceApartFromTheMotionIsNone) {
+  const Diagnosis diagnosis = diagnosis_of(
+      made_recording(made_motion_m, [](double t) { return spring_n(t) + 2000.0 * std::sin(40.0 * t + std::sin(t)); }));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
 }
 
 TEST(Diagnose, ForceAloneIsNotSufficient) {

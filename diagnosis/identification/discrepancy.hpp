@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace hybridtest {
+
+struct FitSegment;
+
+/// A residual in two parts, told apart on samples that were left out of the regression.
+struct ResidualParts {
+  Eigen::VectorXd remainder;    // of every sample when it is left out: no function of these features explains it
+  double repeatable = 0.0;      // mean square that the features explain there, in squares of the residual's unit
+  double standard_error = 0.0;  // of `repeatable`, of noise with the autocovariance of the remainder
+  double total = 0.0;           // mean square of the residual
+  [[nodiscard]] double share() const noexcept { return total > 0.0 ? repeatable / total : 0.0; }
+};
+
+/// What of a residual follows from the motion at all, whatever the effect: a ridge regression on features of the
+/// segment's input that repeat when the motion does. Features: polynomials of displacement, velocity and acceleration,
+/// the direction of motion, play operators of several widths (Brokate and Sprekels, Hysteresis and Phase Transitions,
+/// 1996), earlier and filtered motion, the largest displacement so far, the model's own prediction, and the first of
+/// these again in every quarter of the travelled path.
+///
+/// It is a ceiling for all candidates and never a name. The folds are cycles: each is left out and predicted from the
+/// others (exactly, by the normal equations), so that noise that is independent of the motion is not explained, up to
+/// the standard error. Of three sets of features and several penalties the one counts whose explained energy, minus its
+/// standard error, is largest; with none above zero nothing is repeatable.
+class Discrepancy {
+ public:
+  explicit Discrepancy(const FitSegment& fit);
+
+  /// @param residual   in the averaged samples of the segment, unweighted.
+  [[nodiscard]] ResidualParts parts(const Eigen::VectorXd& residual) const;
+
+ private:
+  /// The residual minus what the features explain of it, every fold left out once.
+  [[nodiscard]] Eigen::VectorXd left_out(const Eigen::VectorXd& residual, Eigen::Index columns, double ridge) const;
+
+  Eigen::MatrixXd features_;                // scaled to a mean square of one
+  std::vector<Eigen::Index> sets_;          // sizes of the nested sets
+  std::vector<Eigen::Index> piece_begins_;  // pieces of about a cycle; piece i belongs to fold i mod folds_
+  std::size_t folds_ = 0;
+  std::vector<Eigen::MatrixXd> fold_normals_;
+  Eigen::MatrixXd normal_;
+};
+
+/// Share of a residual's energy that is repeatable: seen again on held-out cycles. 0 to 1.
+/// @param residual   in the averaged samples of the segment, unweighted: `fit.measured` minus a prediction.
+[[nodiscard]] double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual);
+
+/// Samples over the integrated autocorrelation time 1 + 2 sum r(k), summed up to the first lag beyond five of these
+/// times (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997). At least 1, at most all.
+[[nodiscard]] double independent_samples(const Eigen::VectorXd& values);
+
+}  // namespace hybridtest
