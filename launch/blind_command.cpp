@@ -1,14 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "launch/commands.hpp"
+#include "runtime/executor.hpp"
 #include "scenario/scenario_digest.hpp"
 #include "validation/blind_batches/batch.hpp"
 #include "validation/blind_batches/score/score.hpp"
@@ -38,11 +44,11 @@ fs::path beside(const fs::path& directory, const char* ending) {
 
 /// On `threads` threads, with a progress line.
 blind::ForEach in_parallel(unsigned threads) {
-  return [threads](std::size_t count, const std::function<void(std::size_t)>& one) {
-    StudyProgress progress{count, stderr};
-    run_in_parallel(count, threads, [&](std::size_t i) {
+  return [threads](const std::vector<std::string>& names, const std::function<void(std::size_t)>& one) {
+    StudyProgress progress{names.size(), stderr};
+    run_in_parallel(names.size(), threads, [&](std::size_t i) {
       one(i);
-      progress.completed(blind::case_name(i));
+      progress.completed(names[i]);
     });
   };
 }
@@ -50,8 +56,10 @@ blind::ForEach in_parallel(unsigned threads) {
 struct BlindOptions {
   blind::MakeSettings make;
   fs::path batch;
+  std::vector<fs::path> batches;  // to be scored together
   fs::path key;
   fs::path answers;
+  fs::path out;
   std::uint64_t seed = 1;
   unsigned threads = usable_threads();
 };
@@ -77,24 +85,65 @@ void diagnose_case(const blind::CaseFiles& files, const fs::path& out, std::uint
   write_diagnosis(diagnose_site(model, recordings, settings), model, out);
 }
 
+/// How long the cases took; any thread may add to it.
+class CaseTimes {
+ public:
+  void add(const std::string& name, Duration duration) {
+    const std::scoped_lock lock{mutex_};
+    times_.emplace_back(to_seconds(duration), name);
+  }
+
+  [[nodiscard]] std::string text() {
+    if (times_.empty()) return "every case had been answered before";
+    std::ranges::sort(times_);
+    const auto& [longest_s, name] = times_.back();
+    return fmt::format("{} cases diagnosed in {:.0f} s; a case took {:.1f} s in the median, {} {:.1f} s at most",
+                       times_.size(), to_seconds(clock_.now().time_since_epoch()), times_[times_.size() / 2].first,
+                       name, longest_s);
+  }
+
+  [[nodiscard]] Instant now() { return clock_.now(); }
+
+ private:
+  ProcessClock clock_;
+  std::mutex mutex_;
+  std::vector<std::pair<double, std::string>> times_;
+};
+
 int run(const BlindOptions& options) {
   const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
+  CaseTimes times;
   const blind::RunOutcome outcome = blind::run_batch(
       options.batch, answers,
-      [&](const blind::CaseFiles& files, const fs::path& out) { diagnose_case(files, out, options.seed); },
+      [&](const blind::CaseFiles& files, const fs::path& out) {
+        const Instant begin = times.now();
+        diagnose_case(files, out, options.seed);
+        times.add(files.name, times.now() - begin);
+      },
       hexadecimal_sha256, in_parallel(options.threads));
   for (const std::string& failure : outcome.failures) fmt::print(stderr, "not answered: {}\n", failure);
-  fmt::print("{} answers in {}, sealed\n", outcome.answered, answers.string());
+  fmt::print("{}\n{} answers in {}, sealed\n", times.text(), outcome.answered, answers.string());
   return outcome.failures.empty() ? kExitCompleted : kExitDataInvalid;
 }
 
 int score(const BlindOptions& options) {
-  const fs::path answers = options.answers.empty() ? beside(options.batch, ".answers") : options.answers;
-  const fs::path key = options.key.empty() ? beside(options.batch, ".key.json") : options.key;
-  const blind::BatchScore scored = blind::score_batch(options.batch, answers, key, hexadecimal_sha256);
+  if (options.batches.size() > 1 && (!options.answers.empty() || !options.key.empty())) {
+    throw ConfigError{
+        "--answers and --key: several batches are given; expected them for one batch only. Give several batches "
+        "their <batch>.answers and <batch>.key.json"};
+  }
+  std::vector<blind::AnsweredBatch> batches;
+  for (const fs::path& given : options.batches) {
+    const fs::path batch = without_slash(given);
+    batches.push_back({batch, options.answers.empty() ? beside(batch, ".answers") : options.answers,
+                       options.key.empty() ? beside(batch, ".key.json") : options.key});
+  }
+  const blind::BatchScore scored = blind::score_batches(batches, hexadecimal_sha256);
+  const char* name = batches.size() > 1 ? "pooled_score.json" : "score.json";
+  const fs::path out = options.out.empty() ? batches.front().answers / name : options.out;
   fmt::print("{}", scored.text);
-  write_output_file(answers / "score.json", scored.json);
-  fmt::print("\nWritten to {}\n", (answers / "score.json").string());
+  write_output_file(out, scored.json);
+  fmt::print("\nWritten to {}\n", out.string());
   return kExitCompleted;
 }
 
@@ -105,6 +154,8 @@ CLI::App* add(CLI::App& commands, const char* name, const char* what, const std:
     action = [options, act] {
       try {
         return act(*options);
+      } catch (const ConfigError&) {
+        throw;
       } catch (const std::runtime_error& error) {  // a batch, key or answer that changed or cannot be read
         fmt::print(stderr, "{}\n", error.what());
         return kExitDataInvalid;
@@ -144,14 +195,17 @@ void add_blind_command(CLI::App& app, CommandAction& action) {
   running->add_option("--seed", options->seed, "Seed of the diagnosis")->capture_default_str();
   add_threads(*running, options);
 
-  CLI::App* scoring =
-      add(*commands, "score", "Open the key and score the answers; writes score.json into the directory of the answers",
-          options, score, action);
-  scoring->add_option("BATCH", options->batch, "Directory of the batch")->required()->check(CLI::ExistingDirectory);
+  CLI::App* scoring = add(*commands, "score", "Open the key and score the answers, of several batches together",
+                          options, score, action);
+  scoring->add_option("BATCH", options->batches, "Directories of the batches")
+      ->required()
+      ->check(CLI::ExistingDirectory);
   scoring->add_option("--answers", options->answers, "Directory with <case>/diagnosis.json")
       ->default_str("<batch>.answers")
       ->check(CLI::ExistingDirectory);
   scoring->add_option("--key", options->key, "File with the key")->default_str("<batch>.key.json");
+  scoring->add_option("--out", options->out, "File to write the score to")
+      ->default_str("score.json in the directory of the answers; pooled_score.json in the first of several");
 }
 
 }  // namespace hybridtest

@@ -1,5 +1,6 @@
 #include "validation/blind_batches/batch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -60,7 +61,32 @@ void append_value(std::string& text, double value) {
 }
 
 nlohmann::ordered_json cause_json(const Cause& cause) {
-  return {{"interface", cause.interface}, {"effect", cause.effect}};
+  nlohmann::ordered_json json{{"interface", cause.interface}, {"effect", cause.effect}};
+  if (!cause.law.empty()) json["law"] = cause.law;
+  return json;
+}
+
+nlohmann::ordered_json causes_json(const std::vector<Cause>& causes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Cause& cause : causes) json.push_back(cause_json(cause));
+  return json;
+}
+
+nlohmann::ordered_json effect_json(const Site& site, const PlantEffect& effect) {
+  nlohmann::ordered_json json{{"interface", effect.interface}, {"effect", effect.name}};
+  if (!effect.law.empty()) json["plant_law"] = effect.law;
+  json["parameters"] = in_library_terms(site, effect);
+  json["plant_parameters"] = effect.parameters;
+  return json;
+}
+
+/// The site with the numbers that it has, where the user's model has others.
+Site real_site(const BlindCase& blind_case) {
+  Site site = blind_case.setting.site;
+  for (const PlantEffect& beside : blind_case.truth.besides) {
+    if (beside.name == "stiffness_error") site.specimen.stiffness_n_per_m *= beside.of("stiffness_ratio");
+  }
+  return site;
 }
 
 }  // namespace
@@ -71,16 +97,48 @@ std::string case_name(std::size_t index) {
   return text.data();
 }
 
-std::string site_yaml(const Site& site) {
+namespace {
+
+std::string compensator_yaml(const CompensatorModel& model) {
+  if (model.delay_s <= 0.0) return "{type: none}";
+  return "{type: polynomial_displacement, order: " + std::to_string(model.order) +
+         ", delay_s: " + number(model.delay_s) + "}";
+}
+
+/// One by itself, several as a list.
+template <class Text>
+std::string one_or_list(const std::vector<Site>& sites, Text text) {
+  if (sites.size() == 1) return text(sites.front());
+  std::string list;
+  for (const Site& site : sites) list += (list.empty() ? "[" : ", ") + text(site);
+  return list + "]";
+}
+
+}  // namespace
+
+std::vector<Site> sites_of(const CaseSetting& setting) {
+  std::vector<Site> sites{setting.site};
+  if (setting.loop && setting.loop->other) sites.push_back(*setting.loop->other);
+  if (sites.size() > 1 && setting.loop->other_is_first) std::swap(sites[0], sites[1]);
+  return sites;
+}
+
+std::string site_yaml(const std::vector<Site>& sites) {
+  double noise_m = 0.0;  // the largest: a file has one value for all
+  double noise_n = 0.0;
+  for (const Site& site : sites) {
+    noise_m = std::max(noise_m, rounded(site.displacement_noise_m.rms()));
+    noise_n = std::max(noise_n, rounded(site.force_noise_n.rms()));
+  }
   std::string text;
-  text += "transfer_system: " + transfer_yaml(site.transfer_system) + "\n";
-  text += "specimen: " + law_yaml(site.specimen) + "\n";
-  text += "sensors: {displacement_noise_m: " + number(site.displacement_noise_m) +
-          ", force_noise_n: " + number(site.force_noise_n) + "}\n";
-  text += site.compensator.delay_s > 0.0
-              ? "compensator: {type: polynomial_displacement, order: " + std::to_string(site.compensator.order) +
-                    ", delay_s: " + number(site.compensator.delay_s) + "}\n"
-              : "compensator: {type: none}\n";
+  const auto transfer = [](const Site& site) { return transfer_yaml(site.transfer_system); };
+  const auto law = [](const Site& site) { return law_yaml(site.specimen); };
+  const auto compensator = [](const Site& site) { return compensator_yaml(site.compensator); };
+  text += "transfer_system: " + one_or_list(sites, transfer) + "\n";
+  text += "specimen: " + one_or_list(sites, law) + "\n";
+  text += "sensors: {displacement_noise_m: " + number(noise_m) + ", force_noise_n: " + number(noise_n) + "}\n";
+  text += "compensator: " + one_or_list(sites, compensator) + "\n";
+  const Site& site = sites.front();
   text += "control_rate_hz: " + number(site.rate_hz) + "\n";
   if (site.known_mass_kg > 0.0 || site.known_damping_n_s_per_m > 0.0) text += "effects:\n";
   if (site.known_mass_kg > 0.0) {
@@ -93,17 +151,22 @@ std::string site_yaml(const Site& site) {
   return text;
 }
 
-std::string recording_csv(const PlantRecording& recording, const RecordedColumns& columns, double rate_hz) {
-  std::vector<std::pair<const char*, const History*>> channels;
-  if (columns.sent) channels.emplace_back("sent_displacement_m", &recording.sent_m);
-  if (columns.target) channels.emplace_back("target_displacement_m", &recording.target_m);
-  if (columns.command) channels.emplace_back("command_displacement_m", &recording.command_m);
-  channels.emplace_back("measured_displacement_m", &recording.measured_m);
-  channels.emplace_back("measured_force_n", &recording.measured_n);
+std::string recording_csv(const std::vector<PlantRecording>& recordings, const RecordedColumns& columns,
+                          double rate_hz) {
+  std::vector<std::pair<std::string, const History*>> channels;
+  for (std::size_t dof = 0; dof < recordings.size(); ++dof) {
+    const PlantRecording& recording = recordings[dof];
+    const std::string suffix = recordings.size() > 1 ? "_" + std::to_string(dof + 1) : "";
+    if (columns.sent) channels.emplace_back("sent_displacement_m" + suffix, &recording.sent_m);
+    if (columns.target) channels.emplace_back("target_displacement_m" + suffix, &recording.target_m);
+    if (columns.command) channels.emplace_back("command_displacement_m" + suffix, &recording.command_m);
+    channels.emplace_back("measured_displacement_m" + suffix, &recording.measured_m);
+    channels.emplace_back("measured_force_n" + suffix, &recording.measured_n);
+  }
   std::string text = "time_s";
-  for (const auto& [name, values] : channels) text += std::string{","} + name;
+  for (const auto& [name, values] : channels) text += "," + name;
   text += '\n';
-  for (std::size_t i = 0; i < recording.measured_m.size(); ++i) {
+  for (std::size_t i = 0; i < recordings.front().measured_m.size(); ++i) {
     std::array<char, 32> time{};
     std::snprintf(time.data(), time.size(), "%.7f", static_cast<double>(i) / rate_hz);
     text += time.data();
@@ -113,6 +176,23 @@ std::string recording_csv(const PlantRecording& recording, const RecordedColumns
   return text;
 }
 
+std::vector<std::string> case_csv(const BlindCase& blind_case) {
+  const CaseSetting& setting = blind_case.setting;
+  const bool has_other = setting.loop && setting.loop->other;
+  const auto csv = [&](const PlantRecording& here, const PlantRecording* there) {
+    std::vector<PlantRecording> recordings{here};
+    if (has_other) recordings.push_back(*there);
+    if (has_other && setting.loop->other_is_first) std::swap(recordings[0], recordings[1]);
+    return recording_csv(recordings, setting.columns, setting.site.rate_hz);
+  };
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < blind_case.fit.size(); ++i) {
+    texts.push_back(csv(blind_case.fit[i], has_other ? &blind_case.other_fit[i] : nullptr));
+  }
+  texts.push_back(csv(blind_case.held_out, &blind_case.other_held_out));
+  return texts;
+}
+
 nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blind_case) {
   static constexpr std::array<const char*, 4> kResiduals{"network", "compensator", "transfer_system", "specimen"};
   const Truth& truth = blind_case.truth;
@@ -120,14 +200,20 @@ nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blin
   json["case"] = name;
   json["truth"] = name_of(truth.kind);
   json["effects"] = nlohmann::ordered_json::array();
-  for (const PlantEffect& effect : truth.effects) {
-    nlohmann::ordered_json entry{{"interface", effect.interface}, {"effect", effect.name}};
-    entry["parameters"] = in_library_terms(blind_case.setting.site, effect);
-    entry["plant_parameters"] = effect.parameters;
-    json["effects"].push_back(std::move(entry));
+  for (std::size_t i = 0; i < truth.effects.size(); ++i) {
+    json["effects"].push_back(effect_json(real_site(blind_case), truth.effects[i]));
+    json["effects"].back()["gap_to_floor"] = truth.effect_gaps_to_floor[i];
+    json["effects"].back()["acceptable"] = causes_json(truth.effect_acceptable[i]);
   }
-  json["acceptable"] = nlohmann::ordered_json::array();
-  for (const Cause& cause : truth.acceptable) json["acceptable"].push_back(cause_json(cause));
+  json["besides"] = nlohmann::ordered_json::array();
+  for (const PlantEffect& beside : truth.besides) {
+    json["besides"].push_back(effect_json(blind_case.setting.site, beside));
+  }
+  json["acceptable"] = causes_json(truth.acceptable);
+  json["acceptable_in_part"] = causes_json(truth.acceptable_in_part);
+  json["tolerated"] = causes_json(truth.tolerated);
+  json["is_separable"] = truth.is_separable;
+  json["is_closed_loop"] = blind_case.setting.loop.has_value();
   json["gap_at"] = kResiduals[static_cast<std::size_t>(truth.residual)];
   json["gap_to_floor"] = truth.gap_to_floor;
   json["held_out_gap_to_floor"] = truth.held_out_gap_to_floor;
@@ -139,8 +225,10 @@ std::string_view name_of(TruthClass kind) noexcept {
   switch (kind) {
     case TruthClass::none: return "none";
     case TruthClass::named: return "named";
-    case TruthClass::unknown: return "unknown";
+    case TruthClass::law: return "law";
     case TruthClass::pair: return "pair";
+    case TruthClass::partial: return "partial";
+    case TruthClass::unknown: return "unknown";
   }
   return "";
 }
@@ -278,7 +366,6 @@ struct CaseEntries {
 
 CaseEntries write_case(const MakeSettings& settings, std::size_t index, const Digest& digest) {
   const BlindCase blind_case = draw_case(settings.seed, index);
-  const Site& site = blind_case.setting.site;
   const std::filesystem::path directory = settings.directory / case_name(index);
   std::filesystem::create_directories(directory);
   CaseEntries entries;
@@ -287,12 +374,10 @@ CaseEntries write_case(const MakeSettings& settings, std::size_t index, const Di
     write_file(directory / name, text);
     entries.batch["files"][name] = digest(text);
   };
-  write("site.yaml", site_yaml(site));
-  for (std::size_t i = 0; i < blind_case.fit.size(); ++i) {
-    write("fit_" + std::to_string(i + 1) + ".csv",
-          recording_csv(blind_case.fit[i], blind_case.setting.columns, site.rate_hz));
-  }
-  write("held_out.csv", recording_csv(blind_case.held_out, blind_case.setting.columns, site.rate_hz));
+  write("site.yaml", site_yaml(sites_of(blind_case.setting)));
+  const std::vector<std::string> texts = case_csv(blind_case);
+  for (std::size_t i = 0; i + 1 < texts.size(); ++i) write("fit_" + std::to_string(i + 1) + ".csv", texts[i]);
+  write("held_out.csv", texts.back());
   entries.key = truth_json(case_name(index), blind_case);
   return entries;
 }
@@ -313,7 +398,9 @@ void make_batch(const MakeSettings& settings, const Digest& digest, const ForEac
   Json batch{{"schema", "hybridtest/blind_batch/1"}};
   Json key{{"schema", "hybridtest/blind_key/1"}, {"seed", settings.seed}};
   std::vector<CaseEntries> entries(settings.cases);
-  for_each(settings.cases, [&](std::size_t i) { entries[i] = write_case(settings, i, digest); });
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < settings.cases; ++i) names.push_back(case_name(i));
+  for_each(names, [&](std::size_t i) { entries[i] = write_case(settings, i, digest); });
   for (CaseEntries& entry : entries) {
     batch["cases"].push_back(std::move(entry.batch));
     key["cases"].push_back(std::move(entry.key));
@@ -347,15 +434,21 @@ RunOutcome run_batch(const fs::path& batch, const fs::path& answers, const Diagn
   for (const CaseFiles& files : cases) names.push_back(files.name);
   // Answers are added to a sealed set only if the sealed answers are unchanged.
   static_cast<void>(open_answers(batch, answers, names, digest));
-  std::vector<std::string> failures(cases.size());
-  for_each(cases.size(), [&](std::size_t i) {
-    if (fs::exists(answers / cases[i].name)) return;
+  std::vector<const CaseFiles*> open;  // what an earlier run answered is left as it is
+  std::vector<std::string> open_names;
+  for (const CaseFiles& files : cases) {
+    if (fs::exists(answers / files.name)) continue;
+    open.push_back(&files);
+    open_names.push_back(files.name);
+  }
+  std::vector<std::string> failures(open.size());
+  for_each(open_names, [&](std::size_t i) {
     try {
-      answer_case(cases[i], answers, diagnose);
+      answer_case(*open[i], answers, diagnose);
     } catch (const std::exception& error) {
-      failures[i] = cases[i].name + ": " + error.what();
+      failures[i] = open_names[i] + ": " + error.what();
       std::error_code ignored;
-      fs::remove_all(answers / (cases[i].name + ".unfinished"), ignored);
+      fs::remove_all(answers / (open_names[i] + ".unfinished"), ignored);
     }
   });
   RunOutcome outcome;

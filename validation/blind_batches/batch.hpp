@@ -20,13 +20,17 @@ using Digest = std::function<std::string(std::string_view)>;
 /// `case_0001` for 0.
 [[nodiscard]] std::string case_name(std::size_t index);
 
-/// The user's model; depends on the site alone.
-[[nodiscard]] std::string site_yaml(const Site& site);
+/// The user's model of one or two degrees of freedom; depends on the sites alone.
+[[nodiscard]] std::string site_yaml(const std::vector<Site>& sites);
+/// The sites of a case, in the order of its columns.
+[[nodiscard]] std::vector<Site> sites_of(const CaseSetting& setting);
 
-/// Header of names and units, one row per sample. All numbers have the same width, so that the size of a file
-/// shows nothing but its length.
-[[nodiscard]] std::string recording_csv(const PlantRecording& recording, const RecordedColumns& columns,
+/// Header of names and units, one row per sample; of several degrees of freedom with _1, _2. All numbers have the
+/// same width, so that the size of a file shows nothing but its length.
+[[nodiscard]] std::string recording_csv(const std::vector<PlantRecording>& recordings, const RecordedColumns& columns,
                                         double rate_hz);
+/// Of a case: the recordings to fit, then the one held out.
+[[nodiscard]] std::vector<std::string> case_csv(const BlindCase& blind_case);
 
 /// A case's entry in the key.
 [[nodiscard]] nlohmann::ordered_json truth_json(const std::string& name, const BlindCase& blind_case);
@@ -74,8 +78,9 @@ struct MakeSettings {
   std::filesystem::path key;  // file, outside of the directory
 };
 
-/// Calls one(0) … one(count - 1), each once, in any order, on any threads; throws what one of them throws.
-using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& one)>;
+/// Calls one(i) for each of the named cases, each once, in any order, on any threads; throws what one of them throws.
+using ForEach =
+    std::function<void(const std::vector<std::string>& names, const std::function<void(std::size_t)>& one)>;
 
 /// Writes a batch and, in a separate file, its key. batch.json contains the SHA-256 of each file of the batch and of
 /// the key. Only the key contains the seed.

@@ -19,6 +19,8 @@ bool is_hysteretic(Setting s) { return has_spring(s) && !is_elastic(s); }
 bool stays_in_play(Setting s) { return has_spring(s) ? is_hysteretic(s) : s.site.known_mass_kg == 0.0; }
 bool is_bilinear(Setting s) { return s.site.specimen.kind == LawKind::bilinear; }
 bool loads_frame(Setting s) { return actuator_is_seen(s) && has_spring(s); }
+/// The derivatives of an actuator without inertia jump with every new command.
+bool has_acceleration(Setting s) { return !s.loop || s.site.transfer_system.kind == TransferKind::second_order; }
 bool has_natural_frequency(Setting s) {
   return actuator_is_seen(s) && s.site.transfer_system.kind == TransferKind::second_order;
 }
@@ -28,6 +30,9 @@ double force(Setting s) { return s.scales.force_n; }
 double stiffness(Setting s) { return force(s) / stroke(s); }
 double away_from_one(RandomStream& r, double amount) { return 1.0 + r.sign() * std::min(0.6, amount); }
 double seed(RandomStream& r) { return static_cast<double>(r.index(1'000'000)); }
+
+/// Time constant of a sensor that warms.
+double warming(RandomStream& r, Setting s) { return s.scales.duration_s * r.uniform(0.5, 3.0); }
 
 /// Deflection before sliding.
 double presliding(RandomStream& r, Setting s) { return stroke(s) * r.log_uniform(0.002, 0.02); }
@@ -81,6 +86,10 @@ const std::vector<CatalogueEntry>& wrong_numbers() {
       {"specimen", "stiffness_error", has_spring,
        [](RandomStream& r, Setting, double m) {
          return Parameters{{"stiffness_ratio", away_from_one(r, m)}};
+       }},
+      {"specimen", "strength_error", is_bilinear,
+       [](RandomStream& r, Setting, double m) {
+         return Parameters{{"strength_ratio", away_from_one(r, m)}};
        }},
       {"specimen", "viscous_damping", always,
        [](RandomStream&, Setting s, double m) {
@@ -153,11 +162,11 @@ const std::vector<CatalogueEntry>& named_effects() {
        }},
       {"transfer_system", "compliance", loads_frame,
        [](RandomStream&, Setting s, double m) {
-         return Parameters{{"stiffness_n_per_m", stiffness(s) / m}};
+         return Parameters{{"stiffness_n_per_m", stiffness(s) / m}, {"closing_n", 0.2 * force(s)}};
        }},
       {"transfer_system", "stiction", actuator_is_seen,
-       [](RandomStream&, Setting s, double m) {
-         return Parameters{{"breakaway_m", 0.5 * m * stroke(s)}};
+       [](RandomStream& r, Setting s, double m) {
+         return Parameters{{"breakaway_m", 0.5 * m * stroke(s)}, {"catching_up_hz", r.log_uniform(15.0, 150.0)}};
        }},
       {"displacement_sensor", "gain", always,
        [](RandomStream& r, Setting, double m) {
@@ -169,7 +178,8 @@ const std::vector<CatalogueEntry>& named_effects() {
        }},
       {"displacement_sensor", "drift", always,
        [](RandomStream& r, Setting s, double m) {
-         return Parameters{{"drift_m_per_s", r.sign() * m * stroke(s) / s.scales.duration_s}};
+         return Parameters{{"drift_m_per_s", r.sign() * m * stroke(s) / s.scales.duration_s},
+                           {"warming_s", warming(r, s)}};
        }},
       {"displacement_sensor", "lag", always,
        [](RandomStream& r, Setting, double) {
@@ -182,7 +192,7 @@ const std::vector<CatalogueEntry>& named_effects() {
       {"specimen", "quadratic_damping", always,
        [](RandomStream&, Setting s, double m) {
          const double v = s.scales.velocity_m_per_s;
-         return Parameters{{"damping_n_s2_per_m2", m * force(s) / (v * v)}};
+         return Parameters{{"damping_n_s2_per_m2", m * force(s) / (v * v)}, {"velocity_m_per_s", v}};
        }},
       {"specimen", "stiffness_error", has_spring,
        [](RandomStream& r, Setting, double m) {
@@ -197,7 +207,8 @@ const std::vector<CatalogueEntry>& named_effects() {
       {"specimen", "cubic_stiffness", always,
        [](RandomStream& r, Setting s, double m) {
          const double x = stroke(s);
-         return Parameters{{"stiffness_n_per_m3", r.sign() * std::min(0.3, m) * 2.0 * force(s) / (x * x * x)}};
+         return Parameters{{"stiffness_n_per_m3", r.sign() * std::min(0.3, m) * 2.0 * force(s) / (x * x * x)},
+                           {"stroke_m", x}};
        }},
       {"specimen", "yielding", is_elastic, yielding},
       {"specimen", "bouc_wen_hysteresis", always,
@@ -227,10 +238,11 @@ const std::vector<CatalogueEntry>& named_effects() {
       {"specimen", "contact", always,
        [](RandomStream& r, Setting s, double) {
          return Parameters{{"stiffness_n_per_m", stiffness(s) * r.log_uniform(0.05, 3.0)},
-                           {"distance_m", stroke(s) * r.uniform(0.05, 0.8)}};
+                           {"distance_m", stroke(s) * r.uniform(0.05, 0.8)},
+                           {"stroke_m", stroke(s)}};
        }},
       {"specimen", "relaxation", always, relaxation},
-      {"specimen", "inertia", always,
+      {"specimen", "inertia", has_acceleration,
        [](RandomStream&, Setting s, double m) {
          return Parameters{{"mass_kg", m * force(s) / s.scales.acceleration_m_per_s2}};
        }},
@@ -249,7 +261,8 @@ const std::vector<CatalogueEntry>& named_effects() {
        }},
       {"force_sensor", "drift", always,
        [](RandomStream& r, Setting s, double m) {
-         return Parameters{{"drift_n_per_s", r.sign() * m * force(s) / s.scales.duration_s}};
+         return Parameters{{"drift_n_per_s", r.sign() * m * force(s) / s.scales.duration_s},
+                           {"warming_s", warming(r, s)}};
        }},
       {"force_sensor", "lag", always,
        [](RandomStream& r, Setting, double) {
@@ -310,7 +323,7 @@ const std::vector<CatalogueEntry>& foreign_effects() {
       {"specimen", "thermal_stiffness", always, placed},
       {"specimen", "echo", always, echo},
       {"force_sensor", "gain_walk", always, ringing},
-      {"force_sensor", "acceleration_crosstalk", always, ringing},
+      {"force_sensor", "acceleration_crosstalk", has_acceleration, ringing},
       {"transfer_system", "amplitude_dependent_delay", actuator_is_seen, hunting},
       {"transfer_system", "limit_cycle", actuator_is_seen, hunting},
       {"transfer_system", "frame_resonance", actuator_is_seen, hunting},

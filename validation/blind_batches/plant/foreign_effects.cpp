@@ -3,198 +3,223 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-
-#include "validation/blind_batches/plant/plant.hpp"
+#include <cstdint>
 
 namespace hybridtest::blind {
 namespace {
 
 /// Largest magnitude so far, fading over seconds.
-History recent_amplitude(const History& x, double period_s) {
-  const double fading = std::exp(-period_s / 1.0);
-  History amplitude(x.size());
-  double level = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    level = std::max(std::abs(x[i]), fading * level);
-    amplitude[i] = level;
-  }
-  return amplitude;
-}
+class RecentAmplitude {
+ public:
+  explicit RecentAmplitude(double period_s) : fading_{std::exp(-period_s / 1.0)} {}
+  [[nodiscard]] double next(double x) { return level_ = std::max(std::abs(x), fading_ * level_); }
+
+ private:
+  double fading_;
+  double level_ = 0.0;
+};
 
 /// Random walk with steps every 10 ms and straight lines between them, standard deviation 1 after 5 s.
-History random_walk(std::size_t size, double period_s, double seed) {
-  RandomStream random{static_cast<std::uint64_t>(seed), 0, "walk"};
-  const auto hold = static_cast<std::size_t>(0.01 / period_s);
-  History points(size / hold + 2, 0.0);
-  for (std::size_t i = 1; i < points.size(); ++i) points[i] = points[i - 1] + random.normal() * std::sqrt(0.01 / 5.0);
-  History walk(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    walk[i] = value_at(points, static_cast<double>(i) / static_cast<double>(hold));
+class RandomWalk {
+ public:
+  RandomWalk(std::uint64_t seed, double period_s) : random_{seed, 0, "walk"}, step_{period_s / 0.01} {}
+  [[nodiscard]] double next() {
+    const double value = from_ + share_ * (to_ - from_);
+    share_ += step_;
+    if (share_ >= 1.0) {
+      share_ -= 1.0;
+      from_ = to_;
+      to_ += random_.normal() * std::sqrt(0.01 / 5.0);
+    }
+    return value;
   }
-  return walk;
-}
+
+ private:
+  RandomStream random_;
+  double step_;
+  double share_ = 0.0;
+  double from_ = 0.0;
+  double to_ = 0.0;
+};
 
 /// c D^alpha x as a ladder of Maxwell elements, three to a decade (after Oustaloup et al., 2000).
-void add_fractional(const PlantEffect& effect, const MotionHistory& motion, History& force) {
-  const double alpha = effect.of("order");
-  const double per_step = std::pow(10.0, 1.0 / 3.0);
+ForceTerm fractional(const PlantEffect& effect, double period_s) {
+  constexpr std::size_t kElements = 14;
+  std::array<double, kElements> stiffness{};
+  std::array<double, kElements> following{};
   double rate = 0.01 * kTwoPi;
-  for (int element = 0; element < 14; ++element, rate *= per_step) {
-    const double stiffness = effect.of("force_n") / effect.of("stroke_m") * std::pow(rate / kTwoPi, alpha) * 0.5;
-    const double following = 1.0 - std::exp(-motion.period_s * rate);
-    double q = 0.0;
-    for (std::size_t i = 0; i < motion.size(); ++i) {
-      q += following * (motion.displacement_m[i] - q);
-      force[i] += stiffness * (motion.displacement_m[i] - q);
-    }
+  for (std::size_t e = 0; e < kElements; ++e, rate *= std::pow(10.0, 1.0 / 3.0)) {
+    stiffness[e] = effect.of("force_n") / effect.of("stroke_m") * std::pow(rate / kTwoPi, effect.of("order")) * 0.5;
+    following[e] = 1.0 - std::exp(-period_s * rate);
   }
+  return [stiffness, following, q = std::array<double, kElements>{}](const MotionPoint& at) mutable {
+    double force = 0.0;
+    for (std::size_t e = 0; e < kElements; ++e) {
+      q[e] += following[e] * (at.displacement_m - q[e]);
+      force += stiffness[e] * (at.displacement_m - q[e]);
+    }
+    return force;
+  };
 }
 
 /// Zero-mean stick-slip: over random distances a force builds up against the motion, then lets go.
-void add_stick_slip(const PlantEffect& effect, const MotionHistory& motion, History& force) {
-  RandomStream random{static_cast<std::uint64_t>(effect.of("seed")), 0, "stick_slip"};
-  double pulled = 0.0;
-  double reach = effect.of("distance_m");
-  for (std::size_t i = 1; i < motion.size(); ++i) {
-    pulled += motion.displacement_m[i] - motion.displacement_m[i - 1];
+ForceTerm stick_slip(const PlantEffect& effect) {
+  const double distance_m = effect.of("distance_m");
+  return [force_n = effect.of("force_n"), distance_m, random = RandomStream{effect.seed(), 0, "stick_slip"},
+          pulled = 0.0, reach = distance_m, past = 0.0](const MotionPoint& at) mutable {
+    pulled += at.displacement_m - past;
+    past = at.displacement_m;
     if (std::abs(pulled) > reach) {
       pulled = -pulled * random.uniform(0.6, 1.0);
-      reach = effect.of("distance_m") * random.uniform(0.4, 1.8);
+      reach = distance_m * random.uniform(0.4, 1.8);
       pulled = std::clamp(pulled, -reach, reach);
     }
-    force[i] += effect.of("force_n") * pulled / effect.of("distance_m");
-  }
+    return force_n * pulled / distance_m;
+  };
 }
 
 /// Relays that switch up at one place and down at another (Preisach, Z. Phys. 94, 1935), more of
 /// them on one side: closed minor loops with memory, and no symmetry.
-void add_preisach(const PlantEffect& effect, const MotionHistory& motion, History& force) {
-  constexpr std::size_t kRelays = 60;
-  RandomStream random{static_cast<std::uint64_t>(effect.of("seed")), 0, "relays"};
-  std::array<double, kRelays> up{};
-  std::array<double, kRelays> down{};
-  std::array<double, kRelays> state{};
-  for (std::size_t r = 0; r < kRelays; ++r) {
+ForceTerm preisach(const PlantEffect& effect) {
+  struct Relay {
+    double up = 0.0;
+    double down = 0.0;
+    double state = -1.0;
+  };
+  RandomStream random{effect.seed(), 0, "relays"};
+  std::array<Relay, 60> relays{};
+  for (Relay& relay : relays) {
     const double middle = effect.of("stroke_m") * random.uniform(0.1, 0.9);
     const double half = effect.of("stroke_m") * random.uniform(0.05, 0.5);
-    up[r] = middle + half;
-    down[r] = middle - half;
-    state[r] = -1.0;
+    relay.up = middle + half;
+    relay.down = middle - half;
   }
-  for (std::size_t i = 0; i < motion.size(); ++i) {
+  return [force_n = effect.of("force_n"), relays](const MotionPoint& at) mutable {
     double sum = 0.0;
-    for (std::size_t r = 0; r < kRelays; ++r) {
-      if (motion.displacement_m[i] > up[r]) state[r] = 1.0;
-      if (motion.displacement_m[i] < down[r]) state[r] = -1.0;
-      sum += 1.0 + state[r];
+    for (Relay& relay : relays) {
+      if (at.displacement_m > relay.up) relay.state = 1.0;
+      if (at.displacement_m < relay.down) relay.state = -1.0;
+      sum += 1.0 + relay.state;
     }
-    force[i] += effect.of("force_n") * sum / static_cast<double>(kRelays);
-  }
+    return force_n * sum / static_cast<double>(relays.size());
+  };
 }
 
 /// Lightly damped resonator driven by a history, semi-implicit Euler; its own acceleration-like output.
-History resonance(const History& drive, double period_s, double frequency_hz, double damping_ratio) {
-  const double w = kTwoPi * frequency_hz;
-  History response(drive.size());
-  double q = 0.0;
-  double p = 0.0;
-  for (std::size_t i = 0; i < drive.size(); ++i) {
-    p += period_s * (w * w * (drive[i] - q) - 2.0 * damping_ratio * w * p);
-    q += period_s * p;
-    response[i] = q;
+class Resonance {
+ public:
+  Resonance(const PlantEffect& effect, double period_s)
+      : period_s_{period_s}, w_{kTwoPi * effect.of("frequency_hz")}, damping_ratio_{effect.of("damping_ratio")} {}
+  [[nodiscard]] double next(double drive) {
+    p_ += period_s_ * (w_ * w_ * (drive - q_) - 2.0 * damping_ratio_ * w_ * p_);
+    return q_ += period_s_ * p_;
   }
-  return response;
-}
 
-/// Force by place and direction alone.
-double local_force(const PlantEffect& effect, double x, double v) {
-  const double amount = effect.of("force_n");
-  const double stroke = effect.of("stroke_m");
-  if (effect.name == "cogging") return amount * std::sin(kTwoPi * x / effect.of("pitch_m"));
+ private:
+  double period_s_;
+  double w_;
+  double damping_ratio_;
+  double q_ = 0.0;
+  double p_ = 0.0;
+};
+
+/// Force by place and direction alone; empty for other effects.
+ForceTerm local_force(const PlantEffect& effect) {
+  if (effect.name == "cogging") {
+    return [force_n = effect.of("force_n"), turn = kTwoPi / effect.of("pitch_m")](const MotionPoint& at) {
+      return force_n * std::sin(turn * at.displacement_m);
+    };
+  }
   if (effect.name == "snap_through") {
-    const double place = (x - effect.of("place_m")) / effect.of("pitch_m");
-    return -amount * 2.3 * place * std::exp(-place * place);
+    return [force_n = effect.of("force_n"), middle = effect.of("place_m"),
+            pitch = effect.of("pitch_m")](const MotionPoint& at) {
+      const double place = (at.displacement_m - middle) / pitch;
+      return -force_n * 2.3 * place * std::exp(-place * place);
+    };
   }
-  // Friction that changes sign with the place, zero on average.
-  const double way = std::tanh(v / (0.01 * effect.of("velocity_m_per_s")));
-  return amount * way * std::sin(kTwoPi * x / (0.7 * stroke));
-}
-
-void add_self_excitation(const PlantEffect& effect, const MotionHistory& motion, History& force) {
-  for (std::size_t i = 0; i < motion.size(); ++i) {
-    const double u = motion.velocity_m_per_s[i] / effect.of("velocity_m_per_s");
-    force[i] += effect.of("force_n") * 4.0 * (std::pow(u, 3) - 0.35 * u);
+  if (effect.name == "place_dependent_friction") {  // changes sign with the place, zero on average
+    return [force_n = effect.of("force_n"), turn = kTwoPi / (0.7 * effect.of("stroke_m")),
+            slow = 0.01 * effect.of("velocity_m_per_s")](const MotionPoint& at) {
+      return force_n * std::tanh(at.velocity_m_per_s / slow) * std::sin(turn * at.displacement_m);
+    };
   }
+  return {};
 }
 
 }  // namespace
 
-void apply_foreign_to_actuator(const PlantEffect& effect, double period_s, History& displacement_m) {
-  const History x = displacement_m;
-  const History amplitude = recent_amplitude(x, period_s);
+std::function<double(double)> foreign_motion(const PlantEffect& effect, double period_s) {
   if (effect.name == "amplitude_dependent_delay") {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double share = amplitude[i] / effect.of("stroke_m");
-      const double delay_s = effect.of("delay_s") * (share - 0.45) * 3.0;
-      displacement_m[i] = value_at(x, static_cast<double>(i) - delay_s / period_s);
-    }
-  } else if (effect.name == "limit_cycle") {
-    // The loop hunts while the actuator moves: van der Pol's oscillator beside the motion.
-    const double w = kTwoPi * effect.of("frequency_hz");
-    double q = 0.1;
-    double p = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      p += period_s * (0.4 * w * (1.0 - q * q) * p - w * w * q);
-      q += period_s * p;
-      displacement_m[i] +=
-          effect.of("amplitude_m") * 0.5 * q * std::min(1.0, 4.0 * amplitude[i] / effect.of("stroke_m"));
-    }
-  } else if (effect.name == "frame_resonance") {
-    const History response = resonance(x, period_s, effect.of("frequency_hz"), effect.of("damping_ratio"));
-    const History lead = difference(response, x);
-    add(displacement_m, lead, effect.of("share"));
-  } else if (effect.name == "pump_ripple") {
-    RandomStream random{static_cast<std::uint64_t>(effect.of("seed")), 0, "ripple"};
-    double phase = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      phase += kTwoPi * period_s * effect.of("frequency_hz") + 0.02 * random.normal();
-      displacement_m[i] += effect.of("amplitude_m") * std::sin(phase) * amplitude[i] / effect.of("stroke_m");
-    }
+    // Held up by as much as the recent amplitude asks for, out of a ring that holds twice the largest delay.
+    const double delay_steps = effect.of("delay_s") / period_s;
+    const History ring(static_cast<std::size_t>(4.0 * delay_steps) + 2);
+    return [delay_steps, stroke_m = effect.of("stroke_m"), amplitude = RecentAmplitude{period_s}, past = ring,
+            count = std::size_t{0}](double x) mutable {
+      const std::size_t size = past.size();
+      past[count++ % size] = x;
+      const double share = std::min(1.5, amplitude.next(x) / stroke_m);
+      const double steps = std::min(2.0 * delay_steps * share, static_cast<double>(std::min(count, size) - 1));
+      const auto whole = static_cast<std::size_t>(steps);
+      const double later = past[(count - 1 + size - whole) % size];
+      const double earlier = past[(count - 1 + size - std::min(whole + 1, std::min(count, size) - 1)) % size];
+      return later + (steps - static_cast<double>(whole)) * (earlier - later);
+    };
   }
+  if (effect.name == "limit_cycle") {
+    // The loop hunts while the actuator moves: van der Pol's oscillator beside the motion.
+    return
+        [w = kTwoPi * effect.of("frequency_hz"), period_s, amplitude_m = effect.of("amplitude_m"),
+         stroke_m = effect.of("stroke_m"), amplitude = RecentAmplitude{period_s}, q = 0.1, p = 0.0](double x) mutable {
+          p += period_s * (0.4 * w * (1.0 - q * q) * p - w * w * q);
+          q += period_s * p;
+          return x + amplitude_m * 0.5 * q * std::min(1.0, 4.0 * amplitude.next(x) / stroke_m);
+        };
+  }
+  if (effect.name == "frame_resonance") {
+    return [share = effect.of("share"), frame = Resonance{effect, period_s}](double x) mutable {
+      return x + share * (frame.next(x) - x);
+    };
+  }
+  if (effect.name == "pump_ripple") {
+    return [turn = kTwoPi * period_s * effect.of("frequency_hz"),
+            share = effect.of("amplitude_m") / effect.of("stroke_m"), random = RandomStream{effect.seed(), 0, "ripple"},
+            amplitude = RecentAmplitude{period_s}, phase = 0.0](double x) mutable {
+      phase += turn + 0.02 * random.normal();
+      return x + share * std::sin(phase) * amplitude.next(x);
+    };
+  }
+  return {};
 }
 
-void add_foreign_force(const PlantEffect& effect, const Site& site, const MotionHistory& motion, History& force_n) {
-  if (effect.name == "fractional_damping") add_fractional(effect, motion, force_n);
-  if (effect.name == "random_stick_slip") add_stick_slip(effect, motion, force_n);
-  if (effect.name == "magnetic_memory") add_preisach(effect, motion, force_n);
-  if (effect.name == "self_excitation") add_self_excitation(effect, motion, force_n);
-  if (effect.name == "cogging" || effect.name == "snap_through" || effect.name == "place_dependent_friction") {
-    for (std::size_t i = 0; i < motion.size(); ++i) {
-      force_n[i] += local_force(effect, motion.displacement_m[i], motion.velocity_m_per_s[i]);
-    }
+ForceTerm foreign_force(const PlantEffect& effect, double period_s) {
+  if (effect.name == "fractional_damping") return fractional(effect, period_s);
+  if (effect.name == "random_stick_slip") return stick_slip(effect);
+  if (effect.name == "magnetic_memory") return preisach(effect);
+  if (effect.name == "self_excitation") {
+    return [force_n = effect.of("force_n"), v = effect.of("velocity_m_per_s")](const MotionPoint& at) {
+      const double u = at.velocity_m_per_s / v;
+      return force_n * 4.0 * (std::pow(std::clamp(u, -1.5, 1.5), 3) - 0.35 * u);
+    };
   }
   if (effect.name == "thermal_stiffness") {
-    const History walk = random_walk(motion.size(), motion.period_s, effect.of("seed"));
-    for (std::size_t i = 0; i < motion.size(); ++i) {
-      force_n[i] += effect.of("force_n") / effect.of("stroke_m") * motion.displacement_m[i] * walk[i];
-    }
+    return [stiffness = effect.of("force_n") / effect.of("stroke_m"), walk = RandomWalk{effect.seed(), period_s}](
+               const MotionPoint& at) mutable { return stiffness * at.displacement_m * walk.next(); };
   }
-  if (effect.name == "echo") {
-    add(force_n, delayed(force_n, effect.of("delay_s") * site.rate_hz * static_cast<double>(kFineSteps)),
-        effect.of("share"));
-  }
+  return local_force(effect);
 }
 
-void read_with_foreign(const PlantEffect& effect, const MotionHistory& motion, History& read) {
+std::function<double(const MotionPoint&, double)> foreign_reading(const PlantEffect& effect, double period_s) {
   if (effect.name == "gain_walk") {
-    const History walk = random_walk(read.size(), motion.period_s, effect.of("seed"));
-    for (std::size_t i = 0; i < read.size(); ++i) read[i] *= 1.0 + effect.of("share") * walk[i];
-  } else if (effect.name == "acceleration_crosstalk") {
-    add(read,
-        resonance(motion.acceleration_m_per_s2, motion.period_s, effect.of("frequency_hz"), effect.of("damping_ratio")),
-        effect.of("mass_kg"));
+    return [share = effect.of("share"), walk = RandomWalk{effect.seed(), period_s}](
+               const MotionPoint& /*at*/, double value) mutable { return value * (1.0 + share * walk.next()); };
   }
+  if (effect.name == "acceleration_crosstalk") {
+    return
+        [mass = effect.of("mass_kg"), cell = Resonance{effect, period_s}](const MotionPoint& at, double value) mutable {
+          return value + mass * cell.next(at.acceleration_m_per_s2);
+        };
+  }
+  return {};
 }
 
 }  // namespace hybridtest::blind

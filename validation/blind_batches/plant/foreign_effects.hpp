@@ -1,13 +1,20 @@
 #pragma once
 
-#include "validation/blind_batches/plant/plant.hpp"
+#include <functional>
 
-/// Effects outside the library: a diagnosis must answer `unknown`. On the fine grid;
-/// an effect of another stage is ignored.
+#include "validation/blind_batches/plant/plant.hpp"
+#include "validation/blind_batches/plant/specimen.hpp"
+
+/// Effects outside the library: a diagnosis must answer `unknown`. Each with its own state, to be called once for
+/// each fine step; empty for an effect of another stage or of the library.
 namespace hybridtest::blind {
 
-void apply_foreign_to_actuator(const PlantEffect& effect, double period_s, History& displacement_m);
-void add_foreign_force(const PlantEffect& effect, const Site& site, const MotionHistory& motion, History& force_n);
-void read_with_foreign(const PlantEffect& effect, const MotionHistory& motion, History& read);
+/// Displacement with the effect, of the displacement without.
+[[nodiscard]] std::function<double(double)> foreign_motion(const PlantEffect& effect, double period_s);
+/// Force beside the specimen's. Not `echo`, which needs that.
+[[nodiscard]] ForceTerm foreign_force(const PlantEffect& effect, double period_s);
+/// Reading of a true value at a place that moves.
+[[nodiscard]] std::function<double(const MotionPoint&, double)> foreign_reading(const PlantEffect& effect,
+                                                                                double period_s);
 
 }  // namespace hybridtest::blind

@@ -165,6 +165,10 @@ History delayed(const History& values, double samples) {
   return result;
 }
 
+double rounded_ramp(double u, double width) noexcept {
+  return u > 30.0 * width ? u : width * std::log1p(std::exp(u / width));
+}
+
 double peak(const History& values) noexcept {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
@@ -187,20 +191,58 @@ void add(History& values, const History& more, double factor) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += factor * more[i];
 }
 
+MotionPoint Differentiator::next(double displacement_m) {
+  const double x = displacement_m;
+  if (steps_ == 0.0) past_[0] = past_[1] = past_[2] = x;
+  const double velocity = (11.0 * x - 18.0 * past_[0] + 9.0 * past_[1] - 2.0 * past_[2]) / (6.0 * period_s_);
+  const double acceleration = (2.0 * x - 5.0 * past_[0] + 4.0 * past_[1] - past_[2]) / (period_s_ * period_s_);
+  past_[2] = std::exchange(past_[1], std::exchange(past_[0], x));
+  return {period_s_ * steps_++, x, velocity, acceleration};
+}
+
+DelayLine::DelayLine(double steps) : steps_{std::max(0.0, steps)}, past_(static_cast<std::size_t>(steps_) + 2) {}
+
+double DelayLine::next(double value) {
+  const std::size_t size = past_.size();
+  if (count_ == 0) std::ranges::fill(past_, value);
+  past_[count_ % size] = value;
+  const auto whole = static_cast<std::size_t>(steps_);
+  const double later = past_[(count_ + size - whole) % size];
+  const double earlier = past_[(count_ + size - whole - 1) % size];
+  ++count_;
+  return later + (steps_ - static_cast<double>(whole)) * (earlier - later);
+}
+
+namespace {
+
+/// Of the hum, over the standard deviation of the random part.
+constexpr double kHumRms = 0.5;
+
+}  // namespace
+
+double NoiseModel::rms() const { return standard_deviation * (hum_hz > 0.0 ? std::hypot(1.0, kHumRms) : 1.0); }
+
+History noise_of(const NoiseModel& model, std::size_t count, double rate_hz, RandomStream& random) {
+  const double fresh = std::sqrt(1.0 - model.memory * model.memory);
+  double value = random.normal();
+  const double phase = random.uniform(0.0, kTwoPi);
+  // The rms of a sine is its amplitude over sqrt(2).
+  const double hum = model.hum_hz > 0.0 ? std::numbers::sqrt2 * kHumRms : 0.0;
+  History noise(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn = kTwoPi * model.hum_hz * static_cast<double>(i) / rate_hz + phase;
+    noise[i] = model.standard_deviation * (value + hum * std::sin(turn));
+    value = model.memory * value + fresh * random.normal();
+  }
+  return noise;
+}
+
 namespace {
 
 /// Well above the motions of excitation.cpp and below the noise that differentiation amplifies.
 constexpr double kDerivativeCutoffHz = 40.0;
 
 double fine_period_s(const Site& site) { return 1.0 / (site.rate_hz * static_cast<double>(kFineSteps)); }
-
-LoadOf load_of(const Site& site, const PlantEffects& effects) {
-  return [&](const MotionHistory& motion) { return specimen_force(site, effects, motion); };
-}
-
-void add_noise(History& values, double standard_deviation, RandomStream& random) {
-  for (double& value : values) value += standard_deviation * random.normal();
-}
 
 /// A motion that was measured: the displacement as it is, its derivatives from a smoothed copy.
 MotionHistory measured_motion(const Site& site, const History& displacement_m) {
@@ -217,7 +259,7 @@ TrueSignals run_plant(const Site& site, const PlantEffects& effects, const Histo
   signals.sent_m = sent_m;
   signals.target_m = through_network(site, effects, sent_m);
   signals.command_m = compensated(site, effects, signals.target_m);
-  signals.motion = actuator_motion(site, effects, signals.command_m, load_of(site, effects));
+  signals.motion = actuator_motion(site, effects, signals.command_m);
   signals.force_n = specimen_force(site, effects, signals.motion);
   signals.read_m = sampled(reading("displacement_sensor", effects, signals.motion, signals.motion.displacement_m));
   signals.read_n = sampled(reading("force_sensor", effects, signals.motion, signals.force_n));
@@ -226,8 +268,8 @@ TrueSignals run_plant(const Site& site, const PlantEffects& effects, const Histo
 
 PlantRecording record(const Site& site, const TrueSignals& signals, RandomStream& random) {
   PlantRecording recording{signals.sent_m, signals.target_m, signals.command_m, signals.read_m, signals.read_n};
-  add_noise(recording.measured_m, site.displacement_noise_m, random);
-  add_noise(recording.measured_n, site.force_noise_n, random);
+  add(recording.measured_m, noise_of(site.displacement_noise_m, signals.sent_m.size(), site.rate_hz, random));
+  add(recording.measured_n, noise_of(site.force_noise_n, signals.sent_m.size(), site.rate_hz, random));
   return recording;
 }
 
@@ -236,7 +278,7 @@ History stage_output(Residual residual, const Site& site, const PlantEffects& ef
     case Residual::network: return through_network(site, effects, driven_m);
     case Residual::compensator: return compensated(site, effects, driven_m);
     case Residual::transfer_system: {
-      const MotionHistory motion = actuator_motion(site, effects, driven_m, load_of(site, effects));
+      const MotionHistory motion = actuator_motion(site, effects, driven_m);
       return sampled(reading("displacement_sensor", effects, motion, motion.displacement_m));
     }
     case Residual::specimen: {

@@ -40,8 +40,42 @@ class RandomStream {
 
 using History = std::vector<double>;
 
-/// Fine steps of the plant per sample of a recording: 8 to 16 kHz.
+/// Fine steps of the plant per sample of a recording: 4 to 16 kHz.
 inline constexpr std::size_t kFineSteps = 16;
+
+/// A motion at one fine step.
+struct MotionPoint {
+  double time_s = 0.0;
+  double displacement_m = 0.0;
+  double velocity_m_per_s = 0.0;
+  double acceleration_m_per_s2 = 0.0;
+};
+
+/// Velocity and acceleration of a displacement from its last four values (third and second order of the period),
+/// for a plant that does not know what comes. At rest before the first value.
+class Differentiator {
+ public:
+  explicit Differentiator(double period_s) : period_s_{period_s} {}
+  [[nodiscard]] MotionPoint next(double displacement_m);
+
+ private:
+  double period_s_;
+  double past_[3] = {};  // newest first
+  double steps_ = 0.0;
+};
+
+/// A displacement or force held up by a broken number of steps; before the first value, the first.
+class DelayLine {
+ public:
+  /// @param steps   less than none is none: no plant looks ahead.
+  explicit DelayLine(double steps);
+  [[nodiscard]] double next(double value);
+
+ private:
+  double steps_;
+  History past_;  // a ring
+  std::size_t count_ = 0;
+};
 
 /// On the fine grid.
 struct MotionHistory {
@@ -51,6 +85,9 @@ struct MotionHistory {
   History acceleration_m_per_s2;
 
   [[nodiscard]] std::size_t size() const noexcept { return displacement_m.size(); }
+  [[nodiscard]] MotionPoint at(std::size_t i) const {
+    return {static_cast<double>(i) * period_s, displacement_m[i], velocity_m_per_s[i], acceleration_m_per_s2[i]};
+  }
 };
 
 /// Straight lines between the samples, kFineSteps to an interval.
@@ -70,6 +107,8 @@ struct MotionHistory {
 [[nodiscard]] double value_at(const History& values, double index) noexcept;
 [[nodiscard]] History delayed(const History& values, double samples);
 
+/// 0 below zero and u above, rounded over about `width`.
+[[nodiscard]] double rounded_ramp(double u, double width) noexcept;
 [[nodiscard]] double peak(const History& values) noexcept;
 [[nodiscard]] double rms(const History& values) noexcept;
 [[nodiscard]] History difference(const History& a, const History& b);
@@ -87,6 +126,19 @@ struct TransferModel {
   double natural_frequency_hz = 0.0;  // second_order
   double damping_ratio = 0.0;
 };
+
+/// Noise of a sensor: white, coloured (autoregressive of order 1), or white with the hum of the mains.
+struct NoiseModel {
+  double standard_deviation = 0.0;  // of the random part
+  double memory = 0.0;              // share of a value that stays until the next: 0 is white
+  double hum_hz = 0.0;              // 0: no hum; else a sine whose rms is half the standard deviation
+
+  /// With the hum.
+  [[nodiscard]] double rms() const;
+};
+
+/// A history of noise. Stationary from its first value on.
+[[nodiscard]] History noise_of(const NoiseModel& model, std::size_t count, double rate_hz, RandomStream& random);
 
 /// Keys and meaning as in docs/scenario.md.
 struct LawModel {
@@ -115,8 +167,8 @@ struct Site {
   CompensatorModel compensator;
   double known_mass_kg = 0.0;  // effects that the user's model lists
   double known_damping_n_s_per_m = 0.0;
-  double displacement_noise_m = 0.0;
-  double force_noise_n = 0.0;
+  NoiseModel displacement_noise_m;
+  NoiseModel force_noise_n;
   double rate_hz = 0.0;  // of control and recording
 };
 
@@ -128,8 +180,11 @@ struct PlantEffect {
   std::string interface;
   std::string name;
   Parameters parameters;
+  std::string law = {};  // of the effect `hysteresis_law`: the plant's name of the law that the specimen follows
 
   [[nodiscard]] double of(const char* parameter) const { return parameters.at(parameter); }
+  /// Of an effect with random parts.
+  [[nodiscard]] std::uint64_t seed() const { return static_cast<std::uint64_t>(of("seed")); }
 };
 
 using PlantEffects = std::vector<PlantEffect>;
@@ -157,7 +212,7 @@ struct PlantRecording {
 /// The whole chain from the coordinator's displacement to the sensors' readings.
 [[nodiscard]] TrueSignals run_plant(const Site& site, const PlantEffects& effects, const History& sent_m);
 
-/// Adds the sensors' noise, normal and white.
+/// Adds the sensors' noise.
 [[nodiscard]] PlantRecording record(const Site& site, const TrueSignals& signals, RandomStream& random);
 
 /// The output at which the residual of a model is computed.

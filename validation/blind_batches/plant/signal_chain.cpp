@@ -2,40 +2,75 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "validation/blind_batches/plant/foreign_effects.hpp"
-#include "validation/blind_batches/plant/plant.hpp"
 
 namespace hybridtest::blind {
 
 namespace {
 
-/// When the packet of each step arrives, in samples after it was sent; infinite when lost.
-History travel_samples(const Site& site, const PlantEffects& effects, std::size_t count) {
-  History travel(count, 0.0);
-  for (const PlantEffect& effect : effects) {
-    if (effect.interface != "network") continue;
-    if (effect.name == "latency") {
-      for (double& t : travel) t += effect.of("delay_s") * site.rate_hz;
-    } else if (effect.name == "jitter") {
-      RandomStream random{static_cast<std::uint64_t>(effect.of("seed")), count, "jitter"};
-      for (double& t : travel) t += -std::log(1.0 - random.uniform(0.0, 1.0)) * effect.of("jitter_s") * site.rate_hz;
-    } else if (effect.name == "loss") {
-      RandomStream random{static_cast<std::uint64_t>(effect.of("seed")), count, "loss"};
-      for (double& t : travel) t += random.chance(effect.of("loss_ratio")) ? HUGE_VAL : 0.0;
-    } else if (effect.name == "clock_offset") {
-      for (double& t : travel) t += effect.of("offset_s") * site.rate_hz;
-    } else if (effect.name == "clock_drift") {
-      for (std::size_t i = 0; i < count; ++i) travel[i] += effect.of("drift_ratio") * static_cast<double>(i);
-    }
-  }
-  return travel;
+/// Lost in bursts of two packets on average (Gilbert, Bell Syst. Tech. J. 39, 1960).
+std::function<double()> bursts_of_loss(const PlantEffect& effect) {
+  const double ratio = effect.of("loss_ratio");
+  constexpr double kLeaves = 0.5;
+  return [random = RandomStream{effect.seed(), 0, "loss"}, enters = kLeaves * ratio / (1.0 - ratio),
+          is_losing = false]() mutable {
+    is_losing = random.chance(is_losing ? 1.0 - kLeaves : enters);
+    return is_losing ? HUGE_VAL : 0.0;
+  };
 }
 
-/// Polynomial through order + 1 past targets, evaluated `delay` ahead of the newest.
-double extrapolated(const History& target, std::size_t now, int order, double ahead_samples) {
+/// A clock whose rate wanders by a tenth as its quartz warms and cools.
+std::function<double()> drifting(const PlantEffect& effect, double rate_hz) {
+  return [drift = effect.of("drift_ratio"), turn = kTwoPi / (7.0 * rate_hz), late = 0.0, i = 0.0]() mutable {
+    const double now = late;
+    late += drift * (1.0 + 0.1 * std::sin(turn * i++));
+    return now;
+  };
+}
+
+}  // namespace
+
+NetworkStage::NetworkStage(const Site& site, const PlantEffects& effects) {
+  const double rate_hz = site.rate_hz;
+  for (const PlantEffect& effect : effects) {
+    if (effect.interface != "network") continue;
+    if (effect.name == "latency") delays_.emplace_back([t = effect.of("delay_s") * rate_hz] { return t; });
+    if (effect.name == "clock_offset") delays_.emplace_back([t = effect.of("offset_s") * rate_hz] { return t; });
+    if (effect.name == "clock_drift") delays_.push_back(drifting(effect, rate_hz));
+    if (effect.name == "loss") delays_.push_back(bursts_of_loss(effect));
+    if (effect.name == "jitter") {
+      delays_.emplace_back(
+          [mean = effect.of("jitter_s") * rate_hz, random = RandomStream{effect.seed(), 0, "jitter"}]() mutable {
+            return -std::log(1.0 - random.uniform(0.0, 1.0)) * mean;
+          });
+    }
+  }
+}
+
+double NetworkStage::receive(double sent_m) {
+  const std::size_t now = sent_m_.size();
+  sent_m_.push_back(sent_m);
+  double delay = 0.0;
+  for (const auto& of_packet : delays_) delay += of_packet();
+  if (std::isfinite(delay)) {
+    const auto arrival = static_cast<std::size_t>(std::ceil(static_cast<double>(now) + delay - 1e-9));
+    if (arriving_.size() <= arrival) arriving_.resize(arrival + 1);
+    arriving_[arrival].push_back(now);
+  }
+  if (now < arriving_.size()) {
+    for (const std::size_t packet : arriving_[now]) newest_ = std::max(newest_, packet);
+  }
+  return sent_m_[newest_];
+}
+
+namespace {
+
+/// Polynomial through order + 1 past targets, evaluated `ahead_samples` ahead of the newest.
+double extrapolated(const History& target, int order, double ahead_samples) {
+  const std::size_t now = target.size() - 1;
   const auto spacing = static_cast<std::size_t>(std::max(1.0, std::round(ahead_samples)));
   const double ahead = ahead_samples / static_cast<double>(spacing);
   const int degree = std::min(order, static_cast<int>(now / spacing));
@@ -52,243 +87,294 @@ double extrapolated(const History& target, std::size_t now, int order, double ah
 
 }  // namespace
 
-History through_network(const Site& site, const PlantEffects& effects, const History& sent_m) {
-  const History travel = travel_samples(site, effects, sent_m.size());
-  History received(sent_m.size());
-  // The newest packet that has arrived by each sample: packets may overtake each other.
-  std::vector<std::vector<std::size_t>> arriving(sent_m.size());
-  for (std::size_t i = 0; i < sent_m.size(); ++i) {
-    const double arrival = std::ceil(static_cast<double>(i) + travel[i] - 1e-9);
-    if (arrival < static_cast<double>(sent_m.size())) {
-      arriving[static_cast<std::size_t>(std::max(0.0, arrival))].push_back(i);
+CompensatorStage::CompensatorStage(const Site& site, const PlantEffects& effects) : order_{site.compensator.order} {
+  double delay_s = site.compensator.delay_s;
+  for (const PlantEffect& effect : effects) {
+    if (effect.interface != "compensator") continue;
+    if (effect.name == "setting_mismatch") delay_s = effect.of("delay_s");
+    if (effect.name == "bias") bias_m_ += effect.of("bias_m");
+  }
+  ahead_samples_ = delay_s * site.rate_hz;
+}
+
+double CompensatorStage::command(double target_m) {
+  target_m_.push_back(target_m);
+  return bias_m_ + (ahead_samples_ > 0.0 ? extrapolated(target_m_, order_, ahead_samples_) : target_m);
+}
+
+ServoLoop ServoLoop::first_order(double bandwidth_hz, double period_s) {
+  ServoLoop loop;
+  loop.period_s_ = period_s;
+  loop.w_ = kTwoPi * bandwidth_hz;
+  return loop;
+}
+
+ServoLoop ServoLoop::second_order(double natural_frequency_hz, double damping_ratio, double period_s) {
+  ServoLoop loop = first_order(natural_frequency_hz, period_s);
+  loop.damping_ratio_ = damping_ratio;
+  loop.has_two_poles_ = true;
+  return loop;
+}
+
+double ServoLoop::next(double input) {
+  const double before = std::exchange(input_, input);
+  const double middle = 0.5 * (before + input);
+  const double h = period_s_;
+  if (!has_two_poles_) {
+    const double k1 = w_ * (before - x_);
+    const double k2 = w_ * (middle - x_ - 0.5 * h * k1);
+    const double k3 = w_ * (middle - x_ - 0.5 * h * k2);
+    const double k4 = w_ * (input - x_ - h * k3);
+    return x_ += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  const auto pull = [&](double u, double x, double v) { return w_ * w_ * (u - x) - 2.0 * damping_ratio_ * w_ * v; };
+  const double a1 = pull(before, x_, v_);
+  const double v2 = v_ + 0.5 * h * a1;
+  const double a2 = pull(middle, x_ + 0.5 * h * v_, v2);
+  const double v3 = v_ + 0.5 * h * a2;
+  const double a3 = pull(middle, x_ + 0.5 * h * v2, v3);
+  const double v4 = v_ + h * a3;
+  const double a4 = pull(input, x_ + h * v3, v4);
+  x_ += h / 6.0 * (v_ + 2.0 * v2 + 2.0 * v3 + v4);
+  v_ += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+  return x_;
+}
+
+namespace {
+
+using Part = std::function<double(double)>;
+
+/// Of the pole of a valve, over that of the loop.
+constexpr double kValveSpeed = 8.0;
+
+Part servo_part(ServoLoop loop) {
+  return [loop](double u) mutable { return loop.next(u); };
+}
+
+/// The user's own model, with the numbers that the real one has.
+void add_base(const Site& site, const PlantEffects& effects, double period_s, std::vector<Part>& parts) {
+  TransferModel base = site.transfer_system;
+  if (base.kind == TransferKind::ideal || base.kind == TransferKind::first_order) base.delay_s = 0.0;
+  for (const PlantEffect& effect : effects) {
+    if (effect.interface != "transfer_system") continue;
+    const auto real = [&](const char* name, double& number) {
+      if (const auto found = effect.parameters.find(name); found != effect.parameters.end()) number = found->second;
+    };
+    real("true_natural_frequency_hz", base.natural_frequency_hz);
+    real("true_bandwidth_hz", base.bandwidth_hz);
+    // Negative: the model of the user has more delay than the real site.
+    if (effect.name == "delay") base.delay_s = std::max(0.0, base.delay_s + effect.of("delay_s"));
+  }
+  if (base.delay_s > 0.0) {
+    parts.emplace_back([line = DelayLine{base.delay_s / period_s}](double u) mutable { return line.next(u); });
+  }
+  if (base.kind == TransferKind::first_order) {
+    parts.push_back(servo_part(ServoLoop::first_order(base.bandwidth_hz, period_s)));
+  } else if (base.kind == TransferKind::second_order) {
+    parts.push_back(servo_part(ServoLoop::second_order(base.natural_frequency_hz, base.damping_ratio, period_s)));
+  }
+}
+
+/// The valve is open as far as it goes: the actuator catches up at 1 kHz, but never faster than the flow lets it,
+/// to which it comes near smoothly.
+Part flow_limit(double velocity_m_per_s, double period_s) {
+  return [velocity_m_per_s, period_s, y = 0.0, started = false](double x) mutable {
+    if (!std::exchange(started, true)) y = x;
+    const double asked = kTwoPi * 1000.0 * (x - y) / velocity_m_per_s;
+    return y += period_s * velocity_m_per_s * std::tanh(asked);
+  };
+}
+
+/// Seals hold the piston after each stop until the demand is `breakaway_m` ahead; then it catches up at a velocity
+/// that the pressure behind it gives, within milliseconds, and follows until the next reversal of the demand.
+Part stuck(const PlantEffect& effect, double period_s) {
+  const double breakaway_m = effect.of("breakaway_m");
+  const double reach_m = breakaway_m * kTwoPi * effect.of("catching_up_hz") * period_s;
+  return [breakaway_m, reach_m, is_stuck = true, has_caught_up = false, direction = 0.0, past = 0.0,
+          y = 0.0](double x) mutable {
+    const double step = x - std::exchange(past, x);
+    if (!is_stuck && step * direction < 0.0) is_stuck = true;
+    if (is_stuck && std::abs(x - y) > breakaway_m) {
+      is_stuck = false;
+      has_caught_up = false;
+      direction = x - y;
     }
+    if (is_stuck) return y;
+    has_caught_up = has_caught_up || std::abs(x - y) <= reach_m;
+    return y = has_caught_up ? x : y + std::clamp(x - y, -reach_m, reach_m);
+  };
+}
+
+/// A clamp whose last twentieth is a cushion.
+double cushioned(double x, double limit) {
+  const double soft = 0.05 * limit;
+  const double over = std::abs(x) - (limit - soft);
+  return over <= 0.0 ? x : std::copysign(limit - soft + soft * std::tanh(over / soft), x);
+}
+
+/// Two poles, a valve's behind the effect's own.
+Part bandwidth(const PlantEffect& effect, double period_s) {
+  if (!effect.parameters.contains("damping_ratio")) {
+    return servo_part(ServoLoop::second_order(effect.of("bandwidth_hz") * std::sqrt(kValveSpeed),
+                                              0.5 * (1.0 + kValveSpeed) / std::sqrt(kValveSpeed), period_s));
   }
-  std::size_t newest = 0;
-  for (std::size_t i = 0; i < sent_m.size(); ++i) {
-    for (const std::size_t packet : arriving[i]) newest = std::max(newest, packet);
-    received[i] = sent_m[newest];
+  return servo_part(ServoLoop::second_order(effect.of("natural_frequency_hz"), effect.of("damping_ratio"), period_s));
+}
+
+/// A frame whose joints close under load, and which gives within milliseconds: later than a damper behind it pushes,
+/// as the force that loads it is that of the step before.
+Part frame(const PlantEffect& effect, double viscous_n_s_per_m, double period_s) {
+  const double k = effect.of("stiffness_n_per_m");
+  const double following = 1.0 - std::exp(-period_s / (1e-3 + 4.0 * viscous_n_s_per_m / k));
+  return [k, following, closing_n = effect.of("closing_n"), given = 0.0](double force) mutable {
+    const double share = force / closing_n;
+    return given += following * (force / k * (1.0 + 0.2 / (1.0 + share * share)) - given);
+  };
+}
+
+Part part_of(const PlantEffect& effect, double period_s) {
+  const std::string_view name = effect.name;
+  if (name == "bandwidth") {
+    const bool is_of_the_base =
+        effect.parameters.contains("true_natural_frequency_hz") || effect.parameters.contains("true_bandwidth_hz");
+    return is_of_the_base ? Part{} : bandwidth(effect, period_s);
   }
+  if (name == "gain") return [gain = effect.of("gain")](double x) { return gain * x; };
+  if (name == "backlash") {
+    return [slot = MovingSlot{effect.of("width_m"), 0.1}](double x) mutable { return slot.next(x); };
+  }
+  if (name == "deadband") {  // of a valve whose edges are a little worn
+    return [half = effect.of("half_width_m")](double x) { return x - half * std::tanh(x / half); };
+  }
+  if (name == "velocity_limit") return flow_limit(effect.of("velocity_m_per_s"), period_s);
+  if (name == "stroke_limit") return [stroke = effect.of("stroke_m")](double x) { return cushioned(x, stroke); };
+  if (name == "stiction") return stuck(effect, period_s);
+  return foreign_motion(effect, period_s);
+}
+
+}  // namespace
+
+ActuatorStage::ActuatorStage(const Site& site, const PlantEffects& effects, double period_s) {
+  add_base(site, effects, period_s, parts_);
+  double viscous_n_s_per_m = site.known_damping_n_s_per_m;
+  for (const PlantEffect& effect : effects) {
+    if (effect.name == "viscous_damping") viscous_n_s_per_m += std::abs(effect.of("damping_n_s_per_m"));
+  }
+  for (const PlantEffect& effect : effects) {
+    if (effect.interface != "transfer_system") continue;
+    if (Part part = part_of(effect, period_s)) parts_.push_back(std::move(part));
+    if (effect.name == "compliance") give_ = frame(effect, viscous_n_s_per_m, period_s);
+  }
+}
+
+double ActuatorStage::move(double command_m, double load_n) {
+  for (const Part& part : parts_) command_m = part(command_m);
+  return give_ ? command_m - give_(load_n) : command_m;
+}
+
+namespace {
+
+using ReadingPart = std::function<double(const MotionPoint&, double)>;
+
+/// Two equal poles that together lag by the time constant.
+ReadingPart lagging(double time_constant_s, double period_s) {
+  const double decay = std::exp(-2.0 * period_s / time_constant_s);
+  return [decay, past = 0.0, first = 0.0, second = 0.0, started = false](const MotionPoint& /*at*/, double v) mutable {
+    if (!std::exchange(started, true)) past = first = second = v;
+    const double middle = 0.5 * (v + std::exchange(past, v));
+    const double before = first;
+    first = middle + (first - middle) * decay;
+    const double between = 0.5 * (before + first);
+    second = between + (second - between) * decay;
+    return second;
+  };
+}
+
+/// A converter whose steps are up to a tenth wider or narrower than they should be.
+ReadingPart converted(double step) {
+  return [step](const MotionPoint& /*at*/, double v) {
+    const double code = v / step;
+    return step * std::round(code + 0.1 * std::sin(kTwoPi * code / 7.3));
+  };
+}
+
+ReadingPart reading_part(const PlantEffect& effect, double period_s) {
+  const std::string_view name = effect.name;
+  // Units differ between the two sensors, the keys with them.
+  const auto value = [&](const char* of_force, const char* of_displacement) {
+    return effect.interface == "force_sensor" ? effect.of(of_force) : effect.of(of_displacement);
+  };
+  if (name == "gain") return [gain = effect.of("gain")](const MotionPoint& /*at*/, double v) { return gain * v; };
+  if (name == "bias")
+    return [bias = value("bias_n", "bias_m")](const MotionPoint& /*at*/, double v) { return v + bias; };
+  if (name == "drift") {  // of a bridge that warms: ever more slowly
+    return [rate = value("drift_n_per_s", "drift_m_per_s"), warming_s = effect.of("warming_s")](const MotionPoint& at,
+                                                                                                double v) {
+      return v + rate * warming_s * (1.0 - std::exp(-at.time_s / warming_s));
+    };
+  }
+  if (name == "lag") return lagging(effect.of("time_constant_s"), period_s);
+  if (name == "time_skew") {
+    return [line = DelayLine{effect.of("skew_s") / period_s}](const MotionPoint& /*at*/, double v) mutable {
+      return line.next(v);
+    };
+  }
+  if (name == "saturation") {
+    return [limit = effect.of("limit_n")](const MotionPoint& /*at*/, double v) { return cushioned(v, limit); };
+  }
+  if (name == "quantization") return converted(value("step_n", "step_m"));
+  return foreign_reading(effect, period_s);
+}
+
+}  // namespace
+
+SensorStage::SensorStage(const char* interface, const PlantEffects& effects, double period_s) {
+  for (const PlantEffect& effect : effects) {
+    if (effect.interface != interface) continue;
+    if (ReadingPart part = reading_part(effect, period_s)) parts_.push_back(std::move(part));
+  }
+}
+
+double SensorStage::read(const MotionPoint& motion, double truth) {
+  for (const ReadingPart& part : parts_) truth = part(motion, truth);
+  return truth;
+}
+
+History through_network(const Site& site, const PlantEffects& effects, const History& sent_m) {
+  NetworkStage network{site, effects};
+  History received(sent_m.size());
+  std::ranges::transform(sent_m, received.begin(), [&](double sent) { return network.receive(sent); });
   return received;
 }
 
 History compensated(const Site& site, const PlantEffects& effects, const History& target_m) {
-  double delay_s = site.compensator.delay_s;
-  double bias_m = 0.0;
-  for (const PlantEffect& effect : effects) {
-    if (effect.interface != "compensator") continue;
-    if (effect.name == "setting_mismatch") delay_s = effect.of("delay_s");
-    if (effect.name == "bias") bias_m = effect.of("bias_m");
-  }
-  History command = target_m;
-  if (delay_s > 0.0) {
-    for (std::size_t i = 0; i < command.size(); ++i) {
-      command[i] = extrapolated(target_m, i, site.compensator.order, delay_s * site.rate_hz);
-    }
-  }
-  for (double& value : command) value += bias_m;
+  CompensatorStage compensator{site, effects};
+  History command(target_m.size());
+  std::ranges::transform(target_m, command.begin(), [&](double target) { return compensator.command(target); });
   return command;
 }
 
-namespace {
-
-/// x' = 2 pi f (u - x).
-History first_order(const History& u, double period_s, double bandwidth_hz) {
-  const double rate = kTwoPi * bandwidth_hz;
-  History x(u.size());
-  for (std::size_t i = 1; i < u.size(); ++i) {
-    const double middle = 0.5 * (u[i - 1] + u[i]);
-    const double k1 = rate * (u[i - 1] - x[i - 1]);
-    const double k2 = rate * (middle - x[i - 1] - 0.5 * period_s * k1);
-    const double k3 = rate * (middle - x[i - 1] - 0.5 * period_s * k2);
-    const double k4 = rate * (u[i] - x[i - 1] - period_s * k3);
-    x[i] = x[i - 1] + period_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-  }
-  return x;
-}
-
-/// x'' = w^2 (u - x) - 2 zeta w x'.
-History second_order(const History& u, double period_s, double natural_frequency_hz, double damping_ratio) {
-  const double w = kTwoPi * natural_frequency_hz;
-  const auto pull = [&](double input, double x, double v) { return w * w * (input - x) - 2.0 * damping_ratio * w * v; };
-  History motion(u.size());
-  double x = 0.0;
-  double v = 0.0;
-  for (std::size_t i = 1; i < u.size(); ++i) {
-    const double middle = 0.5 * (u[i - 1] + u[i]);
-    const double h = period_s;
-    const double a1 = pull(u[i - 1], x, v);
-    const double v2 = v + 0.5 * h * a1;
-    const double a2 = pull(middle, x + 0.5 * h * v, v2);
-    const double v3 = v + 0.5 * h * a2;
-    const double a3 = pull(middle, x + 0.5 * h * v2, v3);
-    const double v4 = v + h * a3;
-    const double a4 = pull(u[i], x + h * v3, v4);
-    x += h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-    v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-    motion[i] = x;
-  }
-  return motion;
-}
-
-History base_response(const TransferModel& model, const History& command, double period_s) {
-  const double fine_delay = model.delay_s / period_s;
-  switch (model.kind) {
-    case TransferKind::ideal: return spline(command);
-    case TransferKind::delay: return delayed(spline(command), fine_delay);
-    case TransferKind::first_order: return first_order(straight_lines(command), period_s, model.bandwidth_hz);
-    case TransferKind::second_order:
-      return second_order(delayed(straight_lines(command), fine_delay), period_s, model.natural_frequency_hz,
-                          model.damping_ratio);
-  }
-  return {};
-}
-
-/// Play: the output rests until the input has crossed the clearance.
-History played(const History& x, double clearance_m) {
-  History result(x.size());
-  double y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    y = std::clamp(y, x[i] - 0.5 * clearance_m, x[i] + 0.5 * clearance_m);
-    result[i] = y;
-  }
-  return result;
-}
-
-History rate_limited(const History& x, double period_s, double velocity_m_per_s) {
-  History result = x;
-  const double step = velocity_m_per_s * period_s;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    result[i] = result[i - 1] + std::clamp(x[i] - result[i - 1], -step, step);
-  }
-  return result;
-}
-
-/// Seals hold the piston after each stop until the demand is `breakaway_m` ahead; then it catches
-/// up within milliseconds and follows until the next reversal of the demand.
-History stuck(const History& x, double period_s, double breakaway_m) {
-  const double catching_up = 1.0 - std::exp(-kTwoPi * 150.0 * period_s);
-  History result(x.size());
-  bool is_stuck = true;
-  double direction = 0.0;
-  double y = 0.0;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    const double step = x[i] - x[i - 1];
-    if (!is_stuck && step * direction < 0.0) is_stuck = true;
-    if (is_stuck && std::abs(x[i] - y) > breakaway_m) {
-      is_stuck = false;
-      direction = x[i] - y;
-    }
-    if (!is_stuck) y += catching_up * (x[i] - y);
-    result[i] = y;
-  }
-  return result;
-}
-
-void apply(const PlantEffect& effect, double period_s, History& x) {
-  if (effect.name == "delay") {
-    // Negative: the model of the user has more delay than the real site.
-    x = delayed(x, effect.of("delay_s") / period_s);
-  } else if (effect.name == "bandwidth") {
-    if (effect.parameters.contains("true_natural_frequency_hz")) return;  // in the base itself
-    x = effect.parameters.contains("damping_ratio")
-            ? second_order(x, period_s, effect.of("natural_frequency_hz"), effect.of("damping_ratio"))
-            : first_order(x, period_s, effect.of("bandwidth_hz"));
-  } else if (effect.name == "gain") {
-    for (double& value : x) value *= effect.of("gain");
-  } else if (effect.name == "backlash") {
-    x = played(x, effect.of("width_m"));
-  } else if (effect.name == "deadband") {
-    for (double& value : x) value -= std::clamp(value, -effect.of("half_width_m"), effect.of("half_width_m"));
-  } else if (effect.name == "velocity_limit") {
-    x = rate_limited(x, period_s, effect.of("velocity_m_per_s"));
-  } else if (effect.name == "stroke_limit") {
-    for (double& value : x) value = std::clamp(value, -effect.of("stroke_m"), effect.of("stroke_m"));
-  } else if (effect.name == "stiction") {
-    x = stuck(x, period_s, effect.of("breakaway_m"));
-  } else if (effect.name != "compliance") {
-    apply_foreign_to_actuator(effect, period_s, x);
-  }
-}
-
-/// The frame deforms under the force of the specimen: x = piston - F(x) / k, by repeated
-/// substitution, which shrinks the error by the ratio of specimen to frame stiffness each time.
-MotionHistory on_frame(const History& piston, double period_s, double frame_stiffness, const LoadOf& load) {
-  MotionHistory motion = motion_of(piston, period_s);
-  for (int round = 0; round < 12; ++round) {
-    History x = piston;
-    add(x, load(motion), -1.0 / frame_stiffness);
-    motion = motion_of(std::move(x), period_s);
-  }
-  return motion;
-}
-
-}  // namespace
-
-MotionHistory actuator_motion(const Site& site, const PlantEffects& effects, const History& command_m,
-                              const LoadOf& load) {
+MotionHistory actuator_motion(const Site& site, const PlantEffects& effects, const History& command_m) {
   const double period_s = 1.0 / (site.rate_hz * static_cast<double>(kFineSteps));
-  TransferModel base = site.transfer_system;
-  for (const PlantEffect& effect : effects) {
-    const auto wrong = effect.parameters.find("true_natural_frequency_hz");
-    if (wrong != effect.parameters.end()) base.natural_frequency_hz = wrong->second;
+  const bool has_servo =
+      site.transfer_system.kind != TransferKind::ideal && site.transfer_system.kind != TransferKind::delay;
+  History x = has_servo ? straight_lines(command_m) : spline(command_m);
+  ActuatorStage actuator{site, effects, period_s};
+  SpecimenStage specimen{site, effects, period_s};
+  Differentiator motion{period_s};
+  double load_n = 0.0;
+  const bool is_on_frame = std::ranges::any_of(effects, [](const PlantEffect& e) { return e.name == "compliance"; });
+  for (double& value : x) {
+    value = actuator.move(value, load_n);
+    if (is_on_frame) load_n = specimen.force(motion.next(value));
   }
-  History x = base_response(base, command_m, period_s);
-  double frame_stiffness = 0.0;
-  for (const PlantEffect& effect : effects) {
-    if (effect.interface != "transfer_system") continue;
-    if (effect.name == "compliance") frame_stiffness = effect.of("stiffness_n_per_m");
-    apply(effect, period_s, x);
-  }
-  if (frame_stiffness > 0.0) return on_frame(x, period_s, frame_stiffness, load);
   return motion_of(std::move(x), period_s);
 }
 
-namespace {
-
-/// Anti-aliasing filter of one pole, driven by straight lines.
-History lagging(const History& truth, double period_s, double time_constant_s) {
-  const double decay = std::exp(-period_s / time_constant_s);
-  History read(truth.size());
-  double state = truth.front();
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const double middle = 0.5 * (truth[i] + truth[i == 0 ? 0 : i - 1]);
-    state = middle + (state - middle) * decay;
-    read[i] = state;
-  }
-  return read;
-}
-
-}  // namespace
-
 History reading(const char* interface, const PlantEffects& effects, const MotionHistory& motion, const History& truth) {
-  History read = truth;
-  for (const PlantEffect& effect : effects) {
-    if (effect.interface != interface) continue;
-    const std::string& name = effect.name;
-    // Units differ between the two sensors, the keys with them.
-    const auto value = [&](const char* of_force, const char* of_displacement) {
-      return effect.interface == "force_sensor" ? effect.of(of_force) : effect.of(of_displacement);
-    };
-    if (name == "gain") {
-      for (double& v : read) v *= effect.of("gain");
-    } else if (name == "bias") {
-      for (double& v : read) v += value("bias_n", "bias_m");
-    } else if (name == "drift") {
-      const double rate = value("drift_n_per_s", "drift_m_per_s");
-      for (std::size_t i = 0; i < read.size(); ++i) read[i] += rate * static_cast<double>(i) * motion.period_s;
-    } else if (name == "lag") {
-      read = lagging(read, motion.period_s, effect.of("time_constant_s"));
-    } else if (name == "time_skew") {
-      read = delayed(read, effect.of("skew_s") / motion.period_s);
-    } else if (name == "saturation") {
-      for (double& v : read) v = std::clamp(v, -effect.of("limit_n"), effect.of("limit_n"));
-    } else if (name == "quantization") {
-      const double step = value("step_n", "step_m");
-      for (double& v : read) v = step * std::round(v / step);
-    } else {
-      read_with_foreign(effect, motion, read);
-    }
-  }
+  SensorStage sensor{interface, effects, motion.period_s};
+  History read(truth.size());
+  for (std::size_t i = 0; i < read.size(); ++i) read[i] = sensor.read(motion.at(i), truth[i]);
   return read;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -99,6 +100,7 @@ AnsweredCause read_cause(const Json& json) {
   AnsweredCause cause;
   cause.interface = json.at("interface").get<std::string>();
   cause.effect = json.at("effect").get<std::string>();
+  if (const auto law = json.find("law"); law != json.end() && law->is_string()) cause.law = law->get<std::string>();
   cause.probability = number_in(json, "probability").value_or(0.0);
   const Json parameters = json.value("parameters", Json::object());
   for (const auto& [name, parameter] : parameters.items()) {
@@ -129,13 +131,18 @@ Answer read_answer(std::string_view text) {
     for (const Json& cause : json.at("causes")) answer.causes.push_back(read_cause(cause));
     std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
     double largest = 0.0;
+    std::string at_largest;
     const Json places = json.value("where", Json::array());
     for (const Json& place : places) {
+      const std::string interface = place.at("interface").get<std::string>();
+      const auto verdict = place.find("verdict");
+      if (verdict != place.end() && *verdict == "unknown") answer.faulty_interfaces.push_back(interface);
       const double share = number_in(place, "share").value_or(0.0);
       if (share <= largest) continue;
       largest = share;
-      answer.faulty_interface = place.at("interface").get<std::string>();
+      at_largest = interface;
     }
+    if (!at_largest.empty()) answer.faulty_interfaces.push_back(at_largest);
     const Json shrink = json.value("shrink", Json::object());
     if (const auto at = shrink.find("interface"); at != shrink.end() && at->is_object()) {
       answer.variance_removed = number_in(*at, "variance_removed");
@@ -157,25 +164,43 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 TruthClass class_named(const std::string& name) {
-  for (const TruthClass kind : {TruthClass::none, TruthClass::named, TruthClass::unknown, TruthClass::pair}) {
+  for (const TruthClass kind : {TruthClass::none, TruthClass::named, TruthClass::law, TruthClass::pair,
+                                TruthClass::partial, TruthClass::unknown}) {
     if (name_of(kind) == name) return kind;
   }
-  throw std::runtime_error{"truth: '" + name + "' is unknown; expected none, named, unknown or pair"};
+  throw std::runtime_error{"truth: '" + name + "' is unknown; expected none, named, law, pair, partial or unknown"};
+}
+
+/// Keys of earlier batches have fewer lists.
+std::vector<Cause> causes_in(const Json& json, const char* name) {
+  std::vector<Cause> causes;
+  for (const Json& cause : json.value(name, Json::array())) {
+    causes.push_back({cause.at("interface").get<std::string>(), cause.at("effect").get<std::string>(),
+                      cause.value("law", std::string{})});
+  }
+  return causes;
 }
 
 KeyCase read_case(const Json& json) {
   KeyCase result;
   result.name = json.at("case").get<std::string>();
   result.truth = class_named(json.at("truth").get<std::string>());
-  for (const Json& effect : json.at("effects")) {
-    result.effects.push_back({effect.at("interface").get<std::string>(), effect.at("effect").get<std::string>(),
-                              effect.at("parameters").get<Parameters>()});
-  }
-  for (const Json& cause : json.at("acceptable")) {
-    result.acceptable.push_back({cause.at("interface").get<std::string>(), cause.at("effect").get<std::string>()});
-  }
-  result.gap_at = json.at("gap_at").get<std::string>();
   result.gap_to_floor = json.at("gap_to_floor").get<double>();
+  for (const Json& effect : json.at("effects")) {
+    PlantEffect read{effect.at("interface").get<std::string>(), effect.at("effect").get<std::string>(),
+                     effect.at("parameters").get<Parameters>(), effect.value("plant_law", std::string{})};
+    std::vector<Cause> acceptable = causes_in(effect, "acceptable");
+    if (!effect.contains("acceptable")) acceptable = {{read.interface, read.name}};
+    result.effects.push_back(std::move(read));
+    result.effect_acceptable.push_back(std::move(acceptable));
+    result.effect_gaps_to_floor.push_back(effect.value("gap_to_floor", result.gap_to_floor));
+  }
+  result.acceptable = causes_in(json, "acceptable");
+  result.acceptable_in_part = causes_in(json, "acceptable_in_part");
+  result.tolerated = causes_in(json, "tolerated");
+  result.is_separable = json.value("is_separable", result.acceptable.size() == 1);
+  result.is_closed_loop = json.value("is_closed_loop", false);
+  result.gap_at = json.at("gap_at").get<std::string>();
   result.held_out_gap_to_floor = json.at("held_out_gap_to_floor").get<double>();
   result.variance_removed = json.at("variance_removed_by_true_model").get<double>();
   return result;
@@ -201,13 +226,23 @@ namespace {
 constexpr double kClearGapToFloor = 2.0;
 /// An effect below the noise floor is correctly not found.
 constexpr double kHiddenGapToFloor = 1.0;
+/// From here on an answer is sure.
+constexpr double kSure = 0.95;
 
-bool is_acceptable(const KeyCase& key, const AnsweredCause& cause) {
-  return std::ranges::find(key.acceptable, Cause{cause.interface, cause.effect}) != key.acceptable.end();
+bool is_in(const std::vector<Cause>& causes, const AnsweredCause& answered) {
+  return std::ranges::any_of(causes, [&](const Cause& cause) {
+    return cause.interface == answered.interface && cause.effect == answered.effect &&
+           (cause.law.empty() || cause.law == answered.law);
+  });
 }
 
 bool is(const PlantEffect& effect, const AnsweredCause& cause) {
   return effect.interface == cause.interface && effect.name == cause.effect;
+}
+
+/// Whether a cause is right in an answer with this verdict.
+bool is_acceptable(const KeyCase& key, const Answer& answer, const AnsweredCause& cause) {
+  return is_in(key.acceptable, cause) || (answer.verdict == "partial" && is_in(key.acceptable_in_part, cause));
 }
 
 std::set<std::string> right_interfaces(const KeyCase& key) {
@@ -227,7 +262,8 @@ bool interface_is_right(const KeyCase& key, const Answer& answer) {
   if (is_rightly_silent(key, answer)) return true;
   const std::set<std::string> right = right_interfaces(key);
   if (!answer.names_a_cause() || answer.causes.empty()) {
-    return answer.verdict == "unknown" && right.contains(answer.faulty_interface);
+    return answer.verdict == "unknown" &&
+           std::ranges::any_of(answer.faulty_interfaces, [&](const std::string& at) { return right.contains(at); });
   }
   if (answer.is_set()) {
     return std::ranges::any_of(answer.causes, [&](const AnsweredCause& c) { return right.contains(c.interface); });
@@ -237,8 +273,8 @@ bool interface_is_right(const KeyCase& key, const Answer& answer) {
 
 bool cause_is_right(const KeyCase& key, const Answer& answer) {
   if (!answer.names_a_cause() || answer.causes.empty()) return false;
-  if (!answer.is_set()) return is_acceptable(key, answer.causes.front());
-  return std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is_acceptable(key, cause); });
+  const auto is_right = [&](const AnsweredCause& cause) { return is_acceptable(key, answer, cause); };
+  return answer.is_set() ? std::ranges::any_of(answer.causes, is_right) : is_right(answer.causes.front());
 }
 
 /// The probability that the named effect is right; of a set, that one of its members is.
@@ -266,23 +302,50 @@ std::vector<ParameterError> errors_of(const PlantEffect& effect, const AnsweredC
 }
 
 void mark_named(const KeyCase& key, const Answer& answer, MarkedCase& marked) {
-  const PlantEffect& effect = key.effects.front();
   const bool has_causes = answer.names_a_cause() && !answer.causes.empty();
-  if (key.acceptable.size() == 1) {
-    marked.is_single_name_right = has_causes && !answer.is_set() && is(effect, answer.causes.front());
+  if (key.is_separable) {
+    marked.is_single_name_right = has_causes && !answer.is_set() && cause_is_right(key, answer);
   }
   if (!has_causes) return;
   marked.causes_answered = answer.is_set() ? answer.causes.size() : 1;
   if (answer.is_set()) {
     marked.is_true_one_covered =
-        std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is(effect, cause); });
-  }
-  for (const AnsweredCause& cause : answer.causes) {
-    if (is(effect, cause)) marked.parameter_errors = errors_of(effect, cause);
+        std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is(key.effects.front(), cause); });
   }
 }
 
+/// Each effect by a cause of its own: an order of the causes whose first ones are right for the effects.
+bool finds_all(const KeyCase& key, const Answer& answer) {
+  if (!answer.names_a_cause() || answer.causes.size() < key.effects.size()) return false;
+  std::vector<std::size_t> order(answer.causes.size());
+  std::iota(order.begin(), order.end(), 0U);
+  do {
+    bool all = true;
+    for (std::size_t e = 0; e < key.effects.size(); ++e) {
+      all = all && is_in(key.effect_acceptable[e], answer.causes[order[e]]);
+    }
+    if (all) return true;
+  } while (std::ranges::next_permutation(order).found);
+  return false;
+}
+
+bool is_of_the_library(const KeyCase& key) {
+  return key.truth == TruthClass::named || key.truth == TruthClass::law || key.truth == TruthClass::pair;
+}
+
 }  // namespace
+
+Answer without_tolerated(const KeyCase& key, Answer answer) {
+  if (!answer.names_a_cause() || answer.causes.empty()) return answer;
+  if (answer.is_set() && cause_is_right(key, answer)) return answer;
+  const bool is_set = answer.is_set();
+  const std::size_t dropped =
+      std::erase_if(answer.causes, [&](const AnsweredCause& cause) { return is_in(key.tolerated, cause); });
+  if (dropped == 0 || (!answer.causes.empty() && !is_set)) return answer;
+  answer.causes.clear();
+  answer.verdict = answer.verdict == "partial" ? "unknown" : "none";
+  return answer;
+}
 
 bool MarkedCase::is_clear() const {
   return key.truth == TruthClass::none ||
@@ -296,21 +359,37 @@ bool MarkedCase::is_wrong() const {
 MarkedCase mark(const KeyCase& key, const std::optional<Answer>& given) {
   MarkedCase marked;
   marked.key = key;
-  marked.answer.verdict = "missing";
-  if (given) marked.answer = *given;
+  marked.given.verdict = "missing";
+  if (given) marked.given = *given;
+  marked.answer = without_tolerated(key, marked.given);
   const Answer& answer = marked.answer;
-  const bool is_known = key.truth == TruthClass::named || key.truth == TruthClass::pair;
+  const bool is_right = cause_is_right(key, answer);
+  const bool is_cleared = key.truth == TruthClass::none || key.truth == TruthClass::unknown;
   if (key.truth != TruthClass::none) marked.is_interface_right = interface_is_right(key, answer);
-  if (!is_known) marked.is_falsely_named = answer.names_a_cause();
-  if (is_known) marked.is_effect_right = is_rightly_silent(key, answer) || cause_is_right(key, answer);
+  if (is_cleared) marked.is_falsely_named = answer.names_a_cause() && !is_right;
+  if (is_of_the_library(key)) marked.is_effect_right = is_rightly_silent(key, answer) || is_right;
+  if (key.truth == TruthClass::partial) marked.is_partial_right = answer.verdict == "partial" && is_right;
   if (key.truth == TruthClass::named) mark_named(key, answer, marked);
-  if (key.truth == TruthClass::pair) {
-    marked.are_both_found = std::ranges::all_of(key.effects, [&](const PlantEffect& effect) {
-      return std::ranges::any_of(answer.causes, [&](const AnsweredCause& cause) { return is(effect, cause); });
-    });
+  const bool is_single = key.truth == TruthClass::named || key.truth == TruthClass::law;
+  if (is_single && is_right && !answer.is_set()) {
+    marked.has_spurious_cause = std::ranges::any_of(
+        answer.causes, [&](const AnsweredCause& cause) { return !is_acceptable(key, answer, cause); });
   }
-  if (answer.names_a_cause() && !answer.causes.empty()) marked.forecast = forecast_of(key, answer);
-  if (is_known && cause_is_right(key, answer)) {
+  if (key.truth == TruthClass::pair &&
+      std::ranges::all_of(key.effect_gaps_to_floor, [](double gap) { return gap >= kClearGapToFloor; })) {
+    marked.are_both_found = finds_all(key, answer);
+  }
+  for (const PlantEffect& effect : key.effects) {
+    for (const AnsweredCause& cause : answer.causes) {
+      if (!answer.names_a_cause() || !is(effect, cause)) continue;
+      std::ranges::move(errors_of(effect, cause), std::back_inserter(marked.parameter_errors));
+    }
+  }
+  if (answer.names_a_cause() && !answer.causes.empty()) {
+    marked.forecast = forecast_of(key, answer);
+    marked.is_sure_and_wrong = answer.verdict != "partial" && marked.forecast->probability >= kSure && !is_right;
+  }
+  if (is_of_the_library(key) && is_right) {
     marked.variance_short = std::max(0.0, key.variance_removed) - answer.variance_removed.value_or(0.0);
   }
   return marked;

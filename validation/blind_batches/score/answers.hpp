@@ -50,6 +50,7 @@ struct AnsweredParameter {
 struct AnsweredCause {
   std::string interface;
   std::string effect;
+  std::string law = {};  // of `hysteresis_law`, or that of `yielding`
   double probability = 0.0;
   std::map<std::string, AnsweredParameter> parameters;
 };
@@ -57,8 +58,9 @@ struct AnsweredCause {
 /// The fields of a diagnosis.json (hybridtest/diagnosis/1) that scoring uses.
 struct Answer {
   std::string verdict;
-  std::vector<AnsweredCause> causes;       // most probable first
-  std::string faulty_interface;            // of the largest share; empty when none is named
+  std::vector<AnsweredCause> causes;  // most probable first
+  /// The interface of the largest share, and those whose own verdict is `unknown`.
+  std::vector<std::string> faulty_interfaces;
   std::optional<double> variance_removed;  // at the interface, held out
 
   [[nodiscard]] bool names_a_cause() const { return verdict == "named" || verdict == "set" || verdict == "partial"; }
@@ -77,7 +79,14 @@ struct KeyCase {
   std::string name;
   TruthClass truth = TruthClass::none;
   PlantEffects effects;
+  // One for each of `effects`.
+  std::vector<double> effect_gaps_to_floor{};
+  std::vector<std::vector<Cause>> effect_acceptable{};
   std::vector<Cause> acceptable;
+  std::vector<Cause> acceptable_in_part{};  // right in an answer `partial` only
+  std::vector<Cause> tolerated{};           // neither right nor wrong
+  bool is_separable = true;
+  bool is_closed_loop = false;
   std::string gap_at;
   double gap_to_floor = 0.0;
   double held_out_gap_to_floor = 0.0;
@@ -93,16 +102,24 @@ struct ParameterError {
   std::optional<bool> is_in_interval;
 };
 
+/// The answer without the causes that the key tolerates. A set with one of them, and a list of nothing else, says
+/// `none` of the effect; a `partial` of nothing else says `unknown`.
+[[nodiscard]] Answer without_tolerated(const KeyCase& key, Answer answer);
+
 /// An answer compared with the truth. Fields that do not apply to a case are empty.
 struct MarkedCase {
   KeyCase key;
-  Answer answer;
-  std::optional<bool> is_interface_right;      // named, pair, unknown
-  std::optional<bool> is_effect_right;         // named, pair
+  Answer given;                                // as it was
+  Answer answer;                               // without what is tolerated
+  std::optional<bool> is_interface_right;      // all but none
+  std::optional<bool> is_effect_right;         // named, law, pair
+  std::optional<bool> is_partial_right;        // partial: the effect of the library found, and the rest left open
   std::optional<bool> is_single_name_right;    // named, where no other cause is acceptable
+  std::optional<bool> has_spurious_cause;      // named, law, with the first cause right: another beside it is not
+  bool is_sure_and_wrong = false;              // a name or set with a probability of 0.95 or more, and wrong
   std::optional<bool> is_falsely_named;        // none, unknown
   std::optional<bool> is_true_one_covered;     // named and answered by a set
-  std::optional<bool> are_both_found;          // pair
+  std::optional<bool> are_both_found;          // pair, each effect at twice the floor
   std::optional<std::size_t> causes_answered;  // named and answered by a name or set; named: 1
   std::optional<Forecast> forecast;            // where a cause is named
   std::optional<double> variance_short;        // true model's variance removed less the answer's, effect right

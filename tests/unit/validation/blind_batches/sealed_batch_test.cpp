@@ -22,8 +22,8 @@ class SealedBatch : public testing::Test {
   SealedBatch() {
     fs::remove_all(root_);
     make_batch({.cases = 2, .seed = 4, .directory = batch_, .key = key_}, digest,
-               [](std::size_t count, const std::function<void(std::size_t)>& one) {
-                 for (std::size_t i = 0; i < count; ++i) one(i);
+               [](const std::vector<std::string>& names, const std::function<void(std::size_t)>& one) {
+                 for (std::size_t i = 0; i < names.size(); ++i) one(i);
                });
   }
   ~SealedBatch() override { fs::remove_all(root_); }
@@ -91,7 +91,7 @@ TEST_F(SealedBatch, RejectsAnswersToAnotherBatch) {
 TEST_F(SealedBatch, OverwritesNeitherBatchNorKey) {
   const auto make_again = [&](const fs::path& directory, const fs::path& key) {
     make_batch({.cases = 1, .seed = 4, .directory = directory, .key = key}, digest,
-               [](std::size_t, const std::function<void(std::size_t)>&) {});
+               [](const std::vector<std::string>&, const std::function<void(std::size_t)>&) {});
   };
   EXPECT_THROW(make_again(batch_, root_ / "another.key.json"), std::runtime_error);
   EXPECT_THROW(make_again(root_ / "another", key_), std::runtime_error);
