@@ -24,6 +24,7 @@ enum class ParameterScale : std::uint8_t {
   damping_n_s2_per_m2,  // peak force over the square of the peak velocity
   stiffness_n_per_m3,   // peak force over the cube of the peak displacement
   compliance_m_per_n,   // peak displacement over peak force
+  energy_j,             // peak force times peak displacement
 };
 
 /// Beside which law of a specimen a parameter is searched; beside another law it keeps its fallback.
@@ -131,7 +132,15 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "pinching", "pinching_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "pinching", "pinching_width_m", Scale::displacement_m, 0.02, 2.0},
     SearchRange{specimen, "stiffness_degradation", "half_life_m", Scale::displacement_m, 3.0, 3000.0},
+    SearchRange{specimen, "stiffness_degradation_with_peak", "half_life_m", Scale::displacement_m, 0.1, 300.0},
+    SearchRange{specimen, "stiffness_degradation_with_energy", "half_life_j", Scale::energy_j, 0.3, 3000.0},
+    SearchRange{specimen, "stiffness_degradation_with_cycles", "half_life_cycles", Scale::one, 0.5, 3000.0},
+    SearchRange{specimen, "stiffness_degradation_with_time", "half_life_s", Scale::time_s, 0.3, 30000.0},
     SearchRange{specimen, "strength_degradation", "path_m", Scale::displacement_m, 3.0, 3000.0},
+    SearchRange{specimen, "strength_degradation_with_peak", "decay_m", Scale::displacement_m, 0.1, 300.0},
+    SearchRange{specimen, "strength_degradation_with_energy", "decay_j", Scale::energy_j, 0.3, 3000.0},
+    SearchRange{specimen, "strength_degradation_with_cycles", "decay_cycles", Scale::one, 0.5, 3000.0},
+    SearchRange{specimen, "strength_degradation_with_time", "decay_s", Scale::time_s, 0.3, 30000.0},
     SearchRange{specimen, "gap", "gap_m", Scale::displacement_m, 0.001, 0.95},
     SearchRange{specimen, "backlash", "clearance_m", Scale::displacement_m, 0.005, 1.0},
     SearchRange{specimen, "backlash", "holding_ratio", Scale::one, 0.0, 1.0},

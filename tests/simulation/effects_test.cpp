@@ -43,6 +43,7 @@ double scale_of(const SearchRange& range) {
     case ParameterScale::damping_n_s2_per_m2: return 1.0e5;
     case ParameterScale::stiffness_n_per_m3: return 1.0e9;
     case ParameterScale::compliance_m_per_n: return 1.0e-7;
+    case ParameterScale::energy_j: return 400.0;
     case ParameterScale::one:
     case ParameterScale::time_s: return 1.0;
   }

@@ -132,6 +132,83 @@ TEST(StiffnessDegradation, HalvesStiffnessAfterHalfLife) {
   EXPECT_NEAR(forces[4], 10.0 / 2.25, 1e-12);  // 5 m travelled
 }
 
+double elastic_n(const Motion& m) { return 10.0 * m.displacement_m; }
+double plastic_n(const Motion& m) { return std::clamp(100.0 * m.displacement_m, -10.0, 10.0); }
+
+TEST(StiffnessDegradation, FollowsTheLargestDisplacement) {
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_peak", {4.0});
+  const auto forces = along(*effect, {0.0, 1.0, -1.0, 0.5, 2.0, 1.0}, elastic_n);
+  EXPECT_NEAR(forces[3], 5.0 / 1.25, 1e-12);
+  EXPECT_NEAR(forces[4], 20.0 / 1.5, 1e-12);
+  EXPECT_NEAR(forces[5], 10.0 / 1.5, 1e-12);
+}
+
+TEST(StiffnessDegradation, FollowsTheCycles) {
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_cycles", {2.0});
+  const auto forces = along(*effect, {0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.05, -0.05, 0.05}, elastic_n);
+  EXPECT_NEAR(forces[1], 10.0, 1e-12);
+  EXPECT_NEAR(forces[2], -10.0 / 1.25, 1e-12);  // half a cycle
+  EXPECT_NEAR(forces[5], 10.0 / 2.0, 1e-12);    // two cycles
+  EXPECT_NEAR(forces[8], 0.5 / 2.0, 1e-12);     // too small to count
+}
+
+TEST(StiffnessDegradation, FollowsTheTime) {
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_time", {4.0 * kBenchPeriod_s});
+  const auto forces = along(*effect, {1.0, 1.0, 1.0, 1.0, 1.0}, elastic_n);
+  EXPECT_NEAR(forces[0], 10.0, 1e-12);
+  EXPECT_NEAR(forces[4], 5.0, 1e-12);
+}
+
+/// Stiffness under degradation with energy, over that without, after cycles of a base's force.
+double stiffness_left(const std::function<double(const Motion&)>& base, double half_life_j) {
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_energy", {half_life_j});
+  const auto unchanged = made(kSpecimen, "stiffness_degradation_with_energy", {1e12});
+  const Driver driver = sine(0.5, 20.0);
+  const double last = response(*effect, driver, 2500, base).back();
+  return last / response(*unchanged, driver, 2500, base).back();
+}
+
+TEST(StiffnessDegradation, WithoutDissipationEnergyLeavesItAlone) {
+  EXPECT_NEAR(stiffness_left(elastic_n, 1e-3), 1.0, 1e-9);
+}
+
+TEST(StrengthDegradation, FollowsTheDissipatedEnergy) {
+  // A friction of 10 N: it turns at +-0.5 m and dissipates 20 J a cycle; zero force is met at each turn.
+  double before_m = 0.0;
+  const auto friction_n = [&](const Motion& m) {
+    const double force_n = m.displacement_m == before_m ? 0.0 : std::copysign(10.0, m.displacement_m - before_m);
+    before_m = m.displacement_m;
+    return force_n;
+  };
+  const auto effect = made(kSpecimen, "strength_degradation_with_energy", {50.0});
+  const auto forces = response(*effect, sine(0.5, 20.0), 2500, friction_n);
+  // Strength over the path: ds/dE = -s / L with dE = s 10 N dx would give 1 / (1 + E0 / L) continuously; the effect
+  // steps at each turn: s(n + 1) = exp(-(E(n) + s(n) 10 J) / L).
+  double energy_j = 0.0;
+  double left = 1.0;
+  for (int turn = 0; turn <= 15; ++turn) {  // turns at (turn + 0.5) pi / 20 s
+    const int middle = static_cast<int>(turn * std::numbers::pi / 20.0 / kBenchPeriod_s) + 5;
+    EXPECT_NEAR(std::abs(forces[static_cast<std::size_t>(middle)]), 10.0 * left, 0.005 * 10.0) << turn;
+    energy_j += left * 10.0 * (turn == 0 ? 0.5 : 1.0);
+    left = std::exp(-energy_j / 50.0);
+  }
+}
+
+TEST(StrengthDegradation, FollowsPeakCyclesAndTime) {
+  const std::vector<double> path{1.0, -2.0, 1.0};
+  const auto last = [&](std::string_view name, double decay) {
+    return along(*made(kSpecimen, name, {decay}), path, plastic_n).back();
+  };
+  EXPECT_NEAR(last("strength_degradation_with_peak", 4.0), 10.0 * std::exp(-0.5), 1e-12);
+  EXPECT_NEAR(last("strength_degradation_with_cycles", 4.0), 10.0 * std::exp(-0.25), 1e-12);
+  EXPECT_NEAR(last("strength_degradation_with_time", 4.0 * kBenchPeriod_s), 10.0 * std::exp(-0.5), 1e-12);
+}
+
+TEST(StrengthDegradation, LosesAllStrengthWithoutInfinities) {
+  const auto effect = made(kSpecimen, "strength_degradation", {1e-3});
+  EXPECT_NEAR(along(*effect, {0.0, 5.0, -5.0}, plastic_n).back(), 0.0, 1e-9);
+}
+
 TEST(StiffnessError, ChangesStiffnessButNotStrength) {
   const auto effect = made(kSpecimen, "stiffness_error", {0.25, 0.0});
   const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
