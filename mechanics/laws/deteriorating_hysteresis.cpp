@@ -158,30 +158,35 @@ double DeterioratingHysteresis::beta(State& state, double capacity_m, double ene
   return 1.0;
 }
 
-/// From zero force to the largest displacement of the side.
+/// From zero force to the largest displacement of the side. Deterioration can put zero force close to it or beyond: no
+/// way is stiffer than the first loading.
 void DeterioratingHysteresis::aim_at_peak(State& state) const noexcept {
   Side& side = side_of(state);
-  const double start_m = state.side * state.displacement_m;
-  // Deterioration can put zero force beyond the largest displacement: then straight on to the backbone.
-  if (side.peak.displacement_m <= start_m) {
-    side.peak.displacement_m = start_m + backbone_n(side, start_m) / state.unloading_n_per_m;
+  const double k = parameters_.stiffness_n_per_m;
+  const auto is_too_stiff = [k](const Point& from, const Point& to) {
+    return !(to.force_n - from.force_n <= k * (to.displacement_m - from.displacement_m));
+  };
+  const Point start{state.side * state.displacement_m, 0.0};
+  if (is_too_stiff(start, side.peak)) {
+    side.peak.displacement_m =
+        start.displacement_m + hardening_n(side, start.displacement_m) / (k - side.hardening_n_per_m);
     side.peak.force_n = backbone_n(side, side.peak.displacement_m);
   }
   const Point& peak = side.peak;
-  state.corners[0] = {start_m, 0.0};
+  state.corners[0] = start;
   state.corner_count = 1;
   const auto slope = [](const Point& from, const Point& to) {
     return (to.force_n - from.force_n) / (to.displacement_m - from.displacement_m);
   };
   const double break_m =
       (1.0 - form_.break_displacement_ratio) * (peak.displacement_m - peak.force_n / state.unloading_n_per_m);
-  if (form_.break_force_ratio < 1.0 && start_m < break_m) {
-    const double straight_n = slope(state.corners[0], peak) * (break_m - start_m);
-    state.corners[state.corner_count++] = {break_m, form_.break_force_ratio * straight_n};
-  }
+  const Point bend{break_m, form_.break_force_ratio * slope(start, peak) * (break_m - start.displacement_m)};
+  if (form_.break_force_ratio < 1.0 && start.displacement_m < break_m && !is_too_stiff(bend, peak))
+    state.corners[state.corner_count++] = bend;
   const Point& from = state.corners[state.corner_count - 1];
   const bool is_ahead = from.displacement_m < side.turn.displacement_m && from.force_n < side.turn.force_n;
-  if (side.turn_is_inner && is_ahead && side.turn.force_n < peak.force_n && slope(from, side.turn) > slope(from, peak))
+  if (side.turn_is_inner && is_ahead && side.turn.force_n < peak.force_n && !is_too_stiff(from, side.turn) &&
+      slope(from, side.turn) > slope(from, peak))
     state.corners[state.corner_count++] = side.turn;
   state.corners[state.corner_count++] = peak;
 }
@@ -196,7 +201,7 @@ void DeterioratingHysteresis::add_backbone(State& state) const noexcept {
   add(yield_m(side), side.yield_force_n);
   state.last_slope_n_per_m = side.hardening_n_per_m;
   if (!has_cap()) return;
-  const double at_zero_n = side.yield_force_n - side.hardening_n_per_m * yield_m(side);
+  const double at_zero_n = hardening_n(side, 0.0);
   const double highest_m = (side.capping_force_n - at_zero_n) / (side.hardening_n_per_m - post_capping_n_per_m_);
   add(highest_m, at_zero_n + side.hardening_n_per_m * highest_m);
   add((residual_n() - side.capping_force_n) / post_capping_n_per_m_, residual_n());
@@ -204,14 +209,19 @@ void DeterioratingHysteresis::add_backbone(State& state) const noexcept {
 }
 
 double DeterioratingHysteresis::backbone_n(const Side& side, double displacement_m) const noexcept {
-  const double hardening_n = side.yield_force_n + side.hardening_n_per_m * (displacement_m - yield_m(side));
   if (displacement_m <= yield_m(side)) {
     const double elastic_n = parameters_.stiffness_n_per_m * displacement_m;
     if (form_.cracking_force_n == 0.0) return elastic_n;
     return std::min(elastic_n, crack_.force_n + form_.cracked_n_per_m * (displacement_m - crack_.displacement_m));
   }
-  if (!has_cap()) return hardening_n;
-  return std::max(std::min(hardening_n, side.capping_force_n + post_capping_n_per_m_ * displacement_m), residual_n());
+  const double hardening = hardening_n(side, displacement_m);
+  if (!has_cap()) return hardening;
+  return std::max(std::min(hardening, side.capping_force_n + post_capping_n_per_m_ * displacement_m), residual_n());
+}
+
+/// The line of the backbone after yielding, also where another one is below it.
+double DeterioratingHysteresis::hardening_n(const Side& side, double displacement_m) const noexcept {
+  return side.yield_force_n + side.hardening_n_per_m * (displacement_m - yield_m(side));
 }
 
 double DeterioratingHysteresis::yield_m(const Side& side) const noexcept {

@@ -147,6 +147,7 @@ class DeterioratingHysteresis : public Law {
   void add_backbone(State& state) const noexcept;
   [[nodiscard]] double beta(State& state, double capacity_m, double energy_j, double excursion_j) const noexcept;
   [[nodiscard]] double backbone_n(const Side& side, double displacement_m) const noexcept;
+  [[nodiscard]] double hardening_n(const Side& side, double displacement_m) const noexcept;
   [[nodiscard]] double yield_m(const Side& side) const noexcept;
   [[nodiscard]] double form_stiffness_n_per_m(const Side& side) const noexcept;
   [[nodiscard]] double residual_n() const noexcept { return parameters_.residual_ratio * parameters_.yield_force_n; }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
@@ -60,6 +62,49 @@ TEST(PinchedReloading, ForceRatioOfOneIsPeakOriented) {
     const double displacement_m = random.uniform(-0.08, 0.08);
     ASSERT_EQ(impose(pinching, displacement_m), impose(straight, displacement_m));
   }
+}
+
+/// Up to a hundred yield displacements of path: some specimens lose all strength, others hardly any.
+PinchedReloading::Parameters random_specimen(Random& random) {
+  auto parameters = pinched(random.uniform(0.05, 1.0), random.uniform(0.0, 1.0));
+  const auto capacity_m = [&random] { return random.uniform() < 0.3 ? 0.0 : std::exp(random.uniform(-3.0, 3.0)); };
+  parameters.hardening_ratio = random.uniform(0.0, 0.3);
+  parameters.capping_displacement_m = random.uniform() < 0.3 ? 0.0 : random.uniform(0.001, 0.1);
+  parameters.post_capping_displacement_m = random.uniform(0.05, 0.5);
+  parameters.residual_ratio = random.uniform() < 0.3 ? 0.0 : random.uniform(0.0, 0.9);
+  parameters.strength_capacity_m = capacity_m();
+  parameters.capping_capacity_m = capacity_m();
+  parameters.unloading_capacity_m = capacity_m();
+  parameters.reloading_capacity_m = capacity_m();
+  parameters.deterioration_exponent = random.uniform(0.5, 2.0);
+  return parameters;
+}
+
+TEST(PinchedReloading, IsNeverStifferThanAtFirst) {
+  Random random{21};
+  int lost = 0;
+  for (int specimen = 0; specimen < 500; ++specimen) {
+    PinchedReloading spring{random_specimen(random)};
+    double displacement_m = 0.0;
+    double force_n = 0.0;
+    for (int turn = 0; turn < 40; ++turn) {
+      const double to_m = random.uniform(-0.06, 0.06);
+      const double step_m = (to_m - displacement_m) / 50.0;
+      for (int i = 0; i < 50; ++i) {
+        displacement_m += step_m;
+        const double next_n = impose(spring, displacement_m);
+        // Where the strength is lost, it is lost at once.
+        if (next_n != 0.0) {
+          ASSERT_LE(std::abs(next_n - force_n), 4.0e6 * std::abs(step_m) * 1.000001)
+              << specimen << " at " << displacement_m;
+        }
+        force_n = next_n;
+      }
+    }
+    lost += force_n == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(lost, 50);  // control: both kinds were drawn
+  EXPECT_LT(lost, 450);
 }
 
 TEST(PinchedReloading, RejectsParametersOutOfRange) {

@@ -79,6 +79,29 @@ TEST(Takeda, WithoutCracksAndExponentItIsPeakOriented) {
   }
 }
 
+TEST(Takeda, IsNeverStifferThanAtFirst) {
+  Random random{22};
+  for (int specimen = 0; specimen < 300; ++specimen) {
+    auto parameters = kColumn;
+    parameters.cracking_force_n = random.uniform(0.0, 3.9e4);
+    parameters.cracked_ratio = random.uniform(0.05, 1.0);
+    parameters.unloading_exponent = random.uniform();
+    Takeda column{parameters};
+    double displacement_m = 0.0;
+    double force_n = 0.0;
+    for (int turn = 0; turn < 40; ++turn) {
+      const double step_m = (random.uniform(-0.06, 0.06) - displacement_m) / 50.0;
+      for (int i = 0; i < 50; ++i) {
+        displacement_m += step_m;
+        const double next_n = column.trial(displacement_m, 0.0);
+        column.commit();
+        ASSERT_LE(std::abs(next_n - force_n), 8.0e6 * std::abs(step_m) * 1.000001) << specimen;
+        force_n = next_n;
+      }
+    }
+  }
+}
+
 TEST(Takeda, RejectsParametersOutOfRange) {
   auto parameters = kColumn;
   parameters.cracking_force_n = 4.0e4;
