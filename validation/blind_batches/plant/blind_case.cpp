@@ -272,7 +272,12 @@ std::vector<Cause> also_named(const PlantEffect& effect, LawKind users) {
     if (effect.name == "latency") return {{"network", "clock_offset"}};
     if (effect.name == "clock_offset") return {{"network", "latency"}};
   }
-  if (effect.name == "yielding") return kYielding;
+  if (effect.name == "yielding") {
+    std::vector<Cause> causes = kYielding;
+    causes.push_back({"specimen", "yielding", kUnsaidLaw});
+    for (const Cause& law : kYielding) causes.push_back({"specimen", "yielding", law.law});
+    return causes;
+  }
   if (effect.name == "bouc_wen_hysteresis" && users == LawKind::elastic) return kYielding;
   if (effect.name == "strength_error") return {{"specimen", "hysteresis_law", "bilinear"}, {"specimen", "yielding"}};
   if (effect.name == "stiffness_error" && users == LawKind::bilinear)
@@ -361,14 +366,15 @@ class Judge {
       right = names_of_law(effect.law, users);
       add_new(truth_.acceptable_in_part, parts_of_law(users));
     } else if (!is_foreign(effect)) {
-      right = {itself};
+      if (effect.name != "yielding") right = {itself};  // which has its laws
       add_new(right, also_named(effect, users));
     }
     // What a library effect imitates to the floor has its name, as no recording can tell.
     if (is_foreign(effect) && !alike.same.empty()) truth_.kind = TruthClass::named;
-    add_new(right, alike.same);
-    truth_.is_separable =
-        truth_.is_separable && std::ranges::all_of(alike.same, [&](const Cause& cause) { return cause == itself; });
+    std::vector<Cause> others = alike.same;
+    std::erase(others, itself);
+    add_new(right, others);
+    truth_.is_separable = truth_.is_separable && others.empty();
     add_new(truth_.kind == TruthClass::unknown ? truth_.acceptable_in_part : truth_.acceptable, right);
     add_new(truth_.acceptable_in_part, alike.half);
     truth_.effect_acceptable.push_back(std::move(right));
@@ -381,7 +387,6 @@ class Judge {
       if (!looked_.insert(residual).second) continue;
       add_new(truth_.tolerated, look_alikes(case_.setting, signatures_, residual, {}, 0.0, random_).tolerated);
     }
-    for (const PlantEffect& beside : real_.other_besides) add_new(truth_.tolerated, {{beside.interface, beside.name}});
     const auto is_right = [&](const Cause& cause) {
       return std::ranges::find(truth_.acceptable, cause) != truth_.acceptable.end();
     };
@@ -412,7 +417,7 @@ bool record_motions(BlindCase& result, const RealSite& real, RandomStream noise)
     if (setting.loop) {
       const LoopSetting& loop = *setting.loop;
       const History& ground = is_held_out ? loop.held_out_ground_m_per_s2 : loop.fit_ground_m_per_s2[i];
-      recordings = run_test(setting, {effects, real.other_besides}, ground, noise);
+      recordings = run_test(setting, effects, ground, noise);
     } else {
       const History& sent = is_held_out ? setting.held_out_m : setting.fit_m[i];
       recordings.push_back(record(setting.site, run_plant(setting.site, effects, sent), noise));
@@ -438,9 +443,8 @@ void record_case(BlindCase& result, RealSite& real, std::uint64_t seed, std::uin
     } else if (!real.effects.empty()) {
       real.effects.clear();
       real.kind = TruthClass::none;
-    } else if (!real.besides.empty() || !real.other_besides.empty()) {
+    } else if (!real.besides.empty()) {
       real.besides.clear();
-      real.other_besides.clear();
     } else {
       throw std::logic_error{"a test without effects is unstable with its noise"};
     }
@@ -469,8 +473,6 @@ BlindCase draw_case(std::uint64_t seed, std::uint64_t index) {
   RandomStream numbers{seed, index, "besides"};
   RealSite real;
   real.besides = draw_besides(setting.site, setting.scales, numbers);
-  if (setting.loop && setting.loop->other)
-    real.other_besides = draw_besides(*setting.loop->other, setting.scales, numbers);
   RealSiteDraw{setting, real, seed, index}();
   return make_case(std::move(setting), std::move(real), seed, index);
 }

@@ -48,15 +48,10 @@ struct CaseSetting {
 /// Streams "site", "excitation" of (seed, index).
 [[nodiscard]] CaseSetting draw_case_setting(std::uint64_t seed, std::uint64_t index);
 
-/// What the real sites of a loop have: at the storey of the effect, and at the other.
-struct LoopEffects {
-  PlantEffects here;
-  PlantEffects there;
-};
-
-/// The test in a closed loop. @returns the recording of the storey with the effect first, then of the other, if there
+/// The test in a closed loop; of the other tested storey the model is right.
+/// @returns the recording of the storey with the effect first, then of the other, if there
 /// is one.
-[[nodiscard]] std::vector<PlantRecording> run_test(const CaseSetting& setting, const LoopEffects& effects,
+[[nodiscard]] std::vector<PlantRecording> run_test(const CaseSetting& setting, const PlantEffects& effects,
                                                    const History& ground_m_per_s2, RandomStream& noise);
 
 /// Whether no storey has moved several times as far as was planned.
@@ -86,11 +81,14 @@ enum class TruthClass {
   unknown,  // one that is not in the library
 };
 
+/// Of a cause: right when the answer tells no law.
+inline constexpr const char* kUnsaidLaw = "unsaid";
+
 /// An answer that can be right.
 struct Cause {
   std::string interface;
   std::string effect;
-  std::string law = {};  // of `hysteresis_law`; empty: any
+  std::string law = {};  // of `hysteresis_law` and `yielding`; empty: any
 
   friend bool operator==(const Cause&, const Cause&) = default;
 };
@@ -134,8 +132,7 @@ struct BlindCase {
 struct RealSite {
   TruthClass kind = TruthClass::none;
   PlantEffects effects = {};
-  PlantEffects besides = {};        // wrong numbers, not to be found
-  PlantEffects other_besides = {};  // of the other tested storey
+  PlantEffects besides = {};  // wrong numbers, not to be found
 };
 
 /// A given site with given effects.

@@ -218,11 +218,11 @@ double rounded(double value, int digits) {
   return unit < 1.0 ? std::round(value / unit) / std::round(1.0 / unit) : std::round(value / unit) * unit;
 }
 
-std::vector<PlantRecording> run_test(const CaseSetting& setting, const LoopEffects& effects,
+std::vector<PlantRecording> run_test(const CaseSetting& setting, const PlantEffects& effects,
                                      const History& ground_m_per_s2, RandomStream& noise) {
   const LoopSetting& loop = *setting.loop;
-  std::vector<TestedStorey> tested{{setting.site, effects.here}};
-  if (loop.other) tested.push_back({*loop.other, effects.there});
+  std::vector<TestedStorey> tested{{setting.site, effects}};
+  if (loop.other) tested.push_back({*loop.other, {}});
   if (loop.other_is_first) std::swap(tested[0], tested[1]);
   std::vector<PlantRecording> recordings = run_closed_loop(loop.building, tested, ground_m_per_s2, noise);
   if (loop.other_is_first) std::swap(recordings[0], recordings[1]);

@@ -242,6 +242,7 @@ std::vector<Cause> names_of_law(const std::string& law, LawKind users) {
   for (const char* name : entry.laws) causes.push_back({"specimen", "hysteresis_law", name});
   for (const char* name : entry.effects) causes.push_back({"specimen", name});
   if (users == LawKind::elastic) {
+    for (const char* name : entry.laws) causes.push_back({"specimen", "yielding", name});
     for (const char* name : entry.if_elastic) causes.push_back({"specimen", name});
   }
   return causes;

@@ -231,8 +231,9 @@ constexpr double kSure = 0.95;
 
 bool is_in(const std::vector<Cause>& causes, const AnsweredCause& answered) {
   return std::ranges::any_of(causes, [&](const Cause& cause) {
-    return cause.interface == answered.interface && cause.effect == answered.effect &&
-           (cause.law.empty() || cause.law == answered.law);
+    const bool is_law_right =
+        cause.law.empty() || cause.law == answered.law || (answered.law.empty() && cause.law == kUnsaidLaw);
+    return cause.interface == answered.interface && cause.effect == answered.effect && is_law_right;
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -120,6 +121,13 @@ TEST(ForeignLaw, FadesWithWhatItsNameSays) {
   const double scale = 24.0 * kYieldN * (far - kYieldM);
   const Path path = cycled(law_named("fading_with_energy", {{"scale", scale}}), {far, far, far, far});
   EXPECT_NEAR(path.force[13000] / path.force[1000], std::exp(-0.25), 0.05);
+}
+
+TEST(ForeignLaw, BesideAnElasticModelItMayBeYieldingWithItsLaw) {
+  const std::vector<Cause> causes = names_of_law("tendon", LawKind::elastic);
+  const Cause yielding{"specimen", "yielding", "self_centring"};
+  EXPECT_EQ(std::ranges::count(causes, yielding), 1);
+  EXPECT_EQ(std::ranges::count(names_of_law("tendon", LawKind::bilinear), yielding), 0);
 }
 
 TEST(ForeignLaw, EveryLawHasAnAnswerOfItsOwn) {

@@ -215,6 +215,20 @@ TEST(Score, LawIsRightByItsNameAndInPartByAnAddition) {
   EXPECT_FALSE(is_right("partial", kBias));
 }
 
+TEST(Score, YieldingMayTellItsLawButNotAnother) {
+  KeyCase key = key_case(TruthClass::named, {{"specimen", "yielding"}});
+  key.acceptable = {{"specimen", "yielding", kUnsaidLaw}, {"specimen", "yielding", "bouc_wen"}};
+  const auto is_right = [&](const std::string& law) {
+    return mark(key, read_answer(diagnosis("named", {{"specimen", "yielding", law}}, 0.9))).is_effect_right.value();
+  };
+  EXPECT_TRUE(is_right(""));
+  EXPECT_TRUE(is_right("bouc_wen"));
+  EXPECT_FALSE(is_right("pinching"));
+  key.acceptable = {{"specimen", "yielding", "pinching"}};  // of a specimen that pinches
+  EXPECT_TRUE(is_right("pinching"));
+  EXPECT_FALSE(is_right(""));
+}
+
 TEST(Score, WrongNumbersAreNeitherRightNorWrong) {
   const Cause stiffness{"specimen", "stiffness_error"};
   KeyCase none = key_case(TruthClass::none, {});
