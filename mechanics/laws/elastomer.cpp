@@ -9,36 +9,35 @@ namespace hybridtest {
 
 Elastomer::Elastomer(const Parameters& parameters)
     : parameters_{checked(parameters)},
-      filler_{BoucWen::Parameters{.stiffness_n_per_m = 1.0 / parameters.payne_displacement_m,
-                                  .alpha = 0.0,
-                                  .n = 1.0,
-                                  .gamma_per_m = 0.5 / parameters.payne_displacement_m,
-                                  .beta_per_m = 0.5 / parameters.payne_displacement_m}} {}
+      committed_filler_{parameters.payne_displacement_m},
+      trial_filler_{committed_filler_} {}
 
-double Elastomer::trial(double displacement_m, double velocity_m_per_s) noexcept {
+double Elastomer::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
   const Parameters& p = parameters_;
+  trial_filler_ = committed_filler_;
   const double square = displacement_m * displacement_m;
   const double energy_j = 0.5 * square * (p.stiffness_n_per_m + 0.5 * p.stiffening_n_per_m3 * square);
   trial_largest_j_ = std::max(committed_largest_j_, energy_j);
   const double scale_j = 0.5 * p.stiffness_n_per_m * p.mullins_displacement_m * p.mullins_displacement_m;
   const double softening = p.mullins_softening * std::erf((trial_largest_j_ - energy_j) / scale_j);
   const double elastic_n = displacement_m * (p.stiffness_n_per_m + p.stiffening_n_per_m3 * square);
-  return (1.0 - softening) * elastic_n + p.payne_force_n * filler_.trial(displacement_m, velocity_m_per_s);
+  return (1.0 - softening) * elastic_n + p.payne_force_n * trial_filler_.share(displacement_m);
 }
 
 void Elastomer::commit() noexcept {
   committed_largest_j_ = trial_largest_j_;
-  filler_.commit();
+  committed_filler_ = trial_filler_;
 }
 
 void Elastomer::revert() noexcept {
   trial_largest_j_ = committed_largest_j_;
-  filler_.revert();
+  trial_filler_ = committed_filler_;
 }
 
 void Elastomer::reset() noexcept {
   committed_largest_j_ = trial_largest_j_ = 0.0;
-  filler_.reset();
+  committed_filler_.reset();
+  trial_filler_.reset();
 }
 
 double Elastomer::initial_stiffness_n_per_m() const noexcept {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/parameters/parameter_archive.hpp"
-#include "mechanics/laws/bouc_wen.hpp"
+#include "mechanics/laws/hysteretic_element.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -13,11 +13,8 @@ namespace hybridtest {
 ///
 /// Mullins effect by the pseudo-elasticity of Ogden and Roxburgh (Proc. R. Soc. Lond. A 455, 1999): Wm is the largest W
 /// so far, and first loading is not softened. Payne effect by a rate-independent friction beside it, as Berg has it
-/// (Vehicle System Dynamics 30, 1998), here in the form of Bouc and Wen with the exponent 1,
-///
-///     dz = (1 - 0.5 (1 + sign(z dx)) |z|) dx / xp
-///
-/// whose loops close more nearly: motions well below xp see the stiffness k + Fp / xp, large ones k alone.
+/// (Vehicle System Dynamics 30, 1998), here with z of HystereticElement and xh = xp, which takes no more work back than
+/// it was given: motions well below xp see the stiffness k + Fp / xp, large ones k alone.
 class Elastomer final : public Law {
  public:
   struct Parameters {
@@ -52,7 +49,8 @@ class Elastomer final : public Law {
 
  private:
   Parameters parameters_;
-  BoucWen filler_;  // its force is z
+  HystereticElement committed_filler_;
+  HystereticElement trial_filler_;
   double committed_largest_j_ = 0.0;
   double trial_largest_j_ = 0.0;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/parameters/parameter_archive.hpp"
-#include "mechanics/laws/bouc_wen.hpp"
+#include "mechanics/laws/hysteretic_element.hpp"
 #include "mechanics/laws/law.hpp"
 
 namespace hybridtest {
@@ -9,11 +9,11 @@ namespace hybridtest {
 /// Magnetorheological damper at one constant current: the Bouc-Wen model of Spencer, Dyke, Sain and Carlson (J. Eng.
 /// Mech. 123, 1997, equations 4 and 5),
 ///
-///     F = c v + k x + Fh z,    dz = (1 - 0.5 (1 + sign(z dx)) |z|^n) dx / xh
+///     F = c v + k x + Fh z
 ///
-/// which has z between -1 and 1. Their modified model, with a second dashpot in series that rounds the force near zero
-/// velocity, is a differential equation in time; a law is handed displacement and velocity alone. Another current is
-/// another set of parameters: c and Fh grow with it.
+/// with z of HystereticElement (their exponent 2). Their modified model, with a second dashpot in series that rounds
+/// the force near zero velocity, is a differential equation in time; a law is handed displacement and velocity alone.
+/// Another current is another set of parameters: c and Fh grow with it.
 class MrDamper final : public Law {
  public:
   struct Parameters {
@@ -21,7 +21,6 @@ class MrDamper final : public Law {
     double stiffness_n_per_m = 0.0;          // k
     double hysteretic_force_n = 0.0;         // Fh
     double hysteretic_displacement_m = 0.0;  // xh
-    double exponent = 2.0;                   // n
 
     void serialize(ParameterArchive& archive) {
       archive.required("damping_n_s_per_m", damping_n_s_per_m, {kNotNegative, "c, of the fluid"});
@@ -29,7 +28,6 @@ class MrDamper final : public Law {
       archive.required("hysteretic_force_n", hysteretic_force_n, {kNotNegative, "Fh, from the magnetic field"});
       archive.required("hysteretic_displacement_m", hysteretic_displacement_m,
                        {kPositive, "xh, Fh over the slope of the hysteresis after a reversal"});
-      archive.optional("exponent", exponent, {{.low = 1.0, .high = 100.0}, "n; the larger, the sharper the yielding"});
     }
   };
 
@@ -37,14 +35,15 @@ class MrDamper final : public Law {
   explicit MrDamper(const Parameters& parameters);
 
   [[nodiscard]] double trial(double displacement_m, double velocity_m_per_s) noexcept override;
-  void commit() noexcept override { hysteresis_.commit(); }
-  void revert() noexcept override { hysteresis_.revert(); }
-  void reset() noexcept override { hysteresis_.reset(); }
+  void commit() noexcept override { committed_ = trial_; }
+  void revert() noexcept override { trial_ = committed_; }
+  void reset() noexcept override;
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override;
 
  private:
   Parameters parameters_;
-  BoucWen hysteresis_;  // its force is z
+  HystereticElement committed_;
+  HystereticElement trial_;
 };
 
 }  // namespace hybridtest

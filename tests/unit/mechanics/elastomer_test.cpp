@@ -69,8 +69,8 @@ TEST(Elastomer, WideCyclesDissipateFillerFriction) {
     work_j += 0.5 * (before_n + force_n) * (i <= kSteps ? -0.2 : 0.2) / kSteps;
     before_n = force_n;
   }
-  // Each way: given back Fp xp / 2 while unloading over xp, then Fp over the rest but for Fp xp of the exponential.
-  EXPECT_NEAR(work_j, 2.0 * 1.0e3 * (0.2 - 2.5 * 0.002), 1e-2);
+  // Each way: given back Fp xp / 2 while unloading over xp, then Fp over the rest but for Fp xp ln 2 of the tanh.
+  EXPECT_NEAR(work_j, 2.0 * 1.0e3 * (0.2 - (1.5 + std::log(2.0)) * 0.002), 1e-2);
 }
 
 TEST(Elastomer, RejectsParametersOutOfRange) {
