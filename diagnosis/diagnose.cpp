@@ -6,9 +6,11 @@
 #include <map>
 #include <utility>
 
+#include "diagnosis/identification/continuation.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
+#include "diagnosis/sanity/channel_findings.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -29,7 +31,9 @@ std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Re
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
-    std::ranges::move(modelled_segments(model, recordings[i], dof, i), std::back_inserter(segments));
+    std::vector<Segment> own = modelled_segments(model, recordings[i], dof, i);
+    carry_history(model, recordings, dof, own);
+    std::ranges::move(own, std::back_inserter(segments));
   }
   return segments;
 }
@@ -220,6 +224,15 @@ void add_quasi_static_notes(const SiteModel& model, std::span<const Recording> r
   }
 }
 
+void add_continuation_notes(std::span<const Recording> recordings, std::size_t dof, std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto before = continued_by(recordings, i, dof);
+    if (!before) continue;
+    notes.push_back(recordings[i].file + " continues " + recordings[*before].file +
+                    ": the specimen begins there with the history of the part before.");
+  }
+}
+
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -244,7 +257,10 @@ void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
 
 }  // namespace
 
-Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings, const DiagnoseSettings& settings) {
+Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, const DiagnoseSettings& settings) {
+  const std::vector<ChannelFinding> findings = check_channels(model, given, settings.dof);
+  std::vector<Recording> without_unusable;
+  const std::span<const Recording> recordings = usable_part(given, settings.dof, findings, without_unusable);
   Diagnosis diagnosis;
   report::DiagnosisReport& report = diagnosis.report;
   report.site = settings.site;
@@ -257,7 +273,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
                                  recording.sample_period_s * static_cast<double>(recording.samples),
                                  recording.sample_period_s, recording.is_quasi_static});
   }
-  for (const Recording& recording : recordings) {
+  for (const Recording& recording : given) {
     if (recording.dofs.size() > settings.dof) add_sensor_facts(recording, settings.dof, report);
   }
   const PartProgress& progress = settings.progress;
@@ -273,6 +289,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
         "Record command and measured displacement, or measured displacement and measured force, of one test.";
     report.notes.emplace_back(
         "The recordings do not contain input and output of any interface that the model predicts.");
+    add_findings(findings, report);
     return diagnosis;
   }
   IdentificationProblem problem = make_problem(model, segments);
@@ -323,7 +340,9 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> recordings
   for (const report::InterfaceSeries& series : report.series) diagnosis.places.push_back(place_of(series));
   report.why_no_response = "it needs a run directory; these recordings contain only the site, not the structure";
   add_quasi_static_notes(model, recordings, report.notes);
+  add_continuation_notes(recordings, settings.dof, report.notes);
   add_notes(diagnosis, segments);
+  add_findings(findings, report);
   return diagnosis;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,14 @@ struct DofRecording {
   [[nodiscard]] bool has(Channel channel) const noexcept { return !of(channel).empty(); }
 };
 
+/// The stamps that number the rows of a file, time or steps.
+struct RowStamps {
+  std::string column;  // `time_s` or `step`
+  double first = 0.0;
+  double last = 0.0;
+  double largest_interval = 0.0;
+};
+
 enum class RecordingRole : std::uint8_t { fit, held_out };
 
 /// A recording that has passed the intake's checks: finite, and evenly sampled without gaps or without any time.
@@ -47,7 +56,8 @@ struct Recording {
   bool is_quasi_static = false;
   double sample_period_s = 0.0;
   std::size_t samples = 0;
-  std::size_t first_row = 1;  // row number of the first sample in findings: its line in a CSV file
+  std::optional<RowStamps> stamps{};  // none where rows have neither time nor step
+  std::size_t first_row = 1;          // row number of the first sample in findings: its line in a CSV file
   std::vector<DofRecording> dofs;
 };
 

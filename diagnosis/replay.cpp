@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "diagnosis/identification/continuation.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/signals/signals.hpp"
 
@@ -68,11 +69,12 @@ std::vector<CsvColumn> columns_of(const Recording& recording,
 
 }  // namespace
 
-std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof) {
+std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof,
+                                    const Recording* before) {
+  std::vector<Segment> segments = modelled_segments(model, recording, dof, 0);
+  if (before != nullptr) carry_history(model, *before, dof, segments);
   std::vector<ReplayedChannel> channels;
-  for (const Segment& segment : modelled_segments(model, recording, dof, 0)) {
-    channels.push_back(replayed(model, segment));
-  }
+  for (const Segment& segment : segments) channels.push_back(replayed(model, segment));
   share_out(channels);
   return channels;
 }

@@ -25,9 +25,11 @@ struct ReplayedChannel {
 /// Computes each stage of a model with its recorded input, for one degree of freedom, so that an error of one stage
 /// does not reach the next. The specimen is omitted if the model has none.
 /// @param dof   0-based; the recording has it.
+/// @param before   the recording that this one continues, whose history the stages have; may be null.
 /// @return in the order of the chain; empty if no two consecutive channels were recorded.
 /// @throws ConfigError for parameters that a part of the model does not accept at this sample period.
-[[nodiscard]] std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof);
+[[nodiscard]] std::vector<ReplayedChannel> replay(const SiteModel& model, const Recording& recording, std::size_t dof,
+                                                  const Recording* before = nullptr);
 
 /// A recording with what was predicted of it, as CSV: `time_s` (`step` of a quasi-static one), the recorded channels,
 /// then `predicted_<channel>`; suffixes `_1`, `_2` … where there are several degrees of freedom. It is a recording

@@ -89,6 +89,23 @@ inline constexpr double kRestSpan = 0.001;
 /// Half-width of the central differences of maps and screens: long enough for 10 um of noise, short enough for 20 Hz.
 inline constexpr double kVelocityReach_s = 0.005;
 
+// Channels before any fit.
+
+/// Sizes of the plays and frictions that an output may follow, as shares of the whole range of the input.
+inline constexpr std::array kPlayShares{0.02, 0.3, 0.1};
+/// Share of the variance of an unrelated output that is predicted by chance. Of noise over 20 s, fewer than one draw in
+/// thirty exceeds it; where motion and noise have the same band, a twentieth wide, one in six.
+inline constexpr double kUnrelatedShare = 0.1;
+/// Share added to the diagonal where such shapes are almost multiples of each other.
+inline constexpr double kShapeRidge = 1e-6;
+/// Points to which signals are averaged where every lag is tried: their number squared is computed.
+inline constexpr std::size_t kFarLagSamples = 1000;
+/// Share of the energy that the fastest part of a signal has. Samples per cycle that it needs for derivatives (at ten,
+/// a parabola is 3 % off), and to be seen at all: at four, every second sample is a reversal.
+inline constexpr double kFastShare = 0.1;
+inline constexpr double kSamplesPerCycle = 10.0;
+inline constexpr double kSamplesPerCycleMin = 4.0;
+
 // Where: tables and plots of one interface.
 
 /// A recording with fewer samples is too short to locate a gap in it.
@@ -259,6 +276,13 @@ inline constexpr double kRangeUnresolved = 1e-3;
 inline constexpr double kFarBehind = 25.0;
 /// How many of the screened second effects are searched together with the first.
 inline constexpr std::size_t kRefittedPairs = 5;
+
+// What refutes an effect.
+
+/// Share of a limit that readings pass it by, or stay below it by, without refuting it: a real one gives way a little.
+inline constexpr double kBeyondLimit = 0.05;
+/// Height of a column over its largest drift, at least: with a drift of a tenth of its height, a column has collapsed.
+inline constexpr double kHeightOverStroke = 10.0;
 
 // Which effects are chosen.
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
+#include "diagnosis/identification/continuation.hpp"
 #include "diagnosis/replay.hpp"
 #include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/run_records.hpp"
@@ -18,6 +20,7 @@ struct ReplayOptions {
   std::filesystem::path model;
   std::string site;
   std::filesystem::path recording;
+  std::filesystem::path after;
   std::filesystem::path out;
 };
 
@@ -32,15 +35,32 @@ void print_gaps(const std::vector<std::vector<ReplayedChannel>>& replays) {
   }
 }
 
+/// The recording before the one to replay, if it was given.
+std::optional<Recording> recording_before(const ReplayOptions& options, const SiteModelFile& model,
+                                          const Recording& recording) {
+  if (options.after.empty()) return {};
+  Recording before = read_recording(options.after, RecordingRole::held_out, options.site, time_base_of(model));
+  require_match(model, {&before, 1});
+  for (std::size_t dof = 0; dof < model.dofs.size(); ++dof) {
+    if (continues(before, recording, dof)) continue;
+    throw ConfigError{
+        "--after " + before.file + ": " + recording.file +
+        " does not continue it; expected a first time stamp or step, and a displacement, that go on where "
+        "it ends"};
+  }
+  return before;
+}
+
 int replay_recording(const ReplayOptions& options) {
   const SiteModelFile model = read_model_for({&options.recording, 1}, options.model, options.site);
   const Recording recording =
       read_recording(options.recording, RecordingRole::held_out, options.site, time_base_of(model));
   require_match(model, {&recording, 1});
+  const std::optional<Recording> before = recording_before(options, model, recording);
   std::vector<std::vector<ReplayedChannel>> replays;
   std::size_t channels = 0;
   for (std::size_t dof = 0; dof < model.dofs.size(); ++dof) {
-    replays.push_back(replay(model.dofs[dof], recording, dof));
+    replays.push_back(replay(model.dofs[dof], recording, dof, before ? &*before : nullptr));
     channels += replays.back().size();
   }
   if (channels == 0) {
@@ -72,6 +92,8 @@ void add_replay_command(CLI::App& app, CommandAction& action) {
   command->add_option("--model", options->model, "Model of the site: a site file, or a scenario")->required();
   command->add_option("--site", options->site, "Id of the site; required if the scenario or run has several sites");
   command->add_option("--recording", options->recording, "CSV file or run directory")->required();
+  command->add_option("--after", options->after,
+                      "CSV file that the recording continues: the specimen begins with its history");
   command->add_option("--out", options->out, "CSV file to write: recorded and predicted channels")->required();
   command->callback([options, &action] { action = [options] { return replay_recording(*options); }; });
 }

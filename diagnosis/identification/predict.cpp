@@ -113,29 +113,38 @@ class DisplacementChain {
   std::optional<TransferStage> transfer_;
 };
 
-/// Calls `step(sample, i)` for the rest before the record and then for each of its samples.
+/// Calls `step(sample, part, i)` for each sample of a segment and of the parts before it, after the rest before the
+/// first one.
+/// @return the time at its end.
 template <class Step>
-void drive(const Segment& segment, Step&& step) {
+double drive(const Segment& segment, Step&& step) {
   StageSample sample;
-  sample.motion.displacement_m = segment.input.front().displacement_m;
-  if (!segment.load_n.empty()) sample.force_n = segment.load_n.front();
-  const auto rest = static_cast<std::size_t>(std::ceil(tuning::kRestBefore_s / segment.period_s));
-  for (std::size_t i = 0; i < rest; ++i) step(sample, 0);
+  double begin_s = 0.0;
+  if (segment.history) {
+    begin_s = drive(*segment.history, step);
+  } else {
+    sample.motion.displacement_m = segment.input.front().displacement_m;
+    if (!segment.load_n.empty()) sample.force_n = segment.load_n.front();
+    const auto rest = static_cast<std::size_t>(std::ceil(tuning::kRestBefore_s / segment.period_s));
+    for (std::size_t i = 0; i < rest; ++i) step(sample, segment, 0);
+  }
   for (std::size_t i = 0; i < segment.input.size(); ++i) {
-    sample.time_s = static_cast<double>(i) * segment.period_s;
+    sample.time_s = begin_s + static_cast<double>(i) * segment.period_s;
     sample.motion = segment.input[i];
     if (!segment.load_n.empty()) sample.force_n = segment.load_n[i == 0 ? 0 : i - 1];
-    step(sample, i);
+    step(sample, segment, i);
   }
+  return begin_s + static_cast<double>(segment.input.size()) * segment.period_s;
 }
 
 std::vector<double> predict_displacement(const SiteModel& model, const Segment& segment) {
   DisplacementChain chain{model, segment};
   std::vector<double> predicted(segment.input.size());
   const bool measures = segment.to == Channel::measured_displacement;
-  drive(segment, [&](const StageSample& sample, std::size_t i) {
-    const double measured_m = measures ? segment.measured[i == 0 ? 0 : i - 1] : sample.motion.displacement_m;
-    predicted[i] = chain.step(sample, measured_m);
+  drive(segment, [&](const StageSample& sample, const Segment& part, std::size_t i) {
+    const double measured_m = measures ? part.measured[i == 0 ? 0 : i - 1] : sample.motion.displacement_m;
+    const double displacement_m = chain.step(sample, measured_m);
+    if (&part == &segment) predicted[i] = displacement_m;
   });
   return predicted;
 }
@@ -145,10 +154,11 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   SpecimenStage specimen{model, segment.period_s};
   std::vector<double> predicted(segment.input.size());
   double force_n = 0.0;
-  drive(segment, [&](StageSample sample, std::size_t i) {
+  drive(segment, [&](StageSample sample, const Segment& part, std::size_t i) {
     sample.motion = inverse.step(sample);
     sample.force_n = force_n;
-    predicted[i] = specimen.step(sample);
+    const double read_n = specimen.step(sample);
+    if (&part == &segment) predicted[i] = read_n;
     force_n = specimen.force_n();
   });
   return predicted;

@@ -153,6 +153,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.narrow_input = every(segment.narrow_input);
   result.narrow_noise = every(segment.narrow_noise);
   result.measured = every(segment.measured);
+  if (segment.history) result.history = std::make_shared<const Segment>(thinned(*segment.history, rate_hz));
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,9 @@ struct Segment {
   double smoothing_error = 0.0;
   // Standard deviation of the error of a coarse converter in `measured`, which may be correlated. 0: none found.
   double step_noise = 0.0;
+
+  // The segment that this one goes on from, whose history the stages of a model have when it begins; may be null.
+  std::shared_ptr<const Segment> history;
 
   /// An effect at that interface changes what this segment predicts. One that needs time changes no quasi-static one.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;

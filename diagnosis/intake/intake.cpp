@@ -277,6 +277,14 @@ double nominal_period_s(const RawRecording& raw) {
   return (cycles > 0.0 ? cycles : 1.0) / static_cast<double>(raw.samples() - 1);
 }
 
+std::optional<RowStamps> stamps_of(const RawRecording& raw) {
+  const std::vector<double>& stamps = raw.time_s.empty() ? raw.step : raw.time_s;
+  if (stamps.size() < 2) return {};
+  double largest = 0.0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) largest = std::max(largest, stamps[i] - stamps[i - 1]);
+  return RowStamps{std::string{raw.time_s.empty() ? kStepColumn : kTimeColumn}, stamps.front(), stamps.back(), largest};
+}
+
 Recording taken(RawRecording raw, double period_s) {
   Recording recording;
   recording.file = raw.file;
@@ -293,6 +301,7 @@ Recording taken(RawRecording raw, double period_s) {
 
 Intake check_recording(RawRecording raw, TimeBase time) {
   FindingList findings;
+  const std::optional<RowStamps> stamps = stamps_of(raw);
   check_columns(raw, findings);
   check_finite(raw, std::string{kTimeColumn}, raw.time_s, findings);
   for (const RawColumn& column : raw.columns) check_finite(raw, column.name, column.values, findings);
@@ -314,7 +323,9 @@ Intake check_recording(RawRecording raw, TimeBase time) {
   }
   if (period_s > 0.0) check_units(raw, period_s, findings);
   if (!findings.empty()) return {{}, findings.sorted()};
-  return {taken(std::move(raw), period_s), {}};
+  Intake intake{taken(std::move(raw), period_s), {}};
+  intake.recording->stamps = stamps;
+  return intake;
 }
 
 }  // namespace hybridtest

@@ -112,6 +112,13 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   }
   json["sensors"] = Json::array();
   for (const report::SensorFacts& facts : report.sensors) json["sensors"].push_back(sensor_entry(facts));
+  json["findings"] = Json::array();
+  for (const report::Finding& finding : report.findings) {
+    json["findings"].push_back({{"recording", finding.recording},
+                                {"interface", finding.interface},
+                                {"what", finding.what},
+                                {"what_to_do", finding.what_to_do}});
+  }
   json["verdict"] = report::name_of(report.verdict);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();

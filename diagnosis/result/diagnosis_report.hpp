@@ -72,6 +72,14 @@ struct SensorFacts {
   std::optional<double> lag_s{};  // of a force behind the displacement
 };
 
+/// What a channel shows before any fit.
+struct Finding {
+  std::string recording;  // its file
+  std::string interface;
+  std::string what;  // a sentence without its full stop that begins with the column
+  std::string what_to_do;
+};
+
 struct ReportedParameter {
   std::string name;  // `friction_force_n`
   std::string unit;
@@ -142,6 +150,7 @@ struct DiagnosisReport {
   std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share
   std::vector<RankedCause> ranking;
   std::vector<SensorFacts> sensors{};
+  std::vector<Finding> findings{};
   std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause
   std::optional<ResponseShrink> response_shrink;
   std::string why_no_response;          // where there is none

@@ -12,6 +12,7 @@
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
 
@@ -199,7 +200,9 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
         }
       },
       counted(progress.part(tuning::kLibrarySearched, 1.0), "effects fitted at the full rate"));
-  return best_first(std::move(refined));
+  candidates = best_first(std::move(refined));
+  drop_refuted(problem, candidates);
+  return candidates;
 }
 
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
@@ -251,7 +254,9 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
         refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
       },
       counted(progress.part(tuning::kPairsSearched, 1.0), "effects fitted together at the full rate"));
-  return best_first(std::move(refitted));
+  std::vector<Candidate> beside = best_first(std::move(refitted));
+  drop_refuted(problem, beside);
+  return beside;
 }
 
 }  // namespace hybridtest

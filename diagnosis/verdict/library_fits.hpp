@@ -45,7 +45,8 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// The effects that a diagnosis can judge on these segments.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
-/// Every judged effect fitted, best score first; effects that cannot be fitted are omitted.
+/// Every judged effect fitted, best score first; effects that cannot be fitted are omitted, and those that the
+/// recordings refute by themselves (refutation()).
 /// @param coarse   the same problem at a lower rate, where every effect is searched over its whole range; those
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,

@@ -1,5 +1,6 @@
 #include "diagnosis/diagnose.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +9,10 @@
 #include <optional>
 #include <sstream>
 
+#include "core/random.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/intake/intake.hpp"
+#include "diagnosis/sanity/channel_findings.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "plant/transfer_systems/delay.hpp"
@@ -20,6 +23,8 @@
 /// the data (shared/data/README.md, and fits by other means), not answers of an earlier version.
 namespace hybridtest {
 namespace {
+
+using testing::HasSubstr;
 
 std::filesystem::path measured_file(const std::string& name) { return shared_data("measured/" + name + ".csv"); }
 
@@ -74,6 +79,38 @@ SiteModel delayed_actuator(double delay_s) {
     return std::make_unique<Delay>(from_seconds(delay_s + change_s), from_seconds(period_s));
   };
   return model;
+}
+
+std::string unusable_in(const SiteModel& model, const Recording& recording) {
+  for (const ChannelFinding& finding : check_channels(model, {&recording, 1}, 0)) {
+    if (finding.is_unusable) return finding.said.what;
+  }
+  return {};
+}
+
+/// Every recording with a model of its specimen that is no more than right in kind.
+TEST(MeasuredChannels, AreUsableUnlessSpoiled) {
+  SiteModel spring = ideal_actuator();
+  spring.make_law = [] { return std::make_unique<Elastic>(1e5); };
+  SiteModel mass = ideal_actuator();
+  mass.effects.push_back({find_effect(EffectInterface::specimen, "inertia"), {95.1}});
+  for (const char* name :
+       {"friction_damper_1Hz36lb_1in", "friction_damper_0.25Hz36lb_1.5in", "friction_damper_2Hz36lb_0.5in",
+        "friction_damper_KocaeliDBE", "friction_damper_ImperialValleyDBE", "servo_hydraulic_mr_damper_0A",
+        "servo_hydraulic_mr_damper_1A", "servo_axis_excitation", "servo_axis_validation", "rc_column_kunnath",
+        "rc_column_gill"}) {
+    HYBRIDTEST_NEEDS_DATA(measured_file(name));
+    const bool is_mass = std::string_view{name}.starts_with("servo_axis");
+    Recording recording = measured(name);
+    const SiteModel& model = is_mass ? mass : spring;
+    EXPECT_EQ(unusable_in(model, recording), "") << name;
+    std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+    for (double& value : force_n) value *= -1.0;
+    EXPECT_THAT(unusable_in(model, recording), HasSubstr("wrong sign")) << name;
+    Random random{4};
+    for (double& value : force_n) value = random.normal();
+    EXPECT_THAT(unusable_in(model, recording), HasSubstr("nothing but noise")) << name;
+  }
 }
 
 class ServoHydraulicActuator : public testing::Test {

@@ -1,0 +1,272 @@
+#include "diagnosis/verdict/refutations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+#include "diagnosis/identification/search.hpp"
+#include "diagnosis/identification/search_table.hpp"
+#include "diagnosis/page/wording.hpp"
+#include "diagnosis/signals/signals.hpp"
+#include "diagnosis/tuning.hpp"
+#include "plant/effects/parameter_limits.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+using enum EffectInterface;
+
+/// One fitted effect and the data that may speak against it.
+struct Suspect {
+  const IdentificationProblem& problem;
+  const EffectSetting& effect;
+  const std::vector<ParameterEstimate>& estimates;
+
+  [[nodiscard]] const ParameterEstimate& parameter(std::string_view name) const {
+    const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
+    return estimates[static_cast<std::size_t>(found - effect.type->parameters.begin())];
+  }
+  [[nodiscard]] std::string name() const {
+    return report::plain(effect.type->name) + " of the " + report::plain(name_of(effect.type->interface));
+  }
+  /// Whether this segment ends in the channel that the effect changes.
+  [[nodiscard]] bool ends_at(const FitSegment& fit) const {
+    const bool is_force = effect.type->interface == specimen || effect.type->interface == force_sensor;
+    return fit.segment.to == (is_force ? Channel::measured_force : Channel::measured_displacement) &&
+           fit.segment.touched_by(*effect.type);
+  }
+};
+
+/// The largest of so many independent draws of noise, as it is expected.
+double noise_peak(const FitSegment& fit) {
+  const double level = std::max(fit.segment.measured_noise, fit.sample_floor);
+  return level * std::sqrt(2.0 * std::log(static_cast<double>(fit.segment.measured.size())));
+}
+
+double largest(std::span<const double> values) {
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+/// Changes over `lag` samples, per sample.
+std::vector<double> changes_over(std::span<const double> values, std::size_t lag) {
+  std::vector<double> changes;
+  for (std::size_t i = lag; i < values.size(); ++i) {
+    changes.push_back((values[i] - values[i - lag]) / static_cast<double>(lag));
+  }
+  return changes;
+}
+
+/// Readings that a limit bounds, in its unit, and the noise that they may pass it by.
+struct Bounded {
+  std::vector<double> readings;
+  double noise = 0.0;
+};
+
+/// Speeds over windows of 1, 2, 4 … samples up to the length that speeds are checked over elsewhere: the wider, the
+/// less noise.
+std::vector<Bounded> speeds(const FitSegment& fit) {
+  std::vector<Bounded> result;
+  const double period_s = fit.segment.period_s;
+  for (std::size_t lag = 1; static_cast<double>(lag) * period_s <= tuning::kRestLength_s; lag *= 2) {
+    Bounded speed{.readings = changes_over(fit.segment.measured, lag)};
+    for (double& value : speed.readings) value /= period_s;
+    speed.noise = std::sqrt(2.0) * noise_peak(fit) / (static_cast<double>(lag) * period_s);
+    result.push_back(std::move(speed));
+  }
+  return result;
+}
+
+std::vector<Bounded> readings(const FitSegment& fit) { return {{fit.segment.measured, noise_peak(fit)}}; }
+
+/// A limit that bounds what is read: `unit` of the limit.
+std::string limit_refuted(const Suspect& suspect, std::string_view name, std::string_view unit,
+                          std::vector<Bounded> (*bounded)(const FitSegment&)) {
+  const ParameterEstimate& limit = suspect.parameter(name);
+  const double unsure = tuning::kTwoSided95 * limit.standard_error;
+  double reached = 0.0;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!suspect.ends_at(fit)) continue;
+    for (const Bounded& bound : bounded(fit)) {
+      const double highest = (1.0 + tuning::kBeyondLimit) * limit.value + unsure + bound.noise;
+      const auto beyond =
+          std::ranges::count_if(bound.readings, [&](double value) { return std::abs(value) > highest; });
+      if (static_cast<std::size_t>(beyond) >= tuning::kClippedRun) {
+        return fmt::format("{}: {:.2g} % of the readings pass its limit of {}", suspect.name(),
+                           100.0 * static_cast<double>(beyond) / static_cast<double>(bound.readings.size()),
+                           report::quantity(limit.value, unit));
+      }
+      reached = std::max(reached, largest(bound.readings) - bound.noise);
+    }
+  }
+  if (reached >= (1.0 - tuning::kBeyondLimit) * limit.value - unsure) return {};
+  return fmt::format("{}: no reading comes near its limit of {}", suspect.name(), report::quantity(limit.value, unit));
+}
+
+/// What a stretch at rest reads beyond the model.
+struct RestGap {
+  double begin_s = 0.0;
+  double place_m = 0.0;
+  double gap = 0.0;
+};
+
+std::vector<RestGap> gaps_at_rest(const FitSegment& fit, std::span<const double> input_m) {
+  std::vector<RestGap> gaps;
+  for (const RestStretch& rest : rest_stretches(input_m, fit.segment.period_s)) {
+    const auto begin = static_cast<Eigen::Index>(rest.begin / fit.averaged);
+    const auto count = static_cast<Eigen::Index>(rest.count / fit.averaged);
+    if (count == 0 || begin + count > fit.measured.size()) continue;
+    gaps.push_back({.begin_s = static_cast<double>(rest.begin) * fit.segment.period_s,
+                    .place_m = input_m[rest.begin],
+                    .gap = (fit.measured - fit.baseline).segment(begin, count).mean()});
+  }
+  return gaps;
+}
+
+std::vector<double> input_of(const FitSegment& fit) {
+  std::vector<double> input_m(fit.segment.input.size());
+  std::ranges::transform(fit.segment.input, input_m.begin(), &Motion::displacement_m);
+  return input_m;
+}
+
+bool is_nearer_to_none(double read, double claimed) { return std::abs(read) < std::abs(read - claimed); }
+
+/// Before any motion, at the place where the model is at rest, a bias is all that a sensor reads.
+std::string bias_refuted(const Suspect& suspect, std::string_view name, std::string_view unit) {
+  const double bias = suspect.parameter(name).value;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!suspect.ends_at(fit)) continue;
+    const std::vector<double> input_m = input_of(fit);
+    const std::vector<RestGap> gaps = gaps_at_rest(fit, input_m);
+    if (gaps.empty() || gaps.front().begin_s > 0.0) continue;
+    if (std::abs(gaps.front().place_m) > reversal_threshold_m(input_m)) continue;
+    if (!is_nearer_to_none(gaps.front().gap, bias)) continue;
+    return fmt::format("{} by {}: at rest before the test the reading differs from the model by {}", suspect.name(),
+                       report::quantity(bias, unit), report::quantity(gaps.front().gap, unit));
+  }
+  return {};
+}
+
+/// Between two rests at one place, readings move by the drift.
+std::string drift_refuted(const Suspect& suspect, std::string_view name, std::string_view unit) {
+  const double drift_per_s = suspect.parameter(name).value;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!suspect.ends_at(fit)) continue;
+    const std::vector<double> input_m = input_of(fit);
+    const std::vector<RestGap> gaps = gaps_at_rest(fit, input_m);
+    const double here_m = reversal_threshold_m(input_m);
+    const auto last = std::find_if(gaps.rbegin(), gaps.rend(), [&](const RestGap& gap) {
+      return std::abs(gap.place_m - gaps.front().place_m) <= here_m;
+    });
+    if (last == gaps.rend()) continue;
+    const double claimed = drift_per_s * (last->begin_s - gaps.front().begin_s);
+    const double read = last->gap - gaps.front().gap;
+    // Only rests that are far apart say something of a whole recording.
+    const double whole = drift_per_s * fit.segment.period_s * static_cast<double>(input_m.size());
+    if (std::abs(claimed) < tuning::kMainShare * std::abs(whole) || !is_nearer_to_none(read, claimed)) continue;
+    return fmt::format("{}: between rests at the same place the reading should move by {} and moves by {}",
+                       suspect.name(), report::quantity(claimed, unit), report::quantity(read, unit));
+  }
+  return {};
+}
+
+/// A column drifts by a tenth of its height when it collapses.
+std::string height_refuted(const Suspect& suspect) {
+  const double height_m = suspect.parameter("height_m").value;
+  const double stroke_m = suspect.problem.scales.displacement_m;
+  if (height_m >= tuning::kHeightOverStroke * stroke_m) return {};
+  return fmt::format("{}: a column of {} does not move sideways by {}", suspect.name(), report::quantity(height_m, "m"),
+                     report::quantity(stroke_m, "m"));
+}
+
+/// Between reversals friction sticks over twice its presliding displacement, then it slides.
+std::string friction_refuted(const Suspect& suspect) {
+  const double sticks_m = 2.0 * suspect.parameter("presliding_displacement_m").value;
+  double path_m = 0.0;
+  double stuck_m = 0.0;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!suspect.ends_at(fit)) continue;
+    const std::vector<double> input_m = input_of(fit);
+    double last_m = input_m.front();
+    for (const Reversal& reversal : reversals_of(input_m, reversal_threshold_m(input_m))) {
+      const double way_m = std::abs(reversal.displacement_m - last_m);
+      path_m += way_m;
+      stuck_m += std::min(way_m, sticks_m);
+      last_m = reversal.displacement_m;
+    }
+  }
+  if (stuck_m <= tuning::kMainShare * path_m) return {};
+  return fmt::format("{}: it would stick over {:.0f} % of the path, as a spring that yields", suspect.name(),
+                     100.0 * stuck_m / path_m);
+}
+
+/// What speaks against an effect beyond its interval.
+struct Check {
+  EffectInterface interface;
+  std::string_view effect;
+  std::string (*refuted)(const Suspect&);
+};
+
+constexpr std::array kChecks{
+    Check{force_sensor, "saturation", [](const Suspect& s) { return limit_refuted(s, "limit_n", "N", readings); }},
+    Check{transfer_system, "stroke_limit",
+          [](const Suspect& s) { return limit_refuted(s, "stroke_limit_m", "m", readings); }},
+    Check{transfer_system, "velocity_limit",
+          [](const Suspect& s) { return limit_refuted(s, "velocity_limit_m_per_s", "m/s", speeds); }},
+    Check{force_sensor, "bias", [](const Suspect& s) { return bias_refuted(s, "bias_n", "N"); }},
+    Check{displacement_sensor, "bias", [](const Suspect& s) { return bias_refuted(s, "bias_m", "m"); }},
+    Check{force_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_n_per_s", "N"); }},
+    Check{displacement_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_m_per_s", "m"); }},
+    Check{specimen, "geometric_stiffness", height_refuted},
+    Check{specimen, "coulomb_friction", friction_refuted},
+    Check{specimen, "stribeck_friction", friction_refuted},
+};
+
+/// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter: an
+/// interval beside a shape that makes up for the size says nothing of absence.
+std::string absence_not_excluded(const Suspect& suspect) {
+  const auto free = std::ranges::count_if(suspect.effect.type->parameters, [&](const EffectParameter& parameter) {
+    return !is_fixed(suspect.problem, *suspect.effect.type, parameter);
+  });
+  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+    const EffectParameter& parameter = suspect.effect.type->parameters[i];
+    const ParameterEstimate& estimate = suspect.estimates[i];
+    const bool can_be_absent = std::isfinite(parameter.neutral) && std::abs(parameter.neutral) < kUnbounded;
+    if (!can_be_absent || (free > 1 && !parameter.is_linear) ||
+        is_fixed(suspect.problem, *suspect.effect.type, parameter))
+      continue;
+    const double off = std::abs(estimate.value - parameter.neutral);
+    if (off > tuning::kTwoSided95 * estimate.standard_error) continue;
+    return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), parameter.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
+  for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
+    const Suspect suspect{problem, candidate.fit.effects[i], candidate.fit.parameters[i]};
+    // Effects found before were needed without this one; beside it their intervals may be wide.
+    std::string why = suspect.effect.type == candidate.type ? absence_not_excluded(suspect) : std::string{};
+    for (const Check& check : kChecks) {
+      const EffectType& type = *suspect.effect.type;
+      if (why.empty() && check.interface == type.interface && check.effect == type.name) why = check.refuted(suspect);
+    }
+    if (!why.empty()) return why;
+  }
+  return {};
+}
+
+void drop_refuted(const IdentificationProblem& problem, std::vector<Candidate>& candidates) {
+  std::erase_if(candidates, [&](const Candidate& candidate) { return !refutation(problem, candidate).empty(); });
+}
+
+}  // namespace hybridtest

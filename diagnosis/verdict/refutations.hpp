@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/verdict/library_fits.hpp"
+
+namespace hybridtest {
+
+/// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves, or an effect
+/// that was fitted together with it. In words, with values; empty when nothing speaks against it. Refuted are
+///
+/// - a limit of a load cell, of stroke or of velocity that readings pass, or that none comes near;
+/// - a bias or drift of a sensor, when readings at rest are nearer to none than to that one;
+/// - a candidate whose own interval (95 %), of what it is proportional to or of its only parameter, holds the value at
+///   which it is absent;
+/// - a column that is shorter than ten times its drift;
+/// - dry friction that sticks over more than half of the path: that is an elastoplastic spring.
+[[nodiscard]] std::string refutation(const IdentificationProblem& problem, const Candidate& candidate);
+
+/// Drops what is refuted; the order of the others stays.
+void drop_refuted(const IdentificationProblem& problem, std::vector<Candidate>& candidates);
+
+}  // namespace hybridtest

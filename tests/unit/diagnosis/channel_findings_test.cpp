@@ -1,0 +1,164 @@
+#include "diagnosis/sanity/channel_findings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/page/diagnosis_json.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+double spring_n(double time_s) { return kMadeStiffness_n_per_m * made_motion_m(time_s); }
+double velocity_m_per_s(double t) { return (made_motion_m(t + 1e-5) - made_motion_m(t - 1e-5)) / 2e-5; }
+double acceleration_m_per_s2(double t) { return (velocity_m_per_s(t + 1e-3) - velocity_m_per_s(t - 1e-3)) / 2e-3; }
+
+/// A force that has nothing to do with the motion.
+double other_n(double t) {
+  return 2e4 * std::sin(11.0 * t + 3.0 * std::sin(1.7 * t)) + 1e4 * std::sin(4.3 * t * t / 12.0);
+}
+
+std::vector<std::string> found_in(const Recording& recording, const SiteModel& model = made_model()) {
+  std::vector<std::string> texts;
+  for (const ChannelFinding& finding : check_channels(model, {&recording, 1}, 0)) {
+    texts.push_back((finding.is_unusable ? "! " : "  ") + finding.said.interface + ": " + finding.said.what);
+  }
+  return texts;
+}
+
+std::vector<std::string> found_with(const std::function<double(double)>& force_n) {
+  return found_in(made_recording(made_motion_m, force_n));
+}
+
+/// The diagnosis must not name anything at the specimen or its load cell.
+void expect_not_judged(const Recording& recording, const std::string& why) {
+  const Diagnosis diagnosis = diagnose(made_model(), {&recording, 1}, {});
+  EXPECT_TRUE(diagnosis.causes.empty()) << diagnosis.causes.front().type->name;
+  EXPECT_NE(diagnosis.report.verdict, Verdict::named);
+  const std::string json = diagnosis_json(diagnosis);
+  const std::string expected = "\"specimen\": \"measured_force_n " + why;
+  EXPECT_NE(json.find(expected), std::string::npos) << expected;
+  EXPECT_NE(json.find("\"what_to_do\""), std::string::npos);
+  EXPECT_THAT(diagnosis.report.notes, testing::Contains(HasSubstr(why)));
+}
+
+TEST(ChannelFindings, DeadForceIsNotJudged) {
+  EXPECT_THAT(found_in(made_recording(
+                  made_motion_m, [](double) { return 120.0; }, 0.0)),
+              ElementsAre(HasSubstr("! specimen: measured_force_n never changes")));
+  const Recording noise = made_recording(made_motion_m, [](double) { return 0.0; });
+  EXPECT_THAT(found_in(noise), ElementsAre(HasSubstr("! specimen: measured_force_n is nothing but noise of 20")));
+  expect_not_judged(noise, "is nothing but noise");
+}
+
+TEST(ChannelFindings, FrozenForceIsNotJudged) {
+  Recording recording = made_recording(made_motion_m, spring_n);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  std::fill(force_n.begin() + 2000, force_n.begin() + 4000, force_n[2000]);
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("stands still at")));
+  // A gap holds the force at nothing while the motion stays inside; so does rest.
+  EXPECT_THAT(found_in(made_recording(
+                  made_motion_m,
+                  [](double t) { return std::max(0.0, spring_n(t) - 2e4) + std::min(0.0, spring_n(t) + 2e4); }, 0.0)),
+              IsEmpty());
+}
+
+TEST(ChannelFindings, UnrelatedForceIsNotJudged) {
+  EXPECT_THAT(found_with(other_n), ElementsAre(HasSubstr("! specimen: measured_force_n has nothing to do with")));
+  expect_not_judged(made_recording(made_motion_m, other_n), "has nothing to do with");
+}
+
+TEST(ChannelFindings, ForceOfAnotherTimeIsNotJudged) {
+  // Two sines repeat; a chirp does not.
+  const auto chirp_m = [](double t) { return 0.02 * std::sin(2.0 * t + 0.6 * t * t); };
+  Recording recording =
+      made_recording(chirp_m, [&](double t) { return t < 0.8 ? 0.0 : kMadeStiffness_n_per_m * chirp_m(t - 0.8); });
+  recording.dofs[0].of(Channel::command_displacement).clear();
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("follows measured_displacement_m 0.8 s too late")));
+}
+
+TEST(ChannelFindings, ReversedSignsAreSaid) {
+  const Recording reversed = made_recording(made_motion_m, [](double t) { return -spring_n(t); });
+  EXPECT_THAT(found_in(reversed), ElementsAre(HasSubstr("! specimen: measured_force_n has the wrong sign")));
+  expect_not_judged(reversed, "has the wrong sign");
+  EXPECT_THAT(found_with([](double t) { return -0.3 * spring_n(t); }), ElementsAre(HasSubstr("wrong sign")));
+  EXPECT_THAT(found_with([](double t) { return velocity_m_per_s(t) > 0.0 ? -1e4 : 1e4; }),
+              ElementsAre(HasSubstr("the force drives the motion")));
+  EXPECT_THAT(found_in(made_recording([](double t) { return -made_motion_m(t); }, spring_n)),
+              ElementsAre(HasSubstr("! transfer_system: measured_displacement_m has the wrong sign: it runs against "
+                                    "command_displacement_m")));
+}
+
+TEST(ChannelFindings, ForcesOfEverySpecimenPass) {
+  Bilinear law{{.stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 1e4, .hardening_ratio = 0.02}};
+  EXPECT_THAT(found_with(spring_n), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return 0.1 * spring_n(t); }), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return 5e4 * velocity_m_per_s(t); }), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return velocity_m_per_s(t) > 0.0 ? 1e4 : -1e4; }), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return spring_n(t) + 3e4 * acceleration_m_per_s2(t); }), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return 3e4 * acceleration_m_per_s2(t); }), IsEmpty())
+      << "a mass without spring";
+  EXPECT_THAT(found_with([](double t) { return spring_n(t - 0.03); }), IsEmpty());
+  EXPECT_THAT(found_with([](double t) { return spring_n(t) + 2e4 * t; }), IsEmpty()) << "drift";
+  EXPECT_THAT(found_with([&](double t) {
+                const double force_n = law.trial(made_motion_m(t), 0.0);
+                law.commit();
+                return force_n;
+              }),
+              IsEmpty());
+}
+
+TEST(ChannelFindings, TwoRecordingsKeepTheUsableOne) {
+  const std::vector<Recording> recordings{made_recording(made_motion_m, spring_n),
+                                          made_recording(made_motion_m, other_n)};
+  const std::vector<ChannelFinding> findings = check_channels(made_model(), recordings, 0);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].recording, 1U);
+  std::vector<Recording> copy;
+  const std::span<const Recording> usable = usable_part(recordings, 0, findings, copy);
+  EXPECT_TRUE(usable[0].dofs[0].has(Channel::measured_force));
+  EXPECT_FALSE(usable[1].dofs[0].has(Channel::measured_force));
+}
+
+/// Force and displacement of a site with a resonance, `samples` per cycle of it.
+Recording resonance(double samples) {
+  Recording recording = made_recording(made_motion_m, spring_n);
+  DofRecording& dof = recording.dofs[0];
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    const double ring = std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / samples);
+    dof.of(Channel::measured_displacement)[i] += 5e-5 * ring;
+    dof.of(Channel::measured_force)[i] += 2e4 * ring;
+  }
+  return recording;
+}
+
+TEST(ChannelFindings, SlowSamplingIsSaidWhereItMatters) {
+  SiteModel with_mass = made_model();
+  with_mass.effects.push_back({find_effect(EffectInterface::specimen, "inertia"), {10.0}});
+  EXPECT_THAT(found_in(resonance(9.0), with_mass),
+              ElementsAre(HasSubstr("  specimen: measured_force_n is sampled too slowly")));
+  EXPECT_THAT(found_in(resonance(9.0)), IsEmpty()) << "no derivatives needed";
+  EXPECT_THAT(found_in(resonance(30.0), with_mass), IsEmpty());
+  EXPECT_THAT(found_in(resonance(3.0)), ElementsAre(HasSubstr("sampled too slowly")));
+}
+
+TEST(ChannelFindings, SkewWithinASampleIsSaid) {
+  EXPECT_THAT(found_with([](double t) { return spring_n(t - 0.4 * kSitePeriod_s); }),
+              ElementsAre(HasSubstr("less than a sample")));
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -1,0 +1,139 @@
+#include "diagnosis/verdict/refutations.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+using enum EffectInterface;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+double spring_n(double time_s) { return kMadeStiffness_n_per_m * made_motion_m(time_s); }
+
+/// Two seconds at rest, the motion, and rest again.
+double between_rests_m(double time_s) { return time_s < 2.0 || time_s > 10.0 ? 0.0 : made_motion_m(time_s - 2.0); }
+
+IdentificationProblem problem_of(const Recording& recording) {
+  return make_problem(made_model(), segments_of(recording, 0, 0));
+}
+
+/// A fit with these values, as sure as `error` of each.
+Candidate fit_of(EffectInterface interface, std::string_view effect, const std::vector<double>& values,
+                 double error = 1e-9) {
+  Candidate candidate;
+  candidate.type = find_effect(interface, effect);
+  candidate.fit.effects.push_back({candidate.type, values});
+  candidate.fit.parameters.emplace_back();
+  for (const double value : values) {
+    candidate.fit.parameters.back().push_back({.value = value, .standard_error = error});
+  }
+  return candidate;
+}
+
+TEST(Refutation, LoadCellLimitThatReadingsPass) {
+  const auto clipped_n = [](double t) { return std::clamp(spring_n(t), -30e3, 30e3); };
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, clipped_n));
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {30e3})), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {20e3})),
+              HasSubstr("of the readings pass its limit"));
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
+}
+
+TEST(Refutation, StrokeAndSpeedLimitThatMotionPasses) {
+  const auto stopped_m = [](double t) { return std::clamp(made_motion_m(t), -0.02, 0.02); };
+  const IdentificationProblem stopped = problem_of(made_recording(stopped_m, spring_n));
+  EXPECT_THAT(refutation(stopped, fit_of(transfer_system, "stroke_limit", {0.02})), IsEmpty());
+  EXPECT_THAT(refutation(stopped, fit_of(transfer_system, "stroke_limit", {0.015})), HasSubstr("pass its limit"));
+  EXPECT_THAT(refutation(stopped, fit_of(transfer_system, "stroke_limit", {0.03})), HasSubstr("no reading comes near"));
+
+  // A triangle of 0.05 m/s, under 20 um of noise: sample by sample the speed would be 0.014 m/s wrong.
+  const auto triangle_m = [](double t) { return 0.05 / 2.0 * std::abs(std::fmod(t, 1.0) - 0.5) * 2.0; };
+  Recording recording = made_recording(triangle_m, spring_n);
+  Random random{8};
+  for (double& value : recording.dofs[0].of(Channel::measured_displacement)) value += 2e-5 * random.normal();
+  const IdentificationProblem slow = problem_of(recording);
+  EXPECT_THAT(refutation(slow, fit_of(transfer_system, "velocity_limit", {0.05})), IsEmpty());
+  EXPECT_THAT(refutation(slow, fit_of(transfer_system, "velocity_limit", {0.04})), HasSubstr("pass its limit"));
+  EXPECT_THAT(refutation(slow, fit_of(transfer_system, "velocity_limit", {0.08})), HasSubstr("no reading comes near"));
+}
+
+TEST(Refutation, BiasAndDriftThatRestContradicts) {
+  const auto force_of = [](double bias_n, double drift_n_per_s) {
+    return [=](double t) { return kMadeStiffness_n_per_m * between_rests_m(t) + bias_n + drift_n_per_s * t; };
+  };
+  const IdentificationProblem clean = problem_of(made_recording(between_rests_m, force_of(0.0, 0.0)));
+  EXPECT_THAT(refutation(clean, fit_of(force_sensor, "bias", {500.0})), HasSubstr("at rest before the test"));
+  EXPECT_THAT(refutation(clean, fit_of(force_sensor, "drift", {50.0})), HasSubstr("between rests at the same place"));
+  EXPECT_THAT(refutation(problem_of(made_recording(between_rests_m, force_of(500.0, 0.0))),
+                         fit_of(force_sensor, "bias", {500.0})),
+              IsEmpty());
+  EXPECT_THAT(refutation(problem_of(made_recording(between_rests_m, force_of(0.0, 50.0))),
+                         fit_of(force_sensor, "drift", {50.0})),
+              IsEmpty());
+  // Without rest there is nothing to say.
+  const IdentificationProblem moving = problem_of(
+      made_recording([](double t) { return made_motion_m(t + 3.0); }, [](double t) { return spring_n(t + 3.0); }));
+  EXPECT_THAT(refutation(moving, fit_of(force_sensor, "bias", {500.0})), IsEmpty());
+}
+
+TEST(Refutation, IntervalThatHoldsNoEffect) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "viscous_damping", {100.0}, 60.0)),
+              HasSubstr("the interval of damping_n_s_per_m holds the value at which it is absent"));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "viscous_damping", {100.0}, 40.0)), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "viscous_damping", {0.0}, 0.0)), HasSubstr("absent"))
+      << "at its bound";
+  Candidate broken = fit_of(specimen, "fracture", {0.2, 5.0}, 0.0);
+  broken.fit.parameters[0][0].standard_error = 0.3;
+  EXPECT_THAT(refutation(problem, broken), HasSubstr("lost_ratio"));
+  EXPECT_THAT(refutation(problem, fit_of(transfer_system, "bandwidth", {0.02, 0.1}, 0.02)), IsEmpty()) << "a shape";
+}
+
+TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate pair = fit_of(specimen, "viscous_damping", {100.0}, 40.0);
+  pair.fit.effects.push_back({find_effect(specimen, "inertia"), {5.0}});
+  pair.fit.parameters.push_back({{.value = 5.0, .standard_error = 4.0}});
+  EXPECT_THAT(refutation(problem, pair), IsEmpty());
+  pair.type = find_effect(specimen, "inertia");
+  EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
+}
+
+TEST(Refutation, ColumnShorterThanTenDrifts) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "geometric_stiffness", {1e4, 0.059})),
+              HasSubstr("does not move sideways"));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "geometric_stiffness", {1e4, 3.0})), IsEmpty());
+}
+
+TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.012}, 0.0001)),
+              HasSubstr("of the path, as a spring that yields"));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001}, 0.0001)), IsEmpty());
+}
+
+TEST(Refutation, DropsWhatIsRefutedAndKeepsTheOrder) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  std::vector<Candidate> candidates{fit_of(specimen, "viscous_damping", {100.0}),
+                                    fit_of(force_sensor, "saturation", {1e3}),
+                                    fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001})};
+  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].score = 3.0 - static_cast<double>(i);
+  drop_refuted(problem, candidates);
+  ASSERT_EQ(candidates.size(), 2U);
+  EXPECT_EQ(candidates[0].score, 3.0);
+  EXPECT_EQ(candidates[1].score, 1.0);
+}
+
+}  // namespace
+}  // namespace hybridtest
