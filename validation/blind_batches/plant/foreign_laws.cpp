@@ -140,9 +140,16 @@ const std::map<std::string, LawEntry>& entries() {
       {"fading_slip_lock", {"energy", {"bouc_wen_baber_noori", "pinching"}, {}, {}}},
       {"fading_with_path", {"path", {"bouc_wen_baber_noori"}, {"stiffness_degradation", "strength_degradation"}, {}}},
       {"fading_with_energy",
-       {"energy", {"bouc_wen_baber_noori"}, {"stiffness_degradation", "strength_degradation"}, {}}},
-      {"fading_with_peak", {"peak", {"peak_oriented", "takeda"}, {"stiffness_degradation"}, {}}},
-      {"fading_with_time", {"time", {}, {"stiffness_degradation", "strength_degradation"}, {}}},
+       {"energy",
+        {"bouc_wen_baber_noori"},
+        {"stiffness_degradation_with_energy", "strength_degradation_with_energy"},
+        {}}},
+      {"fading_with_peak",
+       {"peak",
+        {"peak_oriented", "takeda"},
+        {"stiffness_degradation_with_peak", "strength_degradation_with_peak"},
+        {}}},
+      {"fading_with_time", {"time", {}, {"stiffness_degradation_with_time", "strength_degradation_with_time"}, {}}},
       {"tendon", {"", {"self_centring"}, {}, {}}},
       {"power_stack",
        {"", {"ramberg_osgood", "giuffre_menegotto_pinto", "bouc_wen"}, {}, {"yielding", "bouc_wen_hysteresis"}}},
@@ -250,9 +257,13 @@ std::vector<Cause> names_of_law(const std::string& law, LawKind users) {
 
 std::vector<Cause> parts_of_law(LawKind users) {
   std::vector<Cause> causes{{"specimen", "hysteresis_law"}};  // any
-  for (const char* name : {"stiffness_error", "bouc_wen_hysteresis", "coulomb_friction", "pinching",
-                           "stiffness_degradation", "strength_degradation"}) {
+  for (const char* name : {"stiffness_error", "bouc_wen_hysteresis", "coulomb_friction", "pinching"}) {
     causes.push_back({"specimen", name});
+  }
+  for (const std::string lost : {"stiffness_degradation", "strength_degradation"}) {
+    for (const char* with : {"", "_with_peak", "_with_energy", "_with_cycles", "_with_time"}) {
+      causes.push_back({"specimen", lost + with});
+    }
   }
   causes.push_back({"specimen", users == LawKind::elastic ? "yielding" : "strength_error"});
   return causes;

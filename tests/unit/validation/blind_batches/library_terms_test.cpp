@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 #include <string>
@@ -35,6 +36,22 @@ TEST(LibraryTerms, EveryEffectAndParameterIsInTheLibrary) {
       }
     }
   }
+}
+
+TEST(LibraryTerms, RightNamesOfLawsAreEffectsOfTheLibrary) {
+  const auto is_known = [](const Cause& cause) {
+    return cause.effect == "hysteresis_law" || cause.effect == "strength_error" ||
+           std::ranges::any_of(effect_library(), [&](const EffectType& type) {
+             return name_of(type.interface) == cause.interface && type.name == cause.effect;
+           });
+  };
+  for (const LawKind users : {LawKind::elastic, LawKind::bilinear}) {
+    for (const std::string& law : foreign_laws()) {
+      for (const Cause& cause : names_of_law(law, users)) EXPECT_TRUE(is_known(cause)) << cause.effect;
+    }
+    for (const Cause& cause : parts_of_law(users)) EXPECT_TRUE(is_known(cause)) << cause.effect;
+  }
+  EXPECT_FALSE(is_known({"specimen", "stiffness_degradation_with_colour"}));  // control
 }
 
 TEST(LibraryTerms, ThreeQuartersOfTheKindsHaveOtherEquations) {
