@@ -67,7 +67,7 @@ void strengthen(PlantEffect& effect, double factor, const Scales& scales) {
     if (is_any_of(name, {"gain", "stiffness_ratio", "strength_ratio"})) {
       value = std::clamp(1.0 + factor * (value - 1.0), 0.4, 1.6);
     } else if (is_any_of(name, {"bandwidth_hz", "natural_frequency_hz"}) ||
-               (is_compliance && name == "stiffness_n_per_m")) {
+               (is_compliance && name == "stiffness_n_per_m") || name == "scale") {
       value /= factor;
     } else if (is_any_of(name, {"pinching_ratio", "lost_ratio", "share"})) {
       value = std::clamp(factor * value, -0.8, 0.8);

@@ -223,6 +223,14 @@ const std::vector<CatalogueEntry>& named_effects() {
        [](RandomStream& r, Setting s, double) {
          return Parameters{{"degradation_per_m", r.log_uniform(0.001, 0.03) / stroke(s)}};
        }},
+      {"specimen", "stiffness_degradation_with_peak", is_elastic,
+       [](RandomStream& r, Setting s, double) {
+         return Parameters{{"scale", stroke(s) / r.log_uniform(0.05, 0.8)}};
+       }},
+      {"specimen", "stiffness_degradation_with_time", is_elastic,
+       [](RandomStream& r, Setting s, double) {
+         return Parameters{{"scale", s.scales.duration_s / r.log_uniform(0.05, 0.8)}};
+       }},
       {"specimen", "strength_degradation", is_bilinear,
        [](RandomStream& r, Setting s, double) {
          return Parameters{{"degradation_per_m", r.log_uniform(0.002, 0.03) / stroke(s)}};

@@ -253,6 +253,13 @@ ForceTerm share_of(const PlantEffect& effect) {
       return fading(at.displacement_m);
     };
   }
+  if (name == "stiffness_degradation_with_peak" || name == "stiffness_degradation_with_time") {
+    return
+        [fading = Fading{name.ends_with("peak") ? "peak" : "time", effect.of("scale")}](const MotionPoint& at) mutable {
+          fading.after(at, 0.0);
+          return fading.left();
+        };
+  }
   if (name == "pinching") {
     return [ratio = effect.of("pinching_ratio"), width = effect.of("width_m")](const MotionPoint& at) {
       const double place = at.displacement_m / width;

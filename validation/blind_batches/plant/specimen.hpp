@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "validation/blind_batches/plant/plant.hpp"
@@ -105,6 +108,29 @@ class MovingSlot {
   static constexpr std::size_t kSlots = 9;
   std::array<double, kSlots> half_width_m_{};
   std::array<double, kSlots> pin_m_{};
+};
+
+/// exp(-d / D), d: path, largest displacement, work, or time.
+class Fading {
+ public:
+  Fading(std::string_view with, double scale) : with_{with}, scale_{scale} {}
+  [[nodiscard]] double left() const { return std::exp(-spent_ / scale_); }
+  void after(const MotionPoint& at, double force) {
+    const double step = at.displacement_m - x_;
+    x_ = at.displacement_m;
+    work_ += force * step;
+    if (with_ == "path") spent_ += std::abs(step);
+    if (with_ == "peak") spent_ = std::max(spent_, std::abs(x_));
+    if (with_ == "energy") spent_ = std::max(spent_, work_);
+    if (with_ == "time") spent_ = at.time_s;
+  }
+
+ private:
+  std::string_view with_;
+  double scale_;
+  double x_ = 0.0;
+  double work_ = 0.0;
+  double spent_ = 0.0;
 };
 
 /// Force of a part of the specimen at each fine step, in order.
