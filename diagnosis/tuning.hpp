@@ -254,8 +254,6 @@ inline constexpr double kCovarianceRidge = 1e-9;
 inline constexpr double kAsGoodAsLinear = 1e-3;
 inline constexpr int kRelinearisations = 3;
 inline constexpr double kCoefficientStep = 1e-2;
-/// Upper limit of the estimated correlation of neighbouring residuals.
-inline constexpr double kNeighbourCorrelationMax = 0.999;
 
 // Score of a candidate [nats].
 

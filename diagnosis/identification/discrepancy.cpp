@@ -243,20 +243,16 @@ Eigen::VectorXd Discrepancy::left_out(const Eigen::VectorXd& residual, Eigen::In
   return remainder;
 }
 
-ResidualParts Discrepancy::parts(const Eigen::VectorXd& residual) const {
+ResidualParts Discrepancy::best_of(const Eigen::VectorXd& residual, std::vector<Eigen::VectorXd> remainders) {
   const auto samples = static_cast<double>(std::max<Eigen::Index>(1, residual.size()));
-  ResidualParts best{.remainder = residual, .total = residual.squaredNorm() / samples};
-  std::vector<Eigen::VectorXd> remainders;
-  for (const Eigen::Index columns : sets_) {
-    for (const double ridge : tuning::kRidges) remainders.push_back(left_out(residual, columns, ridge));
-  }
+  const double total = residual.squaredNorm();
+  ResidualParts best{.remainder = residual, .total = total / samples};
   const Eigen::VectorXd least =
       *std::ranges::min_element(remainders, {}, [](const Eigen::VectorXd& values) { return values.squaredNorm(); });
-  const std::vector<double> covariance =
-      autocovariance(least.squaredNorm() < residual.squaredNorm() ? least : residual);
+  const std::vector<double> covariance = autocovariance(least.squaredNorm() < total ? least : residual);
   double highest = 0.0;
   for (Eigen::VectorXd& remainder : remainders) {
-    const double gain = residual.squaredNorm() - remainder.squaredNorm();
+    const double gain = total - remainder.squaredNorm();
     if (gain <= highest) continue;
     const double error = 2.0 * std::sqrt(variance_along(residual - remainder, covariance));
     if (gain - tuning::kTwoSided99 * error <= highest) continue;
@@ -268,8 +264,24 @@ ResidualParts Discrepancy::parts(const Eigen::VectorXd& residual) const {
   return best;
 }
 
+ResidualParts Discrepancy::parts(const Eigen::VectorXd& residual) const {
+  std::vector<Eigen::VectorXd> remainders;
+  for (const Eigen::Index columns : sets_) {
+    for (const double ridge : tuning::kRidges) remainders.push_back(left_out(residual, columns, ridge));
+  }
+  return best_of(residual, std::move(remainders));
+}
+
+Eigen::VectorXd Discrepancy::pull(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) const {
+  const double repeatable =
+      best_of(residual, {left_out(residual, features_.cols(), tuning::kRidges[tuning::kRidges.size() / 2])}).repeatable;
+  if (repeatable <= 0.0) return Eigen::VectorXd::Zero(weights.cols());
+  const double of_each = repeatable / static_cast<double>(features_.cols());
+  return of_each * (features_.transpose() * weights).cwiseAbs2().colwise().sum().transpose();
+}
+
 double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual) {
-  return Discrepancy{fit}.parts(residual).share();
+  return fit.discrepancy->parts(residual).share();
 }
 
 double independent_samples(const Eigen::VectorXd& values) {

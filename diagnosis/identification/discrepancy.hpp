@@ -36,7 +36,15 @@ class Discrepancy {
   /// @param residual   in the averaged samples of the segment, unweighted.
   [[nodiscard]] ResidualParts parts(const Eigen::VectorXd& residual) const;
 
+  /// Variances of numbers that are weighted sums of the residual, from the part of it that repeats: each feature may
+  /// hold as much of its energy as all do on average (all features, the middle penalty), and pulls at the numbers by
+  /// its product with their weights.
+  /// @param weights   one column per number, one row per averaged sample.
+  [[nodiscard]] Eigen::VectorXd pull(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) const;
+
  private:
+  /// Of several remainders the one whose gain, minus its error, is largest; the residual itself if none counts.
+  [[nodiscard]] static ResidualParts best_of(const Eigen::VectorXd& residual, std::vector<Eigen::VectorXd> remainders);
   /// The residual minus what the features explain of it, every fold left out once.
   [[nodiscard]] Eigen::VectorXd left_out(const Eigen::VectorXd& residual, Eigen::Index columns, double ridge) const;
 

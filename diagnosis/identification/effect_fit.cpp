@@ -1,10 +1,12 @@
 #include "diagnosis/identification/effect_fit.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -46,17 +48,6 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   return result;
 }
 
-/// Number of independent samples for this correlation of neighbours: N (1 - r) / (1 + r).
-double effective_share(const Eigen::VectorXd& residual) {
-  const Eigen::Index n = residual.size();
-  if (n < 3) return 1.0;
-  const double total = residual.squaredNorm();
-  if (total <= 0.0) return 1.0;
-  const double r =
-      std::clamp(residual.head(n - 1).dot(residual.tail(n - 1)) / total, 0.0, tuning::kNeighbourCorrelationMax);
-  return (1.0 - r) / (1.0 + r);
-}
-
 Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
   normal.diagonal() *= 1.0 + tuning::kCovarianceRidge;
   normal.diagonal().array() += std::numeric_limits<double>::min();
@@ -88,30 +79,54 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
   }
 }
 
-/// Variances of the free parameters: the larger of two estimates. One assumes a constant residual level and a number of
-/// independent samples from the correlation of neighbours. The other uses the differences between blocks (Liang and
-/// Zeger, Biometrika 73, 1986, with blocks as clusters): even a good model does not fit all blocks equally.
-Eigen::VectorXd variances_of(const VariableProjection& projection, const IdentificationProblem& problem,
-                             const Linearisation& linear, const Eigen::VectorXd& residual) {
+/// Variances of the free parameters, and their degrees of freedom.
+struct Variances {
+  Eigen::VectorXd values;
+  double freedom = 1.0;
+};
+
+/// What a block pulls at the parameters, as if it had not pulled the fit towards itself: its residual over one minus
+/// its leverage (CR3 of Bell and McCaffrey, Survey Methodology 28, 2002), brought to the parameters' size by
+/// X' f(X M X') = f(X'X M) X', with M = root root' the inverse of the normal matrix.
+Eigen::VectorXd pull_of_block(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
+                              const Eigen::MatrixXd& root) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage{root.transpose() * (columns.transpose() * columns) *
+                                                                root};
+  const Eigen::VectorXd scale = (1.0 - leverage.eigenvalues().array()).max(tuning::kCovarianceRidge).inverse().matrix();
+  const Eigen::VectorXd own =
+      leverage.eigenvectors().transpose() * (root.transpose() * (columns.transpose() * residual));
+  return root * (leverage.eigenvectors() * scale.cwiseProduct(own));
+}
+
+/// Two parts. One is how much blocks disagree (Liang and Zeger, Biometrika 73, 1986, blocks as clusters, corrected for
+/// their small number): noise of any colour and distribution. The other is what repeats of the residual and that no
+/// difference between blocks shows: the discrepancy term, of which each feature may take as much as all take here on
+/// average, also along the columns of the parameters (random effects).
+Variances variances_of(const VariableProjection& projection, const IdentificationProblem& problem,
+                       const Linearisation& linear, const Eigen::VectorXd& residual) {
   const Eigen::Index count = linear.columns.cols();
-  const auto freedom = static_cast<double>(std::max<Eigen::Index>(1, projection.rows() - count));
-  const double variance = residual.squaredNorm() / (freedom * effective_share(residual));
+  if (count == 0) return {};
   const Eigen::MatrixXd inverse =
       regularised(linear.columns.transpose() * linear.columns).ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(count, count);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts{inverse};
+  const Eigen::MatrixXd root = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  Variances result{.values = Eigen::VectorXd::Zero(count)};
   double blocks = 0.0;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b, blocks += 1.0) {
       const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
-      const Eigen::VectorXd own = linear.columns.middleRows(first, size).transpose() * residual.segment(first, size);
-      pull += own * own.transpose();
+      result.values +=
+          pull_of_block(linear.columns.middleRows(first, size), residual.segment(first, size), root).cwiseAbs2();
     }
+    const Eigen::Index first = projection.first_row(t);
+    const Eigen::Index size = fit.measured.size();
+    result.values +=
+        fit.discrepancy->pull(residual.segment(first, size), linear.columns.middleRows(first, size) * inverse);
   }
-  const double few = blocks / std::max(1.0, blocks - 1.0);
-  const Eigen::VectorXd of_blocks = (few * inverse * pull * inverse).diagonal();
-  return (variance * inverse.diagonal()).cwiseMax(of_blocks).cwiseMax(0.0);
+  result.freedom = std::max(1.0, blocks - 1.0);
+  return result;
 }
 
 std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& projection,
@@ -123,10 +138,10 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
     result.emplace_back();
     for (const double value : effect.values) result.back().push_back({.value = value});
   }
-  const Eigen::VectorXd variances = variances_of(projection, problem, linear, solution.residual);
+  const Variances variances = variances_of(projection, problem, linear, solution.residual);
   const SearchPlan& plan = projection.plan();
   for (std::size_t i = 0; i < linear.free.size(); ++i) {
-    const double deviation = std::sqrt(variances[static_cast<Eigen::Index>(i)]);
+    const double deviation = std::sqrt(variances.values[static_cast<Eigen::Index>(i)]);
     const std::size_t index = linear.free[i];
     if (index < plan.searched.size()) {
       const SearchedParameter& searched = plan.searched[index];
@@ -134,10 +149,14 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
       const double per_place = (searched.at(std::min(1.0, place + tuning::kSlopeStep)) -
                                 searched.at(std::max(0.0, place - tuning::kSlopeStep))) /
                                (2.0 * tuning::kSlopeStep);
-      result[searched.effect][searched.parameter].standard_error = deviation * std::abs(per_place);
+      ParameterEstimate& estimate = result[searched.effect][searched.parameter];
+      estimate.standard_error = deviation * std::abs(per_place);
+      estimate.freedom = variances.freedom;
     } else if (index - plan.searched.size() < plan.linear.size()) {
       const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
-      result[parameter.effect][parameter.parameter].standard_error = deviation * std::abs(parameter.unit);
+      ParameterEstimate& estimate = result[parameter.effect][parameter.parameter];
+      estimate.standard_error = deviation * std::abs(parameter.unit);
+      estimate.freedom = variances.freedom;
     }
   }
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
@@ -206,6 +225,16 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
 }
 
 }  // namespace
+
+double half_width_95(const ParameterEstimate& estimate) noexcept {
+  const double z = tuning::kTwoSided95;
+  const double n = 1.0 / estimate.freedom;
+  const double quantile =
+      z + n * ((std::pow(z, 3) + z) / 4.0 +
+               n * ((5.0 * std::pow(z, 5) + 16.0 * std::pow(z, 3) + 3.0 * z) / 96.0 +
+                    n * (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * std::pow(z, 3) - 15.0 * z) / 384.0));
+  return quantile * estimate.standard_error;
+}
 
 double SegmentResult::held_out_mean_square(const FitSegment& segment) const {
   return std::accumulate(held_out_squares.begin(), held_out_squares.end(), 0.0) /

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "diagnosis/identification/problem.hpp"
@@ -9,9 +10,14 @@ namespace hybridtest {
 /// A parameter of a fitted effect.
 struct ParameterEstimate {
   double value = 0.0;
-  double standard_error = 0.0;  // corrected for the residual's autocorrelation
+  double standard_error = 0.0;  // from the differences between blocks, and from what repeats of the residual
   bool at_bound = false;        // of its search range
+  double freedom = std::numeric_limits<double>::infinity();  // degrees of freedom of the standard error: blocks - 1
 };
+
+/// Half of the 95 % interval: Student's quantile times the standard error. The quantile is expanded in the inverse of
+/// the degrees of freedom (Abramowitz and Stegun, 1964, 26.7.5; within 0.3 % from 4 on).
+[[nodiscard]] double half_width_95(const ParameterEstimate& estimate) noexcept;
 
 /// Residuals of a fit on one segment, in its averaged samples.
 struct SegmentResult {

@@ -278,7 +278,7 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
     reported.unit = parameter.unit;
     reported.value = estimates[i].value;
     reported.is_at_bound = estimates[i].at_bound;
-    const double half = tuning::kTwoSided95 * estimates[i].standard_error;
+    const double half = half_width_95(estimates[i]);
     if (half > 0.0) reported.ci95 = report::Interval{reported.value - half, reported.value + half};
     cause.parameters.push_back(std::move(reported));
   }

@@ -79,8 +79,7 @@ bool is_of_sensor(const EffectType& effect) {
 bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, const ParameterEstimate& estimate) {
   const double off = std::abs(estimate.value - parameter.fallback);  // NaN where it has to be given
   const double resolved = (range.high - range.low) * tuning::kRangeUnresolved;
-  return off <=
-         std::max(tuning::kTwoSided95 * estimate.standard_error, range.scale == ParameterScale::one ? resolved : 0.0);
+  return off <= std::max(half_width_95(estimate), range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
 /// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer

@@ -73,7 +73,7 @@ TEST(Discrepancy, ExplainsNothingOfNoiseOfAnyColour) {
       }
     }
   }
-  // Of 2250 draws, over more seeds, 1 was. One in twenty would be 4 of these 80.
+  // Of 5000 draws, over more seeds, 1 was. One in twenty would be 4 of these 80.
   EXPECT_LE(alarms, 2);
 }
 
