@@ -16,7 +16,7 @@
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/experiments.hpp"
-#include "diagnosis/verdict/library_fits.hpp"
+#include "diagnosis/verdict/selection.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/where.hpp"
 
@@ -44,18 +44,41 @@ bool explains_all_of(std::span<const Trace> traces, const Segment& segment) {
          });
 }
 
+/// One channel of the chain: the gap in it, what explains it, and the verdict on that.
+struct Stage {
+  IdentificationProblem problem;  // the channel's own segments are its suspects
+  Selection selection;
+  Judgement judgement;
+
+  [[nodiscard]] bool has_causes() const { return report::names_a_cause(judgement.verdict); }
+  [[nodiscard]] bool concerns(std::string_view interface) const {
+    if (has_causes()) {
+      return std::ranges::any_of(selection.chosen.effects, [&](const EffectSetting& effect) {
+        return name_of(effect.type->interface) == interface;
+      });
+    }
+    return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+      return fit.is_suspect && name_of(fit.segment.interface) == interface;
+    });
+  }
+};
+
 /// The causes of the verdict first, then the other candidates.
-std::vector<RankedCause> rank(const IdentificationProblem& problem, const Selection& selection,
-                              const Judgement& judgement, const PartProgress& progress) {
+/// @param part   of the whole explained gap, that this stage explains.
+std::vector<RankedCause> rank(const Stage& stage, double part) {
+  const Selection& selection = stage.selection;
+  const Judgement& judgement = stage.judgement;
   std::vector<RankedCause> ranking;
-  const bool has_causes = report::names_a_cause(judgement.verdict);
+  if (judgement.verdict == Verdict::none) return ranking;
   std::vector<const EffectType*> listed;
-  if (has_causes) {
-    const std::vector<double> shares = cause_shares(problem, selection.baseline, selection.chosen, progress);
+  const bool is_set = judgement.verdict == Verdict::set;
+  if (stage.has_causes()) {
     for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
       RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
       cause.is_cause = true;
-      cause.share = shares[i];
+      cause.share = part * selection.shares[i];
+      cause.probability = selection.chosen_probabilities[i];
+      cause.is_indistinguishable = is_set && selection.chosen.effects[i].type == selection.library.front().type;
       listed.push_back(selection.chosen.effects[i].type);
       ranking.push_back(std::move(cause));
     }
@@ -63,29 +86,13 @@ std::vector<RankedCause> rank(const IdentificationProblem& problem, const Select
   }
   for (std::size_t i = 0; i < selection.library.size() && ranking.size() < tuning::kRankingMax; ++i) {
     const Candidate& candidate = selection.library[i];
-    const auto known = std::ranges::find(listed, candidate.type);
+    if (std::ranges::find(listed, candidate.type) != listed.end()) continue;
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
-    if (known != listed.end()) {
-      const auto entry = std::ranges::find_if(ranking, [&](const RankedCause& cause) {
-        return cause.effect == candidate.type->name && cause.interface == name_of(candidate.type->interface);
-      });
-      entry->probability = selection.probabilities[i];
-      entry->is_indistinguishable = judgement.verdict == Verdict::set;
-      continue;
-    }
     RankedCause cause = ranked(candidate.fit.effects.front(), candidate.fit.parameters.front());
     cause.probability = selection.probabilities[i];
-    cause.is_indistinguishable = in_set && has_causes;
-    cause.is_cause = cause.is_indistinguishable && judgement.verdict == Verdict::set;
+    cause.is_indistinguishable = in_set;
+    cause.is_cause = in_set && is_set;
     ranking.push_back(std::move(cause));
-  }
-  std::ranges::stable_sort(ranking,
-                           [](const RankedCause& a, const RankedCause& b) { return a.is_cause && !b.is_cause; });
-  // A second cause does not compete with the first one: its probability follows from its own share of the evidence.
-  if (selection.chosen.effects.size() > 1 && has_causes) {
-    for (RankedCause& cause : ranking) {
-      if (cause.is_cause) cause.probability = 1.0 - judgement.gap_left;
-    }
   }
   return ranking;
 }
@@ -139,33 +146,42 @@ void worst_first(std::vector<report::InterfaceSeries>& series) {
   std::ranges::stable_sort(series, {}, rank);
 }
 
-std::string next_experiment(const Selection& selection, const Judgement& judgement,
-                            const std::vector<report::InterfaceGap>& where) {
-  if (judgement.verdict == Verdict::set) {
+std::string next_experiment(std::span<const Stage> stages, const std::vector<report::InterfaceGap>& where) {
+  for (const Stage& stage : stages) {
+    if (stage.judgement.verdict != Verdict::set) continue;
     std::vector<const EffectType*> members;
-    for (const std::size_t i : judgement.indistinguishable) members.push_back(selection.library[i].type);
+    for (const std::size_t i : stage.judgement.indistinguishable) members.push_back(stage.selection.library[i].type);
     return experiment_that_splits(members);
   }
-  if (judgement.verdict != Verdict::unknown && judgement.verdict != Verdict::partial) return {};
-  for (const EffectInterface interface :
-       {EffectInterface::network, EffectInterface::compensator, EffectInterface::transfer_system,
-        EffectInterface::displacement_sensor, EffectInterface::specimen, EffectInterface::force_sensor}) {
-    if (!where.empty() && where.front().interface == name_of(interface)) return experiment_for_unknown(interface);
+  const auto is_open = [](const Stage& stage) {
+    return stage.judgement.verdict == Verdict::unknown || stage.judgement.verdict == Verdict::partial;
+  };
+  for (const report::InterfaceGap& gap : where) {
+    const bool open = std::ranges::any_of(
+        stages, [&](const Stage& stage) { return is_open(stage) && stage.concerns(gap.interface); });
+    if (!open) continue;
+    for (const EffectInterface interface :
+         {EffectInterface::network, EffectInterface::compensator, EffectInterface::transfer_system,
+          EffectInterface::displacement_sensor, EffectInterface::specimen, EffectInterface::force_sensor}) {
+      if (gap.interface == name_of(interface)) return experiment_for_unknown(interface);
+    }
   }
   return {};
 }
 
-std::vector<EffectSetting> causes_of(const Selection& selection, const Judgement& judgement,
-                                     std::span<const Trace> traces) {
+std::vector<EffectSetting> causes_of(std::span<const Stage> stages, std::span<const Trace> traces) {
   std::vector<EffectSetting> causes;
-  if (report::names_a_cause(judgement.verdict)) causes = selection.chosen.effects;
+  for (const Stage& stage : stages) {
+    if (!stage.has_causes()) continue;
+    causes.insert(causes.end(), stage.selection.chosen.effects.begin(), stage.selection.chosen.effects.end());
+  }
   std::ranges::transform(traces, std::back_inserter(causes), &Trace::effect);
   return causes;
 }
 
-/// The segments in which the fit found a gap. A channel that a cause also changes, but that is within its noise floor
-/// with and without the cause, does not show how much of the gap is removed.
-std::vector<Segment> with_a_gap(const IdentificationProblem& problem, std::span<const Segment> segments) {
+/// The segments like those in which the fit found a gap. A channel that a cause also changes, but that is within its
+/// noise floor with and without the cause, does not show how much of the gap is removed.
+std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments) {
   std::vector<Segment> kept;
   std::ranges::copy_if(segments, std::back_inserter(kept), [&](const Segment& segment) {
     const auto alike = [&](const FitSegment& fit) {
@@ -192,15 +208,60 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
 }
 
 void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
-                                   const Selection& selection, Judgement& judgement, Diagnosis& diagnosis) {
-  report::DiagnosisReport& report = diagnosis.report;
-  const Verdict verdict = verdict_carried_over(judgement.verdict, shrinks(model, diagnosis.causes, held_out, seed));
-  if (verdict == judgement.verdict) return;
-  report.notes.push_back(std::string{selection.chosen.effects.front().type->name} +
-                         " fits the fitted recordings but not the held-out ones.");
-  judgement = {.verdict = verdict, .indistinguishable = {}, .gap_left = 1.0};
-  report.interface_shrink.reset();
-  diagnosis.causes.clear();
+                                   std::vector<Stage>& stages, std::vector<std::string>& notes) {
+  for (Stage& stage : stages) {
+    if (!stage.has_causes()) continue;
+    // Beside the causes of the other stages, so that this one's own part is judged.
+    const std::vector<EffectSetting> causes = causes_of(stages, {});
+    const Verdict verdict = verdict_carried_over(stage.judgement.verdict,
+                                                 shrinks(model, causes, at_suspects(stage.problem, held_out), seed));
+    if (verdict == stage.judgement.verdict) continue;
+    notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
+                    " fits the fitted recordings but not the held-out ones.");
+    stage.judgement = {.verdict = verdict, .indistinguishable = {}, .gap_left = 1.0};
+  }
+}
+
+/// The channels of the chain one after the other. What a channel names of the displacement sensor also changes the
+/// force, and is added to the model before the force is judged.
+std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
+                                const IdentificationProblem& whole, const DiagnoseSettings& settings,
+                                const PartProgress& progress) {
+  std::vector<Segment> thin;
+  for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
+  IdentificationProblem fine = whole;
+  IdentificationProblem coarse = make_problem(model, thin);
+  std::vector<Channel> outputs;
+  for (const Segment& segment : segments) {
+    if (std::ranges::find(outputs, segment.to) == outputs.end()) outputs.push_back(segment.to);
+  }
+  std::ranges::sort(outputs);
+  std::vector<Stage> stages;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    Stage stage{judged_at(fine, outputs[i]), {}, {}};
+    IdentificationProblem thinner = judged_at(coarse, outputs[i]);
+    stage.selection = select_effects(stage.problem, thinner, settings.threads, progress.round(i, outputs.size()));
+    settle_noise(stage.problem, stage.selection.chosen);
+    stage.judgement = judge(stage.problem, stage.selection);
+    if (stage.has_causes() && i + 1 < outputs.size()) {
+      SiteModel corrected = fine.model;
+      std::ranges::copy_if(
+          stage.selection.chosen.effects, std::back_inserter(corrected.effects),
+          [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::displacement_sensor; });
+      if (corrected.effects.size() > fine.model.effects.size()) {
+        fine = make_problem(corrected, segments);
+        coarse = make_problem(corrected, thin);
+      }
+    }
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+/// Fit of all causes in the whole problem, for where the gap lies.
+FitOutcome fit_of_all(const IdentificationProblem& problem, std::span<const Stage> stages) {
+  const std::vector<EffectSetting> causes = causes_of(stages, {});
+  return causes.empty() ? fit_nothing(problem, false) : refit_effects(problem, causes, false);
 }
 
 /// What is not known of a test without time.
@@ -293,35 +354,51 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     return diagnosis;
   }
   IdentificationProblem problem = make_problem(model, segments);
-  std::vector<Segment> thin;
-  for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
-  const IdentificationProblem coarse = make_problem(model, std::move(thin));
-  const Selection selection =
-      select_effects(problem, coarse, settings.threads, progress.part(tuning::kPrepared, tuning::kSelected));
-  settle_noise(problem, selection.chosen);
-  Judgement judgement = judge(problem, selection);
-  diagnosis.causes = causes_of(selection, judgement, traces);
+  std::vector<Stage> stages =
+      judge_stages(model, segments, problem, settings, progress.part(tuning::kPrepared, tuning::kSelected));
   const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
+  if (!held_out.empty() && traces.empty()) {
+    drop_what_does_not_carry_over(model, held_out, settings.seed, stages, report.notes);
+  }
+  diagnosis.causes = causes_of(stages, traces);
   if (!diagnosis.causes.empty()) {
-    const std::vector<Segment> with_gap = with_a_gap(problem, judged);
-    report.interface_shrink = shrink_on(model, diagnosis.causes, with_gap, settings.seed);
+    report.interface_shrink = shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed);
     if (held_out.empty()) {
       report.notes.emplace_back(
           "No recording was held out: the gap that remains is measured on the fitted recordings.");
-    } else if (traces.empty()) {
-      drop_what_does_not_carry_over(model, with_gap, settings.seed, selection, judgement, diagnosis);
     }
   }
-  const GapParts parts = gap_parts(problem, selection, judgement, traces);
-  report.verdict = verdict_with(traces, judgement, parts);
-  report.ranking = rank(problem, selection, judgement, progress.part(tuning::kSelected, tuning::kRanked));
-  report.where =
-      locate(problem, selection.baseline,
-             report::names_a_cause(judgement.verdict) ? selection.chosen : selection.baseline, settings.seed);
+  GapParts parts;
+  for (const Trace& trace : traces) parts.traced += trace.gap_share;
+  std::vector<Judgement> judgements;
+  std::vector<double> explained;
+  for (const Stage& stage : stages) {
+    const double before = parts.explained;
+    add_gap(stage.problem, stage.selection, stage.judgement, parts);
+    explained.push_back(parts.explained - before);
+    judgements.push_back(stage.judgement);
+  }
+  report.verdict = verdict_with(traces, verdict_of(judgements), parts);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const double part = parts.explained > 0.0 ? explained[i] / parts.explained : 1.0;
+    std::ranges::move(rank(stages[i], part), std::back_inserter(report.ranking));
+  }
+  put_causes_first(report.ranking);
+  const FitOutcome all_causes = fit_of_all(problem, stages);
+  settle_noise(problem, all_causes);
+  report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
   add_traces(traces, parts, report.ranking);
   add_traces(traces, parts, report.where);
-  report.next_experiment = next_experiment(selection, judgement, report.where);
+  report.next_experiment = next_experiment(stages, report.where);
+  for (report::InterfaceGap& gap : report.where) {
+    if (!gap.is_at_fault) continue;
+    for (const Stage& stage : stages) {
+      if (stage.judgement.verdict != Verdict::none && stage.concerns(gap.interface)) {
+        gap.verdict = stage.judgement.verdict;
+      }
+    }
+  }
   const std::vector<Excitation> excitations = excitations_of(problem);
   leave_out_unexcited(excitations, report.where);
   add_repeatability(model, segments, report.where);

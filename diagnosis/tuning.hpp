@@ -210,6 +210,16 @@ inline constexpr int kStepSections = 24;
 inline constexpr double kFitRate_hz = 250.0;
 /// Time before the recording during which everything is assumed at rest at the values of the first sample.
 inline constexpr double kRestBefore_s = 0.5;
+/// Substeps of the laws that integrate an equation: a search needs no more digits than a recording has.
+inline constexpr double kLawSubsteps = 8.0;
+/// What no function of the motion explains is taken for noise up to this share of the output [rms over rms]. A sensor
+/// with more noise would be replaced before a test; more is the specimen's history.
+inline constexpr double kNoiseShareMax = 0.05;
+/// Energy that a fit leaves of blocks left out, over that of fitted ones, from which on its optional parameters are in
+/// doubt: each parameter adds some percent with five blocks or more.
+inline constexpr double kHeldOutBeyondFitted = 1.5;
+/// Groups of samples among which the typical noise is looked for: six places, there and back.
+inline constexpr std::size_t kNoiseGroups = 12;
 /// Seed of the noise from which floors are computed.
 inline constexpr std::uint64_t kNoiseSeed = 1;
 /// Share of the signal that no model is expected to reproduce. It prevents rounding from deciding in recordings
@@ -262,16 +272,26 @@ inline constexpr double kNuisanceCost = 3.0;
 /// Largest error of a slightly wrong model, as a share of the secant stiffness.
 inline constexpr double kSlightlyWrong = 0.25;
 /// Advantage that an effect of a sensor needs over an effect of a stage with the same shape [nats].
-inline constexpr double kSensorPrior = 1.0;
+/// More than a second parameter of the stage costs. What the data cannot tell apart is a set in any case.
+inline constexpr double kSensorPrior = 6.0;
 /// Advantage that an effect needs for each parameter that it has more than another effect [nats]. Of two effects that
 /// do equally well on held-out data the simpler one is chosen. Half the logarithm of the independent samples of 30 s.
 inline constexpr double kParameterPrior = 2.5;
+/// Presliding over peak displacement above which an element is not dry friction, and the stiffness beside it, over that
+/// of both, from which on the two are a specimen that yields and hardens: a hundredth is what a fit does not resolve.
+inline constexpr double kPreslidingMax = 0.02;
+inline constexpr double kHardeningMin = 0.01;
 /// A ratio that differs from its fallback by less than this share of its range counts as left out. The search has no
 /// finer resolution.
 inline constexpr double kRangeUnresolved = 1e-3;
 /// An effect that is worse than the best one by more than this on the coarse record is not fitted again and not
 /// paired [nats].
 inline constexpr double kFarBehind = 25.0;
+/// Correlation of two changes of the prediction above which they are the same: what is left, a twentieth of the
+/// amplitude, is within the error of any model.
+inline constexpr double kSameSignature = 0.999;
+/// Likewise of what they leave, as a share of its energy.
+inline constexpr double kSameResidual = 0.1;
 /// How many of the screened second effects are searched together with the first.
 inline constexpr std::size_t kRefittedPairs = 5;
 
@@ -315,6 +335,8 @@ inline constexpr double kRanked = 0.99;
 /// End of the fits of single effects and of pairs, in the choice of effects.
 inline constexpr double kLibraryFitted = 0.1;
 inline constexpr double kPairsFitted = 0.5;
+/// End of the rounds that look for further effects.
+inline constexpr double kEffectsChosen = 0.9;
 /// End of the search of single effects, in their fits.
 inline constexpr double kLibrarySearched = 0.8;
 /// End of the screening and of the search, in a round that looks for a further effect.
@@ -340,8 +362,14 @@ inline constexpr double kWellExcitedOverNoise = 30.0;
 inline constexpr double kFaultOverFloor = 1.15;
 /// When one gap exceeds its floor by more than this factor, gaps below this factor count as none.
 inline constexpr double kSuspectOverFloor = 2.0;
-/// Share of the repeatable gap [variance] up to which its cause is named, and up to which it is named in part.
-inline constexpr double kNamedLeaves = 0.0625;
+/// Share of the repeatable gap [variance] up to which its cause is named (a tenth of its amplitude), and up to which it
+/// is named in part.
+inline constexpr double kNamedLeaves = 0.01;
+/// Residual over the floor [rms over rms] up to which nothing of a gap is left, and above which no cause is named alone.
+inline constexpr double kNearFloor = 2.0;
+inline constexpr double kWellAboveFloor = 10.0;
+/// Of kNamedLeaves, so little that the floor does not matter: computed signals have none.
+inline constexpr double kNearNothing = 0.1;
 inline constexpr double kPartialLeaves = 0.3;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;

@@ -26,6 +26,14 @@ StageEffects effects_at(const SiteModel& model, EffectInterface interface, doubl
   return StageEffects{std::move(made)};
 }
 
+std::unique_ptr<Law> law_of(const SiteModel& model) {
+  const auto replaced =
+      std::ranges::find_if(model.effects.rbegin(), model.effects.rend(),
+                           [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
+  if (replaced != model.effects.rend()) return replaced->type->replacement->make(replaced->values);
+  return model.make_law ? model.make_law() : nullptr;
+}
+
 double delay_change_s(const SiteModel& model) {
   const EffectType* const delay = find_effect(EffectInterface::transfer_system, "delay");
   double change_s = 0.0;

@@ -45,6 +45,10 @@ struct SiteModel {
 /// @throws ConfigError as the effects.
 [[nodiscard]] StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s);
 
+/// The law of the specimen: the last replacement among the effects, else the model's own. null: no force.
+/// @throws ConfigError as the law.
+[[nodiscard]] std::unique_ptr<Law> law_of(const SiteModel& model);
+
 /// Sum of what the `delay` effects of the transfer system take off its own delay; zero or negative.
 /// @throws ConfigError when that is more than there is.
 [[nodiscard]] double delay_change_s(const SiteModel& model);

@@ -95,7 +95,7 @@ SpecimenStage::SpecimenStage(std::unique_ptr<Law> law, StageEffects specimen_eff
       sensor_effects_{std::move(sensor_effects)} {}
 
 SpecimenStage::SpecimenStage(const SiteModel& model, double sample_period_s)
-    : SpecimenStage{model.make_law ? model.make_law() : nullptr, effects_at(model, At::specimen, sample_period_s),
+    : SpecimenStage{law_of(model), effects_at(model, At::specimen, sample_period_s),
                     effects_at(model, At::force_sensor, sample_period_s)} {}
 
 double SpecimenStage::step(const StageSample& sample) noexcept {

@@ -1,6 +1,7 @@
 #include "scenario/site_model_file.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -156,17 +157,78 @@ std::string corrected(const std::string& compensators, const std::vector<SiteMod
   return result;
 }
 
+/// A law as a scenario writes it, with a line for each number.
+std::string written_law(const EffectSetting& replacement) {
+  const LawReplacement& law = *replacement.type->replacement;
+  std::string lines = "type: " + std::string{law.law} + "\n";
+  for (const LawParameter& parameter : law.written(replacement.values)) {
+    lines += parameter.name + ": " + written_number(parameter.value) + "\n";
+  }
+  return lines;
+}
+
+/// The laws under `specimen`, one per degree of freedom, as their lines without indentation.
+std::vector<std::string> laws_in(const std::string& block, std::size_t dofs) {
+  std::vector<std::string> laws;
+  std::istringstream stream{block};
+  for (std::string line; std::getline(stream, line);) {
+    const bool begins = line.starts_with("  - ");
+    if (begins || laws.empty()) laws.emplace_back();
+    const std::size_t margin = line.starts_with("    ") || begins ? 4 : 2;
+    laws.back() += line.substr(std::min(margin, line.size())) + "\n";
+  }
+  if (laws.empty()) laws.emplace_back("type: none\n");
+  if (laws.size() == 1) laws.resize(dofs, laws.front());
+  return laws;
+}
+
+/// The text with other laws under its key `specimen`, which stands at its top.
+std::string with_laws(const std::string& text, std::span<const ListedEffect> replacements, std::size_t dofs) {
+  const std::string key = "specimen:";
+  std::size_t begin = text.starts_with(key) ? 0 : text.find("\n" + key);
+  std::size_t end = 0;
+  std::string block;
+  if (begin == std::string::npos) {
+    begin = 0;
+  } else {
+    if (begin > 0) ++begin;
+    const std::size_t first = text.find('\n', begin) + 1;  // what stands on the key's own line is no law
+    for (end = first; end < text.size() && text[end] == ' ';) end = text.find('\n', end) + 1;
+    block = text.substr(first, end - first);
+  }
+  std::vector<std::string> laws = laws_in(block, dofs);
+  for (const ListedEffect& replacement : replacements) {
+    for (std::size_t dof = 0; dof < dofs; ++dof) {
+      if (replacement.dof.value_or(static_cast<int>(dof)) == static_cast<int>(dof)) {
+        laws[dof] = written_law(replacement.setting);
+      }
+    }
+  }
+  std::string written = key + "\n";
+  for (const std::string& law : laws) written += dofs == 1 ? indented(law, "  ", "  ") : indented(law, "  - ", "    ");
+  return text.substr(0, begin) + written + text.substr(end);
+}
+
 }  // namespace
 
 SiteModelText SiteModelFile::with_effects(std::span<const ListedEffect> effects) const {
   SiteModelText result = *this;
   std::vector<ListedEffect> rest(effects.begin(), effects.end());
+  std::vector<ListedEffect> replacements;
+  std::ranges::copy_if(rest, std::back_inserter(replacements),
+                       [](const ListedEffect& effect) { return effect.setting.type->replacement != nullptr; });
+  std::erase_if(rest, [](const ListedEffect& effect) { return effect.setting.type->replacement != nullptr; });
+  if (!replacements.empty()) {
+    result.text = with_laws(text, replacements, dofs.size());
+    result.rig = with_laws(rig, replacements, dofs.size());
+  }
   const std::vector<double> change_s = take_setting_changes(rest, dofs);
   if (std::ranges::any_of(change_s, [](double change) { return change != 0.0; })) {
     result.compensators = corrected(compensators, dofs, change_s);
     const std::string key = "compensator:\n";
     const auto written = [&](const std::string& list) { return key + indented(list, "  ", "  "); };
-    result.text.replace(text.find(written(compensators)), written(compensators).size(), written(result.compensators));
+    result.text.replace(result.text.find(written(compensators)), written(compensators).size(),
+                        written(result.compensators));
   }
   result.text = longer_by(rest, std::move(result.text), has_effects);
   result.rig = longer_by(rest, std::move(result.rig), has_effects);

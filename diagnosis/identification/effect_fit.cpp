@@ -54,10 +54,24 @@ Eigen::MatrixXd regularised(Eigen::MatrixXd normal) {
   return normal;
 }
 
+/// What is known of searched parameters without any data: they lie in their range, 0 to 1, with the variance of an even
+/// distribution, 1 / 12. Without it, two that a block alone tells apart would take any value when it is left out.
+Eigen::MatrixXd knowledge_of_ranges(const VariableProjection& projection, const Linearisation& linear,
+                                    const Eigen::VectorXd& residual) {
+  const auto count = static_cast<Eigen::Index>(linear.held_out_with.size());
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(count);
+  const double variance = residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, residual.size()));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto free = static_cast<std::size_t>(linear.held_out_with[static_cast<std::size_t>(i)]);
+    if (linear.free[free] < projection.plan().searched.size()) precision[i] = 12.0 * variance;
+  }
+  return precision.asDiagonal();
+}
+
 void hold_out(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
               const Eigen::VectorXd& residual, FitOutcome& outcome) {
   const Eigen::MatrixXd columns = linear.columns(Eigen::all, linear.held_out_with);
-  const Eigen::MatrixXd normal = columns.transpose() * columns;
+  const Eigen::MatrixXd normal = columns.transpose() * columns + knowledge_of_ranges(projection, linear, residual);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const std::size_t position = projection.touched()[t];
     const FitSegment& fit = problem.segments[position];
@@ -191,9 +205,9 @@ std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effect
 enum class Look { from_start, everywhere };
 
 /// @param start   first point of the search; empty: none.
-FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
-                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
-  const VariableProjection projection{problem, plan_search(problem, effects), with_nuisance};
+FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance, Freedom freedom) {
+  const VariableProjection projection{problem, plan_search(problem, effects, freedom), with_nuisance};
   const SearchPlan& plan = projection.plan();
   Eigen::VectorXd first(start.empty() ? 0 : static_cast<Eigen::Index>(plan.searched.size()));
   for (Eigen::Index i = 0; i < first.size(); ++i) {
@@ -222,6 +236,37 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
   }
   outcome.parameters = estimates(projection, problem, places, solution, linear, outcome);
   return outcome;
+}
+
+/// Sums of the weighted squares of the touched segments.
+struct Squares {
+  double fitted = 0.0;
+  double held_out = 0.0;
+};
+
+Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outcome) {
+  Squares sum;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    if (!outcome.segments[i].touched) continue;
+    const FitSegment& fit = problem.segments[i];
+    const double weight = fit.weight * fit.weight * static_cast<double>(fit.measured.size());
+    sum.fitted += weight * outcome.segments[i].mean_square;
+    sum.held_out += weight * outcome.segments[i].held_out_mean_square(fit);
+  }
+  return sum;
+}
+
+/// Parameters that a scenario may leave out are left out where the blocks cannot hold them: when they are fitted, but
+/// predict a block that was left out much worse than the others alone do.
+FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
+  FitOutcome all = fit_free(problem, effects, start, look, with_nuisance, Freedom::all);
+  const Squares squares = squares_of(problem, all);
+  const bool has_optional =
+      plan_search(problem, effects, Freedom::required).searched.size() < plan_search(problem, effects).searched.size();
+  if (!has_optional || squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted) return all;
+  FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, Freedom::required);
+  return squares_of(problem, required).held_out < squares.held_out ? required : all;
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -129,16 +131,75 @@ std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit)
   return predicted;
 }
 
-/// @param noise       what no function of the motion explains of a residual.
-/// @param deviation   its root mean square where it is known to be noise, else 0.
-void take_noise(FitSegment& fit, const Eigen::VectorXd& noise, double deviation) {
+/// Median of the mean squares of groups of samples, corrected for what the median of so few draws lies below the mean
+/// (Wilson and Hilferty, 1931).
+double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_t>& group, std::size_t groups,
+                     double independent) {
+  std::vector<double> squares(groups, 0.0);
+  std::vector<double> counts(groups, 0.0);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const std::size_t at = group[static_cast<std::size_t>(i)];
+    squares[at] += values[i] * values[i];
+    counts[at] += 1.0;
+  }
+  std::vector<double> means;
+  for (std::size_t i = 0; i < groups; ++i) {
+    if (counts[i] > 0.0) means.push_back(squares[i] / counts[i]);
+  }
+  if (means.empty()) return 0.0;
+  std::ranges::sort(means);
+  const double median = 0.5 * (means[(means.size() - 1) / 2] + means[means.size() / 2]);
+  const double draws = std::max(1.0, independent / static_cast<double>(means.size()));
+  return median / std::pow(1.0 - 2.0 / (9.0 * draws), 3);
+}
+
+/// Root mean square of the noise in a remainder. Noise is as large in every phase of the motion and all the time; a
+/// part of the specimen that the features do not hold is not. So the typical group of samples counts: by place and
+/// direction of the motion, and by time.
+double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder) {
+  constexpr std::size_t kGroups = tuning::kNoiseGroups;
+  std::vector<double> displacement(fit.segment.input.size());
+  std::ranges::transform(fit.segment.input, displacement.begin(), &Motion::displacement_m);
+  const Eigen::VectorXd place_m = fit.average(displacement);
+  const auto size = static_cast<std::size_t>(remainder.size());
+  std::vector<std::size_t> order(size);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return place_m[static_cast<Eigen::Index>(i)]; });
+  std::vector<std::size_t> phase(size);
+  for (std::size_t rank = 0; rank < size; ++rank) {
+    const auto i = static_cast<Eigen::Index>(order[rank]);
+    const bool rises = place_m[std::min(i + 1, place_m.size() - 1)] > place_m[std::max<Eigen::Index>(i - 1, 0)];
+    phase[order[rank]] = rank * (kGroups / 2) / size + (rises ? kGroups / 2 : 0);
+  }
+  std::vector<std::size_t> time(size);
+  for (std::size_t i = 0; i < size; ++i) time[i] = i * kGroups / size;
+  const double independent = independent_samples(remainder);
+  const double typical = std::min(median_energy(remainder, phase, kGroups, independent),
+                                  median_energy(remainder, time, kGroups, independent));
+  double level = std::min(
+      {root_mean_square(remainder), std::sqrt(typical), tuning::kNoiseShareMax * root_mean_square(fit.measured)});
+  // Where cycles repeat, what does not repeat is seen.
+  const std::vector<double> place(place_m.begin(), place_m.end());
+  const std::vector<double> measured(fit.measured.begin(), fit.measured.end());
+  const std::vector<double> left(remainder.begin(), remainder.end());
+  const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  if (const auto cycles = floor_of_cycles({period_s, place, measured, left})) level = std::min(level, cycles->rms);
+  return level;
+}
+
+/// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
+void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
+  const ResidualParts parts = fit.discrepancy->parts(residual);
+  // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
+  const bool is_noise = parts.repeatable < parts.total - parts.repeatable;
+  const double deviation = is_noise ? noise_level(fit, parts.remainder) : 0.0;
   // What smoothing does to the prediction is no noise and comes on top.
   fit.floor = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
   fit.sample_floor = std::max(fit.channel_sample_floor, std::sqrt(fit.floor * fit.floor + averaged_away));
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
-  fit.independent = independent_samples(noise);
+  fit.independent = independent_samples(parts.remainder);
 }
 
 FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) {
@@ -159,10 +220,7 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) 
   fit.block_begins = blocks_of(fit);
   add_nuisances(model, law_is_spring, fit);
   fit.discrepancy = std::make_shared<Discrepancy>(fit);
-  const ResidualParts parts = fit.discrepancy->parts(fit.measured - fit.baseline);
-  // Of a gap above the noise the remainder may be a part that the features do not hold.
-  const bool is_noise = parts.repeatable < parts.total - parts.repeatable;
-  take_noise(fit, parts.remainder, is_noise ? root_mean_square(parts.remainder) : 0.0);
+  take_noise(fit, fit.measured - fit.baseline);
   return fit;
 }
 
@@ -176,11 +234,12 @@ bool is_spring(const SiteModel& model, double largest_m) {
   });
 }
 
-/// A floor is an estimate: a small excess does not count as a gap when another interface has a clear one.
+/// A floor is an estimate: a small excess does not count as a gap beside a clear one.
+bool is_clear(const FitSegment& fit) {
+  return root_mean_square(fit.measured - fit.baseline) > tuning::kSuspectOverFloor / fit.weight;
+}
+
 void mark_suspects(std::vector<FitSegment>& segments) {
-  const auto is_clear = [](const FitSegment& fit) {
-    return root_mean_square(fit.measured - fit.baseline) > tuning::kSuspectOverFloor / fit.weight;
-  };
   if (std::ranges::none_of(segments, is_clear)) return;
   for (FitSegment& fit : segments) fit.is_suspect = is_clear(fit);
 }
@@ -207,15 +266,27 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     FitSegment& fit = problem.segments[i];
+    // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the
+    // specimen's history, which features of the motion hold badly, and no noise.
+    if (fit.segment.is_quasi_static) continue;
     const Eigen::VectorXd& change = best.segments[i].change;
     Eigen::VectorXd residual = fit.measured - fit.baseline;
     if (change.size() > 0) residual -= change;
-    const Eigen::VectorXd noise = fit.discrepancy->parts(residual).remainder;
-    take_noise(fit, noise, root_mean_square(noise));
+    take_noise(fit, residual);
   }
 }
 
+IdentificationProblem judged_at(const IdentificationProblem& problem, Channel output) {
+  IdentificationProblem part = problem;
+  const auto is_here = [output](const FitSegment& fit) { return fit.segment.to == output; };
+  const bool any_clear =
+      std::ranges::any_of(part.segments, [&](const FitSegment& fit) { return is_here(fit) && is_clear(fit); });
+  for (FitSegment& fit : part.segments) fit.is_suspect = is_here(fit) && (!any_clear || is_clear(fit));
+  return part;
+}
+
 bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
+  if (type.traits.number == ModelNumber::strength) return true;  // not linear, and so no nuisance
   return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
     return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
   });

@@ -75,6 +75,10 @@ struct IdentificationProblem {
 /// under a gap is not known.
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
+/// The same problem with the gap of one channel to explain. The other segments stay: an effect of a displacement sensor
+/// shows in force and motion alike. So one interface never hides what is wrong at another.
+[[nodiscard]] IdentificationProblem judged_at(const IdentificationProblem& problem, Channel output);
+
 /// A slightly wrong number of the user's model.
 [[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;
 

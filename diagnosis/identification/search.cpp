@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/config_error.hpp"
-#include "diagnosis/identification/search_table.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -72,7 +72,7 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 
 bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
   const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
-  const SearchRange* const range = search_range(effect, parameter);
+  const SearchRange* const range = range_of(effect, parameter);
   return range == nullptr || range->restriction.beside == other;
 }
 
@@ -85,7 +85,8 @@ double SearchedParameter::place_of(double value) const noexcept {
   return logarithmic ? std::log(inside / low) / std::log(high / low) : (inside - low) / (high - low);
 }
 
-SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects) {
+SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                       Freedom freedom) {
   SearchPlan plan;
   plan.linear_ones_remove_all = true;
   for (std::size_t i = 0; i < effects.size(); ++i) {
@@ -95,17 +96,19 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
     bool removed_by_linear = false;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
-      if (is_fixed(problem, effect, parameter)) {
+      const bool is_left_out = freedom == Freedom::required && !std::isnan(parameter.fallback) && !parameter.is_linear;
+      if (is_left_out || is_fixed(problem, effect, parameter)) {
         neutral.values.push_back(parameter.fallback);
         continue;
       }
-      const SearchRange& range = *search_range(effect, parameter);
+      const SearchRange& range = *range_of(effect, parameter);
       if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
         const double unit = 0.5 * range.high * problem.scales.of(range.scale);
         const double low = least_of(problem, effect, j, range);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
-        removed_by_linear = true;
+        // Without its stiffness a law has no force, which is not the baseline.
+        removed_by_linear = effect.replacement == nullptr;
       } else {
         plan.searched.push_back(searched(problem, effect, i, j, range));
         neutral.values.push_back(plan.searched.back().at(0.5));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -40,8 +41,11 @@ struct SearchPlan {
   bool linear_ones_remove_all = false;  // without them every effect is absent
 };
 
+/// Which parameters of the effects are free: all, or only those that a scenario has to give.
+enum class Freedom : std::uint8_t { all, required };
+
 [[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
-                                     const std::vector<const EffectType*>& effects);
+                                     const std::vector<const EffectType*>& effects, Freedom freedom = Freedom::all);
 
 /// The parameter is not searched: its fallback is used.
 [[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,

@@ -15,6 +15,7 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
              {"ci95", interval(gap.share_ci95)}, {"nrmse", gap.nrmse},
              {"floor_nrmse", gap.floor_nrmse},   {"time_windows", Json::array()},
              {"bands_hz", Json::array()},        {"regions", Json::array()}};
+  if (gap.verdict) entry["verdict"] = report::name_of(*gap.verdict);
   if (gap.repeatability) {
     entry["repeatability"] = {{"nrmse", gap.repeatability->nrmse}, {"source", gap.repeatability->source}};
   }
@@ -37,7 +38,9 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
 }
 
 Json cause_entry(const report::RankedCause& cause) {
-  Json entry{{"interface", cause.interface}, {"effect", cause.effect}, {"probability", cause.probability}};
+  Json entry{{"interface", cause.interface}, {"effect", cause.effect}};
+  if (!cause.law.empty()) entry["law"] = cause.law;
+  entry["probability"] = cause.probability;
   if (cause.is_cause) {
     entry["share"] = cause.share;
   } else {

@@ -34,7 +34,9 @@ std::string three_digits(double value) {
 std::vector<std::string> causes(const DiagnosisReport& report) {
   std::vector<std::string> names;
   for (const RankedCause& cause : report.ranking) {
-    if (cause.is_cause) names.push_back(plain(cause.effect));
+    if (!cause.is_cause) continue;
+    names.push_back(plain(cause.effect));
+    if (!cause.law.empty()) names.back() += fmt::format(" ({}: the specimen {})", plain(cause.law), cause.in_words);
   }
   return names;
 }
@@ -45,19 +47,20 @@ std::string where_it_lies(const DiagnosisReport& report) {
   return fmt::format("The gap is at the {} ({} of the whole gap)", plain(fault->interface), percent(fault->share));
 }
 
+/// Continues a sentence that names causes.
 std::string removal(const DiagnosisReport& report) {
-  if (!report.interface_shrink) return "";
-  return fmt::format(" Adding {} to the model removes {} of the energy of this gap.",
-                     causes(report).size() > 1 ? "these effects" : "this effect",
-                     percent(report.interface_shrink->variance_removed));
+  if (!report.interface_shrink) return ".";
+  const Shrink& shrink = *report.interface_shrink;
+  return fmt::format(": {} of the energy of this gap is explained, {} is left above the noise.",
+                     percent(shrink.variance_removed), percent(shrink.unknown_share));
 }
 
 std::string named_sentence(const DiagnosisReport& report) {
   const std::vector<std::string> names = causes(report);
   std::string text =
-      where_it_lies(report) + (names.size() > 1 ? ". Its causes are " : ". Its cause is ") + joined(names);
+      where_it_lies(report) + (names.size() > 1 ? "; its causes are " : "; its cause is ") + joined(names);
   if (names.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
-  return text + "." + removal(report);
+  return text + removal(report);
 }
 
 }  // namespace
@@ -142,13 +145,9 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     case Verdict::none: return "The model agrees with the recordings: no gap is larger than its noise floor.";
     case Verdict::named: return named_sentence(report);
     case Verdict::set:
-      return where_it_lies(report) + ". These recordings cannot distinguish " + joined(causes(report)) + "." +
+      return where_it_lies(report) + "; these recordings cannot distinguish " + joined(causes(report)) +
              removal(report);
-    case Verdict::partial: {
-      const double unknown = report.interface_shrink ? report.interface_shrink->unknown_share : 0.0;
-      return named_sentence(report) +
-             fmt::format(" {} of the gap is repeatable, and no effect in the library explains it.", percent(unknown));
-    }
+    case Verdict::partial: return named_sentence(report) + " No effect in the library explains what is left.";
     case Verdict::unknown:
       return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
     case Verdict::not_excited:

@@ -45,6 +45,7 @@ struct InterfaceGap {
   bool is_judged = false;
   std::string why_not{};     // if not judged: the missing channel or other requirement
   bool is_at_fault = false;  // its gap is above its noise floor
+  std::optional<Verdict> verdict{};  // on this interface alone, if it is at fault
   double share = 0.0;        // of the whole gap, 0 to 1
   Interval share_ci95{};
   double nrmse = 0.0;
@@ -92,6 +93,8 @@ struct ReportedParameter {
 struct RankedCause {
   std::string interface;
   std::string effect;
+  std::string law{};                  // `bouc_wen`: in place of the specimen's own; empty for an effect beside it
+  std::string in_words{};             // of a law: what such a specimen does
   std::string equation{};             // one line, from the library
   double probability = 0.0;           // 0 to 1
   double share = 0.0;                 // of what all causes explain; 0 for an alternative

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <utility>
 
@@ -21,9 +22,12 @@ namespace {
 
 using report::Verdict;
 
+/// Above the floor: a channel with much noise has no large gap.
 double largest_gap(const Diagnosis& diagnosis) {
   double largest = 0.0;
-  for (const report::InterfaceGap& gap : diagnosis.report.where) largest = std::max(largest, gap.nrmse);
+  for (const report::InterfaceGap& gap : diagnosis.report.where) {
+    largest = std::max(largest, std::pow(gap.nrmse, 2) - std::pow(gap.floor_nrmse, 2));
+  }
   return largest;
 }
 
@@ -196,7 +200,8 @@ std::string summary_of(const SiteDiagnosis& site) {
       causes = false;
     }
     if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
-    text += fmt::format("    {}: {}, probability {:.3f}\n", cause.interface, cause.effect, cause.probability);
+    const std::string law = cause.law.empty() ? "" : fmt::format(" ({}: the specimen {})", cause.law, cause.in_words);
+    text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect, law, cause.probability);
     if (cause.is_cause) text += parameters_in_words(cause);
   }
   if (report.interface_shrink) {

@@ -1,228 +1,32 @@
 #include "diagnosis/verdict/causes.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <numeric>
-#include <optional>
+#include <utility>
 
 #include "diagnosis/tuning.hpp"
-#include "diagnosis/verdict/library_fits.hpp"
 
 namespace hybridtest {
-
-namespace {
-
-/// Softmax of the scores.
-std::vector<double> probabilities_of(const std::vector<Candidate>& library) {
-  std::vector<double> probabilities;
-  double sum = 0.0;
-  for (const Candidate& candidate : library) {
-    probabilities.push_back(std::exp((candidate.score - library.front().score) / tuning::kTemperature));
-    sum += probabilities.back();
-  }
-  for (double& probability : probabilities) probability /= sum;
-  return probabilities;
-}
-
-/// The median; the fallback if there are no values.
-double median(std::vector<double> values, double fallback) {
-  if (values.empty()) return fallback;
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
-/// Energy above the floor of each recording: of all its suspect segments, or of those that one effect acts on.
-std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
-                                                   const EffectType* effect = nullptr) {
-  std::map<std::size_t, GapEnergy> sums;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    const FitSegment& fit = problem.segments[i];
-    if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
-    const GapEnergy one = gap_energy(fit, outcome.segments[i]);
-    GapEnergy& sum = sums[problem.segments[i].segment.recording];
-    sum.total += one.total;
-    sum.floor += one.floor;
-  }
-  std::map<std::size_t, double> excess;
-  for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
-  return excess;
-}
-
-/// What a further effect changes in a typical (median) recording, so that a single unusual recording does not
-/// decide.
-struct Typical {
-  double leaves = 1.0;    // share of the gap that remained before it
-  double explains = 0.0;  // of the whole gap where it acts
-};
-
-Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
-                const Candidate& further) {
-  const FitOutcome& with = further.fit;
-  const std::map<std::size_t, double> total = excess_of_recordings(problem, baseline, further.type);
-  const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
-  const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
-  std::vector<double> leaves;
-  std::vector<double> explains;
-  for (const auto& [recording, energy] : total) {
-    if (before.at(recording) > 0.0) leaves.push_back(left.at(recording) / before.at(recording));
-    if (energy > 0.0) explains.push_back((before.at(recording) - left.at(recording)) / energy);
-  }
-  return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
-}
-
-/// A further effect is accepted only if it improves the score on held-out blocks and explains enough. A wrong number
-/// of the model is judged by the gap that it leaves; any other effect also by the whole gap where it acts, unless it
-/// leaves hardly anything: even the right effect never has exactly the shape of the real one.
-bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
-                     const Candidate& with) {
-  const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
-  const Typical change = typical(problem, baseline, without, with);
-  const bool matters = is_model_number(problem, *with.type) || change.explains > tuning::kAnotherEffectExplains ||
-                       change.leaves < tuning::kSmallEffectLeaves;
-  return gain > tuning::kAnotherEffectGain && change.leaves < tuning::kAnotherEffectLeaves && matters;
-}
-
-/// Something that a further effect could explain.
-bool is_more_left(const GapEnergy& left, double total) {
-  constexpr double kVariance = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
-  return left.excess() > tuning::kNothingLeft * total && left.total > kVariance * left.floor;
-}
-
-/// The best of `beside` that is accepted; null when there is none.
-/// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
-const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                  const FitOutcome& without, const std::vector<Candidate>& beside) {
-  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); };
-  const auto best = std::ranges::find_if(beside, earns);
-  if (best == beside.end()) return nullptr;
-  const double before = gap_energy(problem, without).excess();
-  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
-  const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
-    return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
-           earns(candidate);
-  });
-  return number == beside.end() ? &*best : &*number;
-}
-
-/// The best pair that contains one of the leading effects.
-FitOutcome best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                      const Selection& selection, std::size_t threads, const PartProgress& progress) {
-  const FitOutcome first = refit_effects(problem, {selection.library.front().fit.effects.front()}, false);
-  FitOutcome best = first;
-  double best_score = -std::numeric_limits<double>::infinity();
-  const double total = gap_energy(problem, selection.baseline).excess();
-  if (!is_more_left(gap_energy(problem, first), total)) return best;
-  const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
-  for (std::size_t i = 0; i < leaders; ++i) {
-    if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
-    const std::vector<Candidate> beside =
-        fit_beside(problem, coarse, {selection.library[i].fit.effects.front()}, threads, progress.round(i, leaders));
-    const Candidate* const second = first_that_earns(problem, selection.baseline, first, beside);
-    if (second != nullptr && second->score > best_score) {
-      best = second->fit;
-      best_score = second->score;
-    }
-  }
-  return best;
-}
-
-}  // namespace
-
-Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, std::size_t threads,
-                         const PartProgress& progress) {
-  Selection selection;
-  selection.baseline = fit_nothing(problem, false);
-  selection.chosen = selection.baseline;
-  selection.library = fit_library(problem, coarse, threads, progress.part(0.0, tuning::kLibraryFitted));
-  if (selection.library.empty()) return selection;
-  selection.probabilities = probabilities_of(selection.library);
-  if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
-    return selection;
-  }
-  selection.chosen =
-      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
-  const double total = gap_energy(problem, selection.baseline).excess();
-  while (selection.chosen.effects.size() > 1 && selection.chosen.effects.size() < tuning::kEffectsMax &&
-         is_more_left(gap_energy(problem, selection.chosen), total)) {
-    const std::vector<Candidate> beside = fit_beside(
-        problem, coarse, selection.chosen.effects, threads,
-        progress.part(tuning::kPairsFitted, 1.0).round(selection.chosen.effects.size() - 2, tuning::kEffectsMax - 2));
-    const Candidate* const next = first_that_earns(problem, selection.baseline, selection.chosen, beside);
-    if (next == nullptr) break;
-    selection.chosen = next->fit;
-  }
-  return selection;
-}
-
-namespace {
-
-/// Gap explained by the effects whose bits are set.
-std::vector<double> explained_by_subset(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                        const FitOutcome& chosen, const PartProgress& progress) {
-  const std::size_t subsets = std::size_t{1} << chosen.effects.size();
-  const double total = gap_energy(problem, baseline).total;
-  std::vector<double> explained(subsets, 0.0);
-  explained.back() = std::max(0.0, total - gap_energy(problem, chosen).total);
-  for (std::size_t subset = 1; subset + 1 < subsets; ++subset) {
-    progress.report("combinations of the causes", subset - 1, subsets - 2);
-    std::vector<EffectSetting> effects;
-    for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
-      if ((subset >> i & 1U) != 0) effects.push_back(chosen.effects[i]);
-    }
-    explained[subset] = std::max(0.0, total - gap_energy(problem, refit_effects(problem, effects, false)).total);
-  }
-  return explained;
-}
-
-double factorial(int n) { return std::tgamma(n + 1.0); }
-
-}  // namespace
-
-std::vector<double> cause_shares(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                 const FitOutcome& chosen, const PartProgress& progress) {
-  const auto n = static_cast<int>(chosen.effects.size());
-  std::vector<double> shares(chosen.effects.size(), 1.0 / std::max(1, n));
-  if (n < 2) return shares;
-  const std::vector<double> explained = explained_by_subset(problem, baseline, chosen, progress);
-  if (explained.back() <= 0.0) return shares;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    double value = 0.0;
-    for (std::size_t subset = 0; subset < explained.size(); ++subset) {
-      if ((subset >> i & 1U) != 0) continue;
-      const int before = std::popcount(subset);
-      value += factorial(before) * factorial(n - before - 1) / factorial(n) *
-               (explained[subset | std::size_t{1} << i] - explained[subset]);
-    }
-    shares[i] = std::max(0.0, value);
-  }
-  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
-  for (double& share : shares) share = sum > 0.0 ? share / sum : 1.0 / n;
-  return shares;
-}
-
 namespace {
 
 using report::Verdict;
 
-/// Whether a gap exceeds this multiple of the floor of its interface.
-bool stands_above_floor(const IdentificationProblem& problem, const Selection& selection, double multiple) {
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    const FitSegment& fit = problem.segments[i];
-    const double gap = selection.baseline.segments[i].mean_square - fit.floor * fit.floor;
-    const double floor = fit.sample_floor;
-    const double allowance = std::max(0.0, 1.0 / (fit.weight * fit.weight) - fit.floor * fit.floor);
-    if (gap > multiple * multiple * floor * floor + allowance) return true;
-  }
-  return false;
+/// A cause is named when what it leaves is near the floor, or small and not well above it; with more left it is one
+/// part of the answer.
+Verdict verdict_by_remainder(const GapEnergy& after, double left) noexcept {
+  const double over_floor = after.floor > 0.0 ? std::sqrt(after.total / after.floor) : 0.0;
+  const bool is_small = left <= tuning::kNamedLeaves &&
+                        (over_floor <= tuning::kWellAboveFloor || left <= tuning::kNamedLeaves * tuning::kNearNothing);
+  if (left > tuning::kPartialLeaves) return Verdict::unknown;
+  return is_small || over_floor <= tuning::kNearFloor ? Verdict::named : Verdict::partial;
 }
 
-Verdict verdict_by_remainder(double left) noexcept {
-  if (left <= tuning::kNamedLeaves) return Verdict::named;
-  return left <= tuning::kPartialLeaves ? Verdict::partial : Verdict::unknown;
+/// The gap in units of the outputs. A model that is far off makes it larger than the output itself, and then hardly
+/// anything of it would seem to be left: so no output counts more than once.
+double gap_to_explain(const IdentificationProblem& problem, const Selection& selection) {
+  const auto outputs = static_cast<double>(std::ranges::count_if(problem.segments, &FitSegment::is_suspect));
+  return std::min(outputs, gap_energy(problem, selection.baseline).excess());
 }
 
 /// Several effects that explain a gap only together, and leave part of it, are a curve fit and not a cause.
@@ -231,56 +35,120 @@ bool is_patchwork(const IdentificationProblem& problem, const Selection& selecti
          gap_energy(problem, selection.library.front().fit).excess() > tuning::kPartialLeaves * total;
 }
 
-/// The most probable effects, until their sum of probabilities is large enough.
+/// The most probable candidates, until their sum of probabilities is large enough; and those that the data alone cannot
+/// tell from the first one, with no more parameters, however rare they are.
 std::vector<std::size_t> credible(const Selection& selection) {
+  const double within = tuning::kTemperature * std::log(tuning::kCredible / (1.0 - tuning::kCredible));
+  const Candidate& first = selection.library.front();
   std::vector<std::size_t> members;
   double sum = 0.0;
-  for (std::size_t i = 0; i < selection.library.size() && sum < tuning::kCredible; ++i) {
-    members.push_back(i);
+  for (std::size_t i = 0; i < selection.library.size(); ++i) {
+    const Candidate& candidate = selection.library[i];
+    const bool is_alike = candidate.parameters <= first.parameters &&
+                          (candidate.held_out > first.held_out - within || are_alike(first, candidate));
+    if (i == 0 || sum < tuning::kCredible || is_alike) members.push_back(i);
     sum += selection.probabilities[i];
   }
   return members;
+}
+
+/// The one chosen effect that is not a wrong number of the model beside another; null when there are several.
+const EffectType* only_cause(const IdentificationProblem& problem, const Selection& selection) {
+  const std::vector<EffectSetting>& effects = selection.chosen.effects;
+  if (effects.size() == 1) return effects.front().type;
+  const auto is_cause = [&](const EffectSetting& effect) { return !is_model_number(problem, *effect.type); };
+  if (std::ranges::count_if(effects, is_cause) != 1) return nullptr;
+  return std::ranges::find_if(effects, is_cause)->type;
 }
 
 }  // namespace
 
 Judgement judge(const IdentificationProblem& problem, const Selection& selection) {
   Judgement judgement;
-  if (!stands_above_floor(problem, selection, tuning::kGapOverFloor)) return judgement;
+  if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return judgement;
   if (selection.chosen.effects.empty()) {
-    if (!stands_above_floor(problem, selection, tuning::kUnknownOverFloor)) return judgement;
+    if (!stands_above_floor(problem, selection.baseline, tuning::kUnknownOverFloor)) return judgement;
     judgement.verdict = Verdict::unknown;
     judgement.gap_left = 1.0;
     return judgement;
   }
-  const double total = gap_energy(problem, selection.baseline).excess();
-  judgement.gap_left = total > 0.0 ? gap_energy(problem, selection.chosen).excess() / total : 0.0;
-  judgement.verdict = verdict_by_remainder(judgement.gap_left);
+  const double total = gap_to_explain(problem, selection);
+  const GapEnergy after = gap_energy(problem, selection.chosen);
+  judgement.gap_left = total > 0.0 ? after.excess() / total : 0.0;
+  judgement.verdict = verdict_by_remainder(after, judgement.gap_left);
   if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total)) {
     judgement.verdict = Verdict::unknown;
   }
-  const bool is_single = selection.chosen.effects.size() == 1;
-  if (judgement.verdict == Verdict::unknown || !is_single) return judgement;
+  const EffectType* const cause = only_cause(problem, selection);
+  const bool leads = cause != nullptr && selection.library.front().type == cause;
+  if (judgement.verdict == Verdict::unknown || !leads) return judgement;
   judgement.indistinguishable = credible(selection);
   if (judgement.verdict == Verdict::named && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
   return judgement;
 }
+
+namespace {
+
+/// The unit that ends a parameter's name.
+std::string unit_in(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kEndings{
+      {{"_n_per_m", "N/m"}, {"_m_per_j", "m/J"}, {"_per_j", "1/J"}, {"_per_m", "1/m"}, {"_n", "N"}, {"_m", "m"}}};
+  const auto found = std::ranges::find_if(kEndings, [&](const auto& ending) { return name.ends_with(ending.first); });
+  return found == kEndings.end() ? std::string{} : std::string{found->second};
+}
+
+report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
+  report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
+  parameter.is_at_bound = estimate.at_bound;
+  const double half = half_width_95(estimate);
+  if (half > 0.0) parameter.ci95 = report::Interval{estimate.value - half, estimate.value + half};
+  return parameter;
+}
+
+/// A law's own parameters with their standard errors, to first order from those of the searched ones.
+std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& effect,
+                                                         const std::vector<ParameterEstimate>& estimates) {
+  const LawReplacement& law = *effect.type->replacement;
+  const std::vector<LawParameter> own = law.written(effect.values);
+  std::vector<ParameterEstimate> found(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    found[i].value = own[i].value;
+    found[i].freedom = estimates.front().freedom;
+  }
+  for (std::size_t j = 0; j < effect.values.size(); ++j) {
+    std::vector<double> moved = effect.values;
+    const double step = tuning::kCoefficientStep * (moved[j] == 0.0 ? 1.0 : moved[j]);
+    moved[j] += step;
+    const std::vector<LawParameter> there = law.written(moved);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const double slope = (there[i].value - own[i].value) / step;
+      found[i].standard_error = std::hypot(found[i].standard_error, slope * estimates[j].standard_error);
+      found[i].at_bound = found[i].at_bound || (slope != 0.0 && estimates[j].at_bound);
+    }
+  }
+  std::vector<report::ReportedParameter> parameters;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    parameters.push_back(reported(own[i].name, unit_in(own[i].name), found[i]));
+  }
+  return parameters;
+}
+
+}  // namespace
 
 report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates) {
   report::RankedCause cause;
   cause.interface = name_of(effect.type->interface);
   cause.effect = effect.type->name;
   cause.equation = effect.type->equation;
+  if (effect.type->replacement != nullptr) {
+    cause.law = effect.type->replacement->law;
+    cause.in_words = effect.type->replacement->in_words;
+    cause.parameters = parameters_of_law(effect, estimates);
+    return cause;
+  }
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const EffectParameter& parameter = effect.type->parameters[i];
-    report::ReportedParameter reported;
-    reported.name = parameter.name;
-    reported.unit = parameter.unit;
-    reported.value = estimates[i].value;
-    reported.is_at_bound = estimates[i].at_bound;
-    const double half = half_width_95(estimates[i]);
-    if (half > 0.0) reported.ci95 = report::Interval{reported.value - half, reported.value + half};
-    cause.parameters.push_back(std::move(reported));
+    cause.parameters.push_back(reported(parameter.name, parameter.unit, estimates[i]));
   }
   return cause;
 }
@@ -298,22 +166,27 @@ void scale_shares(std::vector<report::InterfaceGap>& where, double kept) {
   }
 }
 
-using report::Verdict;
-
-GapParts gap_parts(const IdentificationProblem& problem, const Selection& selection, const Judgement& judgement,
-                   std::span<const Trace> traces) {
-  GapParts parts;
-  for (const Trace& trace : traces) parts.traced += trace.gap_share;
-  if (judgement.verdict == Verdict::none) return parts;
-  const double rest = gap_energy(problem, selection.baseline).excess();
-  parts.left = judgement.verdict == Verdict::unknown ? rest : judgement.gap_left * rest;
-  parts.explained = std::max(0.0, rest - parts.left);
-  return parts;
+void add_gap(const IdentificationProblem& problem, const Selection& selection, const Judgement& judgement,
+             GapParts& parts) {
+  if (judgement.verdict == Verdict::none) return;
+  const double rest = gap_to_explain(problem, selection);
+  const double left = judgement.verdict == Verdict::unknown ? rest : judgement.gap_left * rest;
+  parts.left += left;
+  parts.explained += std::max(0.0, rest - left);
 }
 
-Verdict verdict_with(std::span<const Trace> traces, const Judgement& judgement, const GapParts& parts) {
-  if (traces.empty()) return judgement.verdict;
-  switch (judgement.verdict) {
+Verdict verdict_of(std::span<const Judgement> judgements) {
+  const auto count = [&](Verdict verdict) { return std::ranges::count(judgements, verdict, &Judgement::verdict); };
+  const auto gaps = static_cast<std::ptrdiff_t>(judgements.size()) - count(Verdict::none);
+  if (gaps == 0) return Verdict::none;
+  if (count(Verdict::unknown) == gaps) return Verdict::unknown;
+  if (count(Verdict::unknown) + count(Verdict::partial) > 0) return Verdict::partial;
+  return count(Verdict::set) > 0 ? Verdict::set : Verdict::named;
+}
+
+Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts) {
+  if (traces.empty()) return verdict;
+  switch (verdict) {
     case Verdict::none: return Verdict::named;
     case Verdict::set:
       // The set is kept, unless the choice between its members changes hardly anything.

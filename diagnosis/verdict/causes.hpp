@@ -3,33 +3,13 @@
 #include <span>
 #include <vector>
 
-#include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
 #include "diagnosis/traces/traces.hpp"
-#include "diagnosis/verdict/library_fits.hpp"
+#include "diagnosis/verdict/selection.hpp"
 
 namespace hybridtest {
 
-/// The selected effects.
-struct Selection {
-  FitOutcome baseline;                // the model as the user gave it
-  std::vector<Candidate> library;     // every effect by itself, best first
-  FitOutcome chosen;                  // effects together; `effects` is empty if no effect is needed
-  std::vector<double> probabilities;  // one per entry of `library`: that it is the first cause
-};
-
-/// Fits the library, selects the best effect and adds others as long as each removes a large part of the
-/// remaining gap on held-out blocks.
-/// @param coarse   the same problem at a lower rate, for the searches.
-[[nodiscard]] Selection select_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                       std::size_t threads, const PartProgress& progress);
-
-/// What each of several effects contributes to the gap that they explain together (Shapley, 1953): its
-/// gain on held-out blocks, averaged over all orders in which they can be added. Adds up to one.
-[[nodiscard]] std::vector<double> cause_shares(const IdentificationProblem& problem, const FitOutcome& baseline,
-                                               const FitOutcome& chosen, const PartProgress& progress);
-
-/// The verdict on a gap.
+/// The verdict on the gap of one interface.
 struct Judgement {
   report::Verdict verdict = report::Verdict::none;
   // Positions in Selection::library of effects that cannot be distinguished from the first cause, itself included.
@@ -59,12 +39,17 @@ struct GapParts {
 
   [[nodiscard]] double all() const noexcept { return traced + explained + left; }
 };
-[[nodiscard]] GapParts gap_parts(const IdentificationProblem& problem, const Selection& selection,
-                                 const Judgement& judgement, std::span<const Trace> traces);
+/// Adds the gap of the suspect segments of one problem.
+void add_gap(const IdentificationProblem& problem, const Selection& selection, const Judgement& judgement,
+             GapParts& parts);
+
+/// The verdict on all interfaces, from that on each: one of them never silences another. A cause that is named beside
+/// an interface without one is `partial`.
+[[nodiscard]] report::Verdict verdict_of(std::span<const Judgement> judgements);
 
 /// Traces are certain: if there are any, the verdict names them. The verdict is complete only if the rest of the gap
 /// is explained too.
-[[nodiscard]] report::Verdict verdict_with(std::span<const Trace> traces, const Judgement& judgement,
+[[nodiscard]] report::Verdict verdict_with(std::span<const Trace> traces, report::Verdict verdict,
                                            const GapParts& parts);
 
 /// Lists the traces as causes, in front of causes with a smaller share of the gap.

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "core/config_error.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/search.hpp"
-#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
@@ -54,21 +54,14 @@ std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) 
   return candidates;
 }
 
-/// A stiffness far from that of the model is not a slightly wrong number: together with it a hysteretic element beside
-/// the specimen would become a yielding specimen, which is another effect.
+/// Of a law with a strength, a stiffness far from that of the model is not a slightly wrong number: together with it a
+/// hysteretic element beside the specimen would become another law. A spring has no such law, and the numbers of the
+/// user's spring must not decide which effect is found.
 bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& fit) {
-  const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
-  // A spring beside another one, else the ratio of a law's stiffness.
-  const double unit = problem.law_is_spring ? problem.scales.of(ParameterScale::stiffness_n_per_m) : 1.0;
-  std::size_t column = 0;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    if (!fit.segments[i].touched) continue;
-    for (const EffectType* type : problem.segments[i].nuisance_types) {
-      if (type == stiffness && std::abs(fit.nuisance[column]) > tuning::kSlightlyWrong * unit) return false;
-      ++column;
-    }
-  }
-  return true;
+  if (problem.law_is_spring) return true;
+  return std::ranges::none_of(wrong_numbers(problem, fit), [](const EffectSetting& number) {
+    return number.type->traits.number == ModelNumber::stiffness && std::abs(number.values[0]) > tuning::kSlightlyWrong;
+  });
 }
 
 bool is_of_sensor(const EffectType& effect) {
@@ -82,43 +75,97 @@ bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, 
   return off <= std::max(half_width_95(estimate), range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
-/// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
-/// parameters.
+double free_parameters(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const EffectType& effect = *fit.effects[position].type;
+  double free = 0.0;
+  for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+    const EffectParameter& parameter = effect.parameters[j];
+    if (is_fixed(problem, effect, parameter)) continue;
+    if (!is_dispensable(parameter, *range_of(effect, parameter), fit.parameters[position][j])) free += 1.0;
+  }
+  return free;
+}
+
+}  // namespace
+
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
   double sum = 0.0;
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const EffectType& effect = *fit.effects[i].type;
-    double free = 0.0;
-    for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
-      const EffectParameter& parameter = effect.parameters[j];
-      if (is_fixed(problem, effect, parameter)) continue;
-      if (!is_dispensable(parameter, *search_range(effect, parameter), fit.parameters[i][j])) free += 1.0;
-    }
+    const double free = free_parameters(problem, fit, i);
     sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
   }
   return sum;
 }
 
+namespace {
+
+/// Stiffness of the spring beside the effects: the model's, and what a fit adds to it [N/m].
+double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit) {
+  double stiffness_n_per_m = problem.model.make_law ? problem.model.make_law()->initial_stiffness_n_per_m() : 0.0;
+  const auto add = [&](const EffectSetting& effect) {
+    const bool is_spring = effect.type->traits.number == ModelNumber::stiffness && effect.values.size() > 1;
+    if (is_spring) stiffness_n_per_m += effect.values[1];
+  };
+  std::ranges::for_each(fit.effects, add);
+  if (fit.with_nuisance) std::ranges::for_each(wrong_numbers(problem, fit), add);
+  return stiffness_n_per_m;
+}
+
+/// A friction that slides only after a displacement that is not small, beside a spring: together they are a specimen
+/// that yields and hardens, and that is its name.
+bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
+  if (!problem.law_is_spring) return false;
+  return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
+    const auto at = [&](std::string_view name) {
+      const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
+      return found == effect.type->parameters.end()
+                 ? 0.0
+                 : effect.values[static_cast<std::size_t>(found - effect.type->parameters.begin())];
+    };
+    const double presliding_m = at("presliding_displacement_m");
+    if (!(presliding_m > tuning::kPreslidingMax * problem.scales.displacement_m)) return false;
+    const double spring_n_per_m = spring_beside(problem, fit);
+    return spring_n_per_m > tuning::kHardeningMin * (spring_n_per_m + at("friction_force_n") / presliding_m);
+  });
+}
+
+void set_score(const IdentificationProblem& problem, Candidate& candidate) {
+  candidate.held_out = held_out_score(problem, candidate.fit);
+  candidate.score = candidate.held_out + prior(problem, candidate.fit);
+  if (candidate.fit.with_nuisance) candidate.score -= tuning::kNuisanceCost;
+}
+
+/// The candidate with its score, if it can be the cause.
+std::optional<Candidate> scored(const IdentificationProblem& problem, Candidate candidate) {
+  if (is_yielding(problem, candidate.fit)) return {};
+  set_score(problem, candidate);
+  for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
+    candidate.parameters += free_parameters(problem, candidate.fit, i);
+  }
+  return candidate;
+}
+
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
-  Candidate alone{.type = &effect, .fit = fit_effects(problem, {&effect}, false)};
-  alone.score = held_out_score(problem, alone.fit) + prior(problem, alone.fit);
-  Candidate beside{.type = &effect, .fit = fit_effects(problem, {&effect}, true)};
-  const double score = held_out_score(problem, beside.fit);
-  beside.score = score - tuning::kNuisanceCost + prior(problem, beside.fit);
+  std::optional<Candidate> alone = scored(problem, {.type = &effect, .fit = fit_effects(problem, {&effect}, false)});
+  // A law has its own stiffness.
+  if (effect.replacement != nullptr) return alone;
+  FitOutcome with_nuisance = fit_effects(problem, {&effect}, true);
   // An effect must explain something that the nuisance parameters do not.
-  const bool needed = score > nuisance_score + tuning::kNuisanceCost && is_slightly_wrong(problem, beside.fit);
-  return needed && beside.score > alone.score ? beside : alone;
+  const bool is_needed = held_out_score(problem, with_nuisance) > nuisance_score + tuning::kNuisanceCost &&
+                         is_slightly_wrong(problem, with_nuisance);
+  if (!is_needed) return alone;
+  std::optional<Candidate> beside = scored(problem, {.type = &effect, .fit = std::move(with_nuisance)});
+  return beside && (!alone || beside->score > alone->score) ? beside : alone;
 } catch (const ConfigError&) {
   return {};
 }
 
 /// The same fit at the full rate.
 std::optional<Candidate> refine(const IdentificationProblem& problem, const Candidate& found) try {
-  Candidate candidate{.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)};
-  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit) -
-                    (found.fit.with_nuisance ? tuning::kNuisanceCost : 0.0);
-  return candidate;
+  return scored(problem,
+                {.type = found.type, .fit = refit_effects(problem, found.fit.effects, found.fit.with_nuisance)});
 } catch (const ConfigError&) {
   return {};
 }
@@ -126,9 +173,7 @@ std::optional<Candidate> refine(const IdentificationProblem& problem, const Cand
 /// Effects fitted together, the one in question told by its type.
 std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
                                       const std::vector<EffectSetting>& start, decltype(refit_effects)& fit) try {
-  Candidate candidate{.type = type, .fit = fit(problem, start, false)};
-  candidate.score = held_out_score(problem, candidate.fit) + prior(problem, candidate.fit);
-  return candidate;
+  return scored(problem, {.type = type, .fit = fit(problem, start, false)});
 } catch (const ConfigError&) {
   return {};
 }
@@ -162,15 +207,96 @@ FitProgress counted(const PartProgress& progress, std::string_view stage) {
 
 }  // namespace
 
+namespace {
+
+bool touches_a_gap(const IdentificationProblem& problem, const EffectType& effect) {
+  return std::ranges::any_of(problem.segments,
+                             [&](const FitSegment& fit) { return fit.is_suspect && fit.segment.touched_by(effect); });
+}
+
+/// Whether a fit can change anything: beside some laws every parameter of an effect keeps its fallback.
+bool is_searched(const IdentificationProblem& problem, const EffectType& effect) {
+  return std::ranges::any_of(effect.parameters,
+                             [&](const EffectParameter& parameter) { return !is_fixed(problem, effect, parameter); });
+}
+
+}  // namespace
+
+std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
+  std::vector<EffectSetting> numbers;
+  std::vector<double> found;
+  std::size_t column = 0;
+  for (std::size_t i = 0; i < problem.segments.size() && column < fit.nuisance.size(); ++i) {
+    if (!fit.segments[i].touched) continue;
+    for (const EffectType* type : problem.segments[i].nuisance_types) {
+      auto number = std::ranges::find(numbers, type, &EffectSetting::type);
+      if (number == numbers.end()) {
+        EffectSetting setting{.type = type, .values = {}};
+        for (const EffectParameter& parameter : type->parameters) {
+          setting.values.push_back(std::isnan(parameter.fallback) ? parameter.neutral : parameter.fallback);
+        }
+        number = numbers.insert(numbers.end(), std::move(setting));
+        found.push_back(0.0);
+      }
+      // The parameter that is searched: of a stiffness the spring beside another one, or the ratio of a law's.
+      const auto searched = std::ranges::find_if(
+          type->parameters, [&](const EffectParameter& parameter) { return !is_fixed(problem, *type, parameter); });
+      const auto position = static_cast<std::size_t>(searched - type->parameters.begin());
+      double& count = found[static_cast<std::size_t>(number - numbers.begin())];
+      double& value = number->values[position];
+      value = (value * count + fit.nuisance[column++]) / (count + 1.0);
+      count += 1.0;
+    }
+  }
+  return numbers;
+}
+
 std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem) {
   std::vector<const EffectType*> effects;
+  // A specimen that yields is another law, with all its numbers free.
+  const EffectType* const part_that_yields = find_effect(EffectInterface::specimen, "yielding");
   for (const EffectType& effect : effect_library()) {
-    const bool touches =
-        std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.segment.touched_by(effect); });
-    if (touches && effect.make != nullptr && !shows_in_digits(effect)) effects.push_back(&effect);
+    if (effect.make == nullptr || shows_in_digits(effect) || &effect == part_that_yields) continue;
+    if (touches_a_gap(problem, effect) && is_searched(problem, effect)) effects.push_back(&effect);
+  }
+  for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
+    if (law.refines == nullptr && touches_a_gap(problem, law.type)) effects.push_back(&law.type);
   }
   return effects;
 }
+
+namespace {
+
+/// Fits the laws that refine a simpler one, from the simpler one's result, while the best candidate leaves something
+/// to explain.
+void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& candidates) {
+  const FitOutcome baseline = fit_nothing(coarse, false);
+  const double total = gap_energy(coarse, baseline).excess();
+  if (candidates.front().score < held_out_score(coarse, baseline) + tuning::kDetectionGain) return;
+  for (const LawCandidate& law : law_candidates(coarse.law_is_spring)) {
+    if (law.refines == nullptr) continue;
+    const auto simpler = std::ranges::find(candidates, law.refines, &Candidate::type);
+    if (simpler == candidates.end()) continue;
+    // The form of the law is in question only where a law leads.
+    if (candidates.front().type->replacement == nullptr) return;
+    const GapEnergy left = gap_energy(coarse, candidates.front().fit);
+    constexpr double kClear = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
+    if (!(left.excess() > tuning::kNothingLeft * total && left.total > kClear * left.floor)) return;
+    EffectSetting start{.type = &law.type, .values = simpler->fit.effects.front().values};
+    start.values.insert(start.values.end(), law.neutral.begin(), law.neutral.end());
+    std::optional<Candidate> found = fit_together(coarse, &law.type, {start}, refit_effects);
+    if (!found) continue;
+    // The same law with more of its parameters is no further candidate.
+    if (law.type.replacement->law != law.refines->replacement->law) {
+      candidates.push_back(std::move(*found));
+    } else if (found->score > simpler->score) {
+      *simpler = std::move(*found);
+    }
+    std::ranges::stable_sort(candidates, std::greater{}, &Candidate::score);
+  }
+}
+
+}  // namespace
 
 std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                    std::size_t threads, const PartProgress& progress) {
@@ -182,6 +308,7 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
       counted(progress.part(0.0, tuning::kLibrarySearched), "effects fitted one by one"));
   std::vector<Candidate> candidates = best_first(std::move(fitted));
   if (candidates.empty()) return candidates;
+  refine_laws(coarse, candidates);
   // The coarse record has fewer samples: scores are compared with those of the full one relative to no effect.
   const double offset =
       held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
@@ -196,6 +323,7 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
         } else {
           refined[i] = found;
           refined[i]->score += offset;
+          refined[i]->held_out += offset;
         }
       },
       counted(progress.part(tuning::kLibrarySearched, 1.0), "effects fitted at the full rate"));
@@ -204,12 +332,47 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
   return candidates;
 }
 
+bool are_alike(const Candidate& first, const Candidate& second) {
+  double both = 0.0;
+  double of_first = 0.0;
+  double of_second = 0.0;
+  for (std::size_t i = 0; i < first.fit.segments.size(); ++i) {
+    const Eigen::VectorXd& a = first.fit.segments[i].change;
+    const Eigen::VectorXd& b = second.fit.segments[i].change;
+    of_first += a.squaredNorm();
+    of_second += b.squaredNorm();
+    if (a.size() == b.size()) both += a.dot(b);
+    // Where the model is far off, everything that mends it has the same shape; what is left tells them apart.
+    const double left = first.fit.segments[i].mean_square;
+    const double left_by_second = second.fit.segments[i].mean_square;
+    if (std::abs(left - left_by_second) > tuning::kSameResidual * std::min(left, left_by_second)) return false;
+  }
+  return both > tuning::kSameSignature * std::sqrt(of_first * of_second);
+}
+
+void put_stage_before_sensor(std::vector<Candidate>& candidates) {
+  if (candidates.empty() || !is_of_sensor(*candidates.front().type)) return;
+  const auto of_stage = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
+    return !is_of_sensor(*candidate.type) && are_alike(candidates.front(), candidate);
+  });
+  if (of_stage != candidates.end()) std::rotate(candidates.begin(), of_stage, of_stage + 1);
+}
+
+void score_again(const IdentificationProblem& problem, std::vector<Candidate>& candidates) {
+  for (Candidate& candidate : candidates) set_score(problem, candidate);
+  std::ranges::stable_sort(candidates, std::greater{}, &Candidate::score);
+}
+
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                   const std::vector<EffectSetting>& base, std::size_t threads,
                                   const PartProgress& progress) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
-    return std::ranges::any_of(base, [&](const EffectSetting& setting) { return setting.type == effect; });
+    // Of the laws the simplest stands for all: which one it is, is asked when the effects beside it are known.
+    if (effect->replacement != nullptr && effect != &law_candidates(problem.law_is_spring).front().type) return true;
+    return std::ranges::any_of(base, [&](const EffectSetting& setting) {
+      return setting.type == effect || (setting.type->replacement != nullptr && effect->replacement != nullptr);
+    });
   });
   IdentificationProblem extended = coarse;
   extended.model.effects.insert(extended.model.effects.end(), base.begin(), base.end());

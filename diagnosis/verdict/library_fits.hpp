@@ -16,6 +16,10 @@ namespace hybridtest {
 /// same for all candidates.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
+/// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
+/// parameters [nats].
+[[nodiscard]] double prior(const IdentificationProblem& problem, const FitOutcome& outcome);
+
 /// Energy of the residual over all suspect segments, each relative to the variance of its output, held out.
 struct GapEnergy {
   double total = 0.0;
@@ -31,8 +35,10 @@ struct GapEnergy {
 /// An effect of the library, fitted.
 struct Candidate {
   const EffectType* type = nullptr;
-  FitOutcome fit;      // alone or, if needed, together with slightly wrong parameters of the model
-  double score = 0.0;  // on held-out blocks, minus the penalty for free nuisance parameters
+  FitOutcome fit;           // alone or, if needed, together with slightly wrong parameters of the model
+  double score = 0.0;       // on held-out blocks, with prior() and the penalty for free nuisance parameters
+  double held_out = 0.0;    // held_out_score() alone
+  double parameters = 0.0;  // number of free ones
 };
 
 /// Receives the number of finished fits and of all fits; called from any thread, one call at a time.
@@ -42,16 +48,29 @@ using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
                           const FitProgress& progress);
 
-/// The effects that a diagnosis can judge on these segments.
+/// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
-/// Every judged effect fitted, best score first; effects that cannot be fitted are omitted, and those that the
+/// The wrong numbers of the model that a fit with nuisance parameters found, as effects; of several recordings the
+/// mean.
+[[nodiscard]] std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit);
+
+/// Every judged effect and law fitted, best score first; those that cannot be fitted are omitted, and those that the
 /// recordings refute by themselves (refutation()).
 /// @param coarse   the same problem at a lower rate, where every effect is searched over its whole range; those
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
                                                  const IdentificationProblem& coarse, std::size_t threads,
                                                  const PartProgress& progress);
+
+/// Scores of the same fits after the noise of the problem has changed, best first.
+void score_again(const IdentificationProblem& problem, std::vector<Candidate>& candidates);
+
+/// Whether two candidates change the prediction in the same shape and size: nothing on these recordings splits them.
+[[nodiscard]] bool are_alike(const Candidate& first, const Candidate& second);
+
+/// Where a sensor's effect leads, and one of a stage changes the prediction alike, the stage's comes first.
+void put_stage_before_sensor(std::vector<Candidate>& candidates);
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
 /// on `coarse` with `base` as it is; the most promising ones, and the numbers of the model that may be wrong, are

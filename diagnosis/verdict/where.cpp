@@ -19,12 +19,20 @@ namespace {
 constexpr std::size_t kInterfaces = static_cast<std::size_t>(EffectInterface::numerical_substructure) + 1;
 using Shares = std::array<double, kInterfaces>;
 
-/// The interface to which the gap of a segment is attributed.
+/// The interface to which the gap of a segment is attributed. Effects of the displacement sensor also show in the
+/// force: they come last.
 EffectInterface blamed(const Segment& segment, const FitOutcome& chosen) {
+  EffectInterface blamed = segment.interface;
+  bool is_found = false;
   for (const EffectSetting& effect : chosen.effects) {
-    if (segment.touched_by(*effect.type)) return effect.type->interface;
+    if (!segment.touched_by(*effect.type)) continue;
+    const bool acts_elsewhere =
+        effect.type->interface == EffectInterface::displacement_sensor && segment.to == Channel::measured_force;
+    if (!acts_elsewhere) return effect.type->interface;
+    if (!is_found) blamed = effect.type->interface;
+    is_found = true;
   }
-  return segment.interface;
+  return blamed;
 }
 
 /// Energy above the floor of the blocks that `pick` draws, relative to the output's; suspect segments alone.

@@ -8,22 +8,23 @@
 namespace hybridtest {
 namespace {
 
-/// Substeps per length over which the slope changes: classical Runge-Kutta is then exact to
-/// about (1/64)^4 / 120 = 5e-10.
-constexpr double kSubstepsPerLength = 64.0;
-/// Where |w|^n has no fifth derivative at zero, substeps grow from this with the distance.
-constexpr double kFirstSubstep = 0x1p-20;
+/// Where |w|^n has no fifth derivative at zero, substeps grow with the distance, from the power 10 / 3 of the usual
+/// one.
+constexpr double kFirstSubstepPower = 10.0 / 3.0;
 constexpr double kSubstepGrowth = 0.25;
 /// Enough for z to reach its limit to rounding (exp(-37)) from any state.
 constexpr int kSubstepsMax = 4096;
 
 }  // namespace
 
-BoucWen::BoucWen(const Parameters& parameters) : parameters_{checked(parameters)} {
+BoucWen::BoucWen(const Parameters& parameters, double substeps_per_length)
+    : parameters_{checked(parameters)}, substeps_per_length_{substeps_per_length} {
   expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
   const double sum = parameters.gamma_per_m + parameters.beta_per_m;
   ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
+  // 2^-20 where there are 64.
+  first_substep_ = std::exp2(-std::log2(substeps_per_length) * 10.0 / 3.0);
   is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
 }
 
@@ -66,13 +67,13 @@ double BoucWen::carried_along(double w, double path) const noexcept {
 
 double BoucWen::substep(double w) const noexcept {
   const double n = parameters_.n;
-  const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / kSubstepsPerLength);
+  const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
   const double share = (w < 0.0 ? std::abs(unloading_) : 1.0) * std::pow(largest, n - 1.0);
   // n * share is the derivative of the slope; its own derivatives grow n times each, so that a
   // small share still counts with the fifth root.
   const double change = n * (share > 1.0 ? share : std::pow(share, 0.2));
-  const double step = 1.0 / (kSubstepsPerLength * std::max(1.0, change));
-  return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), kFirstSubstep)) : step;
+  const double step = 1.0 / (substeps_per_length_ * std::max(1.0, change));
+  return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), first_substep_)) : step;
 }
 
 double BoucWen::runge_kutta_step(double w, double path) const noexcept {

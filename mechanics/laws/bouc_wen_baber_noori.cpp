@@ -8,13 +8,13 @@
 namespace hybridtest {
 namespace {
 
-constexpr double kSubstepsPerPinchLength = 64.0;
 /// A step that crosses the whole loop 60 times; beyond, z has long reached its limit.
 constexpr int kPinchSubstepsMax = 8192;
 
 }  // namespace
 
-BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters) : parameters_{checked(parameters)} {
+BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters, double substeps_per_length)
+    : parameters_{checked(parameters)}, substeps_per_length_{substeps_per_length} {
   expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
 }
 
@@ -32,11 +32,11 @@ double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s
   const double pinching = pinching_at(committed_.energy_j);
   double length_m = ultimate_m(committed_.energy_j) / parameters_.ao;
   if (parameters_.pinching > 0.0) length_m = std::min(length_m, pinching_width_m(committed_.energy_j, pinching));
-  const double substeps = std::ceil(std::abs(increment_m) / length_m * kSubstepsPerPinchLength);
+  const double substeps = std::ceil(std::abs(increment_m) / length_m * substeps_per_length_);
   const int count = static_cast<int>(std::clamp(substeps, 1.0, static_cast<double>(kPinchSubstepsMax)));
   // Of a longer way only the end matters.
   const double way_m = substeps > kPinchSubstepsMax
-                           ? std::copysign(length_m / kSubstepsPerPinchLength * kPinchSubstepsMax, increment_m)
+                           ? std::copysign(length_m / substeps_per_length_ * kPinchSubstepsMax, increment_m)
                            : increment_m;
   for (int i = 0; i < count && way_m != 0.0; ++i) advance(trial_, way_m / count);
   trial_.displacement_m = displacement_m;

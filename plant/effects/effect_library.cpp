@@ -33,6 +33,7 @@
 #include "plant/effects/specimen/stiffness_degradation.hpp"
 #include "plant/effects/specimen/stiffness_error.hpp"
 #include "plant/effects/specimen/strength_degradation.hpp"
+#include "plant/effects/specimen/strength_error.hpp"
 #include "plant/effects/specimen/stribeck_friction.hpp"
 #include "plant/effects/specimen/viscous_damping.hpp"
 #include "plant/effects/specimen/yielding.hpp"
@@ -127,6 +128,7 @@ std::span<const EffectType> effect_library() noexcept {
       entry<SensorLag, InverseSensorLag>(At::displacement_sensor, "lag"),
       entry<DisplacementQuantization>(At::displacement_sensor, "quantization"),
       entry<StiffnessError>(At::specimen, "stiffness_error"),
+      entry<StrengthError>(At::specimen, "strength_error"),
       entry<ViscousDamping>(At::specimen, "viscous_damping"),
       entry<QuadraticDamping>(At::specimen, "quadratic_damping"),
       entry<CoulombFriction>(At::specimen, "coulomb_friction"),

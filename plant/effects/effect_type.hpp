@@ -4,8 +4,11 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "mechanics/laws/law.hpp"
 #include "plant/effects/effect.hpp"
 
 namespace hybridtest {
@@ -38,7 +41,7 @@ enum class EffectFamily : std::uint8_t {
 };
 
 /// A number of the user's model that an effect corrects; every model has such numbers slightly wrong.
-enum class ModelNumber : std::uint8_t { none, mass, stiffness, damping, step, gain, delay, offset };
+enum class ModelNumber : std::uint8_t { none, mass, stiffness, strength, damping, step, gain, delay, offset };
 
 /// What of an effect shows in the digits of a recording, where no prediction follows it sample by sample.
 enum class DigitTrace : std::uint8_t { none, rounding, lateness, loss };
@@ -67,6 +70,23 @@ struct EffectParameter {
   double fallback = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// A parameter of a law as a scenario writes it.
+struct LawParameter {
+  std::string name;  // its unit last: `yield_force_n`
+  double value = 0.0;
+};
+
+/// A law that takes the place of the specimen's own: not an effect beside the law, but a law of another form.
+struct LawReplacement {
+  std::string_view law;       // its `type` in a scenario: `bouc_wen`
+  std::string_view in_words;  // what a specimen of this law does: `pinches`
+  /// @param values   one per parameter of the effect.
+  /// @return null where they leave no force.
+  std::unique_ptr<Law> (*make)(std::span<const double> values) = nullptr;
+  /// The same as the law's own parameters, in the order of a scenario.
+  std::vector<LawParameter> (*written)(std::span<const double> values) = nullptr;
+};
+
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
 /// augmented model share of an effect.
 struct EffectType {
@@ -82,6 +102,8 @@ struct EffectType {
   /// For a sensor: an effect whose before() makes the true motion of a read one, to drive a specimen
   /// by what was measured; null where that is not possible (quantization) or has no meaning.
   std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
+  /// Set for a law in place of the specimen's own; it has no make(). The effect library has none of these.
+  const LawReplacement* replacement = nullptr;
 };
 
 /// Every effect there is, in the order of the interfaces.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"
 #include "diagnosis/verdict/shrink.hpp"
+#include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "plant/transfer_systems/delay.hpp"
 #include "plant/transfer_systems/ideal.hpp"
@@ -136,7 +138,8 @@ TEST_F(ServoHydraulicActuator, NamesBandwidthForIdealActuator) {
 
 TEST_F(ServoHydraulicActuator, NamesBandwidthBesideFittedDelay) {
   const Diagnosis diagnosis = answer(delayed_actuator(0.0166), recordings_);
-  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  // Without a force, a lag of the transducer would look the same: that is the other member of the set.
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::set);
   ASSERT_FALSE(diagnosis.report.ranking.empty());
   EXPECT_EQ(diagnosis.report.ranking.front().interface, "transfer_system");
   EXPECT_EQ(diagnosis.report.ranking.front().effect, "bandwidth");
@@ -156,16 +159,27 @@ SiteModel unpowered_damper() {
 TEST(MagnetorheologicalDamper, LocatesCurrentEffectAtSpecimen) {
   HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_1A"));
   const Diagnosis diagnosis = answer(unpowered_damper(), {measured("servo_hydraulic_mr_damper_1A")});
-  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
-  ASSERT_EQ(std::ranges::count_if(diagnosis.report.where, &report::InterfaceGap::is_judged), 2);
+  // A twentieth of the gap comes back unexplained.
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
   EXPECT_EQ(diagnosis.report.where[0].interface, "specimen");
+  EXPECT_GT(diagnosis.report.where[0].share_ci95.low, 0.98);
   // One actuator with another load: its two poles leave 0.080 of the motion at 0 A, their own recording; a clean
   // transfer system has no more than that at 1 A, and no cause.
-  EXPECT_EQ(diagnosis.report.where[1].interface, "transfer_system");
-  EXPECT_LT(diagnosis.report.where[1].nrmse, 0.080);
-  EXPECT_LT(diagnosis.report.where[1].share_ci95.high, 0.02);
+  const auto transfer = std::ranges::find(diagnosis.report.where, "transfer_system", &report::InterfaceGap::interface);
+  ASSERT_NE(transfer, diagnosis.report.where.end());
+  EXPECT_LT(transfer->nrmse, 0.080);
+  EXPECT_LT(transfer->share_ci95.high, 0.02);
   ASSERT_FALSE(diagnosis.causes.empty());
-  for (const EffectSetting& cause : diagnosis.causes) EXPECT_EQ(cause.type->interface, EffectInterface::specimen);
+  EXPECT_TRUE(std::ranges::any_of(
+      diagnosis.causes, [](const EffectSetting& cause) { return cause.type->interface == EffectInterface::specimen; }));
+  for (const EffectSetting& cause : diagnosis.causes) {
+    // The transducer reads 0.06 mm too little, here as at 0 A.
+    if (cause.type == find_effect(EffectInterface::displacement_sensor, "bias")) {
+      EXPECT_NEAR(cause.values[0], -6.2e-5, 1e-5);
+    } else {
+      EXPECT_EQ(cause.type->interface, EffectInterface::specimen);
+    }
+  }
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.9);
 }
 
@@ -192,7 +206,8 @@ TEST_F(ServoAxis, NamesViscousAndDryFriction) {
   const Diagnosis diagnosis = answer(mass_only_, {stretch(*excitation_, 0.0, 0.4, RecordingRole::fit),
                                                   stretch(*excitation_, 0.6, 1.0, RecordingRole::fit),
                                                   stretch(*excitation_, 0.4, 0.6, RecordingRole::held_out)});
-  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  // What is left is 4 % of the force, above the noise of a voltage, which has hardly any.
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
   EXPECT_TRUE(names(diagnosis, "specimen", "viscous_damping"));
   EXPECT_TRUE(names(diagnosis, "specimen", "coulomb_friction"));
   for (const char* rejected : {"stiffness_error", "cubic_stiffness", "stribeck_friction"}) {
@@ -237,6 +252,7 @@ TEST(FrictionDamper, NamesFrictionAndBacklash) {
   SiteModel linear = ideal_actuator();
   linear.make_law = [] { return std::make_unique<Elastic>(4.6e5); };
   const Diagnosis diagnosis = answer(linear, recordings);
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
   EXPECT_EQ(diagnosis.report.where.front().interface, "specimen");
   EXPECT_EQ(diagnosis.report.ranking.front().effect, "coulomb_friction");
   EXPECT_TRUE(names(diagnosis, "specimen", "backlash"));
@@ -253,6 +269,44 @@ TEST(FrictionDamper, NamesFrictionAndBacklash) {
     EXPECT_GT(removed_on(linear, diagnosis, measured(name)), 0.0) << name;
   }
 }
+
+/// A reinforced-concrete column and what is known of it from elsewhere: the residual of the best Bouc-Wen-Baber-Noori
+/// law, fitted by brute force (README of the data) [rms over rms], and the secant stiffness.
+struct Column {
+  const char* file;
+  double best_residual;
+  double secant_n_per_m;
+};
+
+class ReinforcedConcreteColumn : public testing::TestWithParam<Column> {};
+
+/// Whatever the model: an elastic one, ten times too stiff or too soft, or a bilinear one.
+TEST_P(ReinforcedConcreteColumn, HasHysteresisThatPinchesAndDegrades) {
+  HYBRIDTEST_NEEDS_DATA(measured_file(GetParam().file));
+  const Recording recording = measured(GetParam().file);
+  const double secant = GetParam().secant_n_per_m;
+  std::vector<SiteModel> models(4, ideal_actuator());
+  for (std::size_t i = 0; i < 3; ++i) {
+    models[i].make_law = [k = secant * std::array{0.1, 1.0, 10.0}[i]] { return std::make_unique<Elastic>(k); };
+  }
+  models[3].make_law = [secant] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{5.0 * secant, 0.02 * secant, 0.05});
+  };
+  for (const SiteModel& model : models) {
+    const Diagnosis diagnosis = answer(model, {recording});
+    EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
+    ASSERT_FALSE(diagnosis.report.ranking.empty());
+    EXPECT_EQ(diagnosis.report.ranking.front().effect, "hysteresis_law");
+    EXPECT_THAT(diagnosis.report.ranking.front().law,
+                testing::AnyOf("takeda", "peak_oriented", "pinching", "bouc_wen_baber_noori"));
+    EXPECT_LE(diagnosis.report.interface_shrink->nrmse_after, 1.25 * GetParam().best_residual);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Columns, ReinforcedConcreteColumn,
+                         testing::Values(Column{"rc_column_kunnath", 0.111, 2.0e4},
+                                         Column{"rc_column_gill", 0.137, 2.0e7}),
+                         [](const auto& column) { return std::string{column.param.file}; });
 
 }  // namespace
 }  // namespace hybridtest

@@ -79,8 +79,7 @@ struct MakeSettings {
 };
 
 /// Calls one(i) for each of the named cases, each once, in any order, on any threads; throws what one of them throws.
-using ForEach =
-    std::function<void(const std::vector<std::string>& names, const std::function<void(std::size_t)>& one)>;
+using ForEach = std::function<void(const std::vector<std::string>& names, const std::function<void(std::size_t)>& one)>;
 
 /// Writes a batch and, in a separate file, its key. batch.json contains the SHA-256 of each file of the batch and of
 /// the key. Only the key contains the seed.

@@ -164,7 +164,8 @@ TEST(Diagnose, ForceAloneIsNotSufficient) {
 
 TEST(Diagnose, ReportsProgressOfEveryStage) {
   const Recording recording = made_recording(made_motion_m, [](double t) {
-    return 1.2 * spring_n(t) + (made_motion_m(t + 1e-4) > made_motion_m(t) ? 3000.0 : -3000.0);
+    const double step_m = made_motion_m(t + 1e-4) - made_motion_m(t);
+    return 1.2 * spring_n(t) + (step_m > 0.0 ? 3000.0 : -3000.0) + 2.0e4 * step_m / 1e-4;
   });
   for (const std::size_t threads : {1U, 2U}) {
     std::vector<ProgressReport> reports;

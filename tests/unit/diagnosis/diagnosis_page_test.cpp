@@ -107,7 +107,7 @@ TEST(DiagnosisPage, IsSelfContainedAndSmall) {
 TEST(DiagnosisPage, ShowsInterfaceEffectAndShrink) {
   const std::string page = diagnosis_page(example());
   EXPECT_THAT(page,
-              HasSubstr("The gap is at the specimen (93.0\u00a0% of the whole gap). Its cause is coulomb friction"));
+              HasSubstr("The gap is at the specimen (93.0\u00a0% of the whole gap); its cause is coulomb friction"));
   EXPECT_THAT(page, HasSubstr("<li class=\"fault main\"><b>specimen</b>"));
   EXPECT_THAT(page, HasSubstr("command_displacement_m was not recorded"));
   EXPECT_THAT(page, HasSubstr("friction force <b>512\u00a0N</b> <small>(498\u00a0N to 527\u00a0N)</small>"));

@@ -217,6 +217,14 @@ TEST(StiffnessError, ChangesStiffnessButNotStrength) {
   for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
 }
 
+TEST(StrengthError, ChangesStrengthButNotStiffness) {
+  const auto effect = made(kSpecimen, "strength_error", {0.25});
+  const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
+  const auto forces = along(*effect, {0.0, 0.1, 0.9, 1.5, -2.0}, plastic);
+  const std::vector<double> expected{0.0, 1.0, 9.0, 10.0, -10.0};
+  for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
+}
+
 TEST(StrengthDegradation, ReducesStrengthButNotStiffness) {
   const double left = std::exp(-5.0 / 4.0);
   const auto of_strength = made(kSpecimen, "strength_degradation", {4.0});

@@ -173,6 +173,48 @@ TEST_F(SiteFile, AddedEffectsFollowExistingOnes) {
   }
 }
 
+/// A law in place of the specimen's own, as a diagnosis finds it.
+class ReplacedLaw : public SiteFile {
+ protected:
+  static std::vector<LawParameter> written(std::span<const double> values) {
+    return {{"stiffness_n_per_m", values[0]}, {"yield_force_n", values[1]}, {"hardening_ratio", 0.0}};
+  }
+  static inline const LawReplacement kLaw{.law = "bilinear", .in_words = "yields", .make = nullptr, .written = written};
+  static inline const EffectType kType{.interface = EffectInterface::specimen,
+                                       .name = "yielding",
+                                       .equation = {},
+                                       .source = {},
+                                       .traits = {},
+                                       .parameters = {},
+                                       .replacement = &kLaw};
+};
+
+TEST_F(ReplacedLaw, StandsUnderSpecimenAndNotInTheList) {
+  const std::vector<ListedEffect> law{{{&kType, {10.0, 4.0}}, std::nullopt}};
+  for (const std::string& text :
+       {std::string{"specimen: {type: elastic, stiffness_n_per_m: 3.0}\n"}, std::string{"name: without_specimen\n"},
+        std::string{"specimen: {type: elastic, stiffness_n_per_m: 3.0}\n"
+                    "effects:\n  - {interface: force_sensor, effect: bias, bias_n: 1.0}\n"}}) {
+    SCOPED_TRACE(text);
+    const SiteModelFile site = read(text);
+    const SiteModelFile replaced = read(site.with_effects(law).text);
+    EXPECT_EQ(replaced.dofs[0].effects.size(), site.dofs[0].effects.size());
+    const double bias_n = site.dofs[0].effects.empty() ? 0.0 : 1.0;
+    EXPECT_DOUBLE_EQ(force_at(replaced.dofs[0], {.displacement_m = 0.2}), 2.0 + bias_n);
+    EXPECT_DOUBLE_EQ(force_at(replaced.dofs[0], {.displacement_m = 1.0}), 4.0 + bias_n);
+  }
+}
+
+TEST_F(ReplacedLaw, ConcernsItsDegreeOfFreedomOnly) {
+  const SiteModelFile site = read(
+      "specimen:\n  - {type: elastic, stiffness_n_per_m: 3.0}\n"
+      "  - {type: elastic, stiffness_n_per_m: 5.0}\n");
+  const SiteModelFile replaced = read(site.with_effects(std::vector<ListedEffect>{{{&kType, {10.0, 4.0}}, 1}}).text);
+  ASSERT_EQ(replaced.dofs.size(), 2U);
+  EXPECT_DOUBLE_EQ(force_at(replaced.dofs[0], {.displacement_m = 1.0}), 3.0);
+  EXPECT_DOUBLE_EQ(force_at(replaced.dofs[1], {.displacement_m = 1.0}), 4.0);
+}
+
 TEST_F(SiteFile, NamesKnownParts) {
   EXPECT_THAT(error_of("effects: [{interface: specimen, effect: coulomb_frictoin, friction_force_n: 1.0}]\n"),
               testing::HasSubstr("coulomb_friction"));

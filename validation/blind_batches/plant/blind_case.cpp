@@ -435,7 +435,15 @@ bool record_motions(BlindCase& result, const RealSite& real, RandomStream noise)
   return true;
 }
 
+constexpr std::uint64_t kCasesMax = 10'000;
+
+/// A drawn test that cannot be recorded, whatever its effects.
+struct UnstableSetting : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Effects that make a test unstable are halved until it is stable; at last there are none.
+/// @throws UnstableSetting where that is not enough.
 void record_case(BlindCase& result, RealSite& real, std::uint64_t seed, std::uint64_t index) {
   for (int attempt = 0; !record_motions(result, real, {seed, index, "noise"}); ++attempt) {
     if (attempt < 3 && real.kind != TruthClass::law) {
@@ -446,7 +454,7 @@ void record_case(BlindCase& result, RealSite& real, std::uint64_t seed, std::uin
     } else if (!real.besides.empty()) {
       real.besides.clear();
     } else {
-      throw std::logic_error{"a test without effects is unstable with its noise"};
+      throw UnstableSetting{"a test without effects is unstable with its noise"};
     }
   }
   for (std::size_t i = 0; i < result.fit.size(); ++i) result.setting.fit_m[i] = result.fit[i].sent_m;
@@ -469,12 +477,19 @@ BlindCase make_case(CaseSetting setting, RealSite real, std::uint64_t seed, std:
 }
 
 BlindCase draw_case(std::uint64_t seed, std::uint64_t index) {
-  CaseSetting setting = draw_case_setting(seed, index);
-  RandomStream numbers{seed, index, "besides"};
-  RealSite real;
-  real.besides = draw_besides(setting.site, setting.scales, numbers);
-  RealSiteDraw{setting, real, seed, index}();
-  return make_case(std::move(setting), std::move(real), seed, index);
+  // A setting that is unstable by itself is drawn anew: no case has an index as high as the next draws.
+  for (std::uint64_t draw = index;; draw += kCasesMax) {
+    CaseSetting setting = draw_case_setting(seed, draw);
+    RandomStream numbers{seed, draw, "besides"};
+    RealSite real;
+    real.besides = draw_besides(setting.site, setting.scales, numbers);
+    RealSiteDraw{setting, real, seed, draw}();
+    try {
+      return make_case(std::move(setting), std::move(real), seed, draw);
+    } catch (const UnstableSetting&) {
+      continue;
+    }
+  }
 }
 
 }  // namespace hybridtest::blind

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "diagnosis/identification/search_table.hpp"
+#include "plant/effects/effect_type.hpp"
+
+namespace hybridtest {
+
+/// A law that may take the place of the specimen's own, with its search ranges.
+///
+/// Searched are the initial stiffness, in which every law of this table is linear (variable projection), the
+/// displacement at which it yields, and ratios without a unit: so the ranges fit any specimen, and the stiffness that
+/// the user's model has plays no part. written() gives the law's own parameters.
+struct LawCandidate {
+  EffectType type;
+  std::vector<SearchRange> ranges;  // one per parameter of the effect
+  // Searched only where no simpler law explains the gap; from the result of this one. null: searched by itself.
+  const EffectType* refines = nullptr;
+  // The parameters that make this law of the one that it refines, behind that law's own.
+  std::vector<double> neutral;
+};
+
+/// Laws of increasing detail. Beside a spring, a law that yields is called `yielding`: it is what the user's model
+/// lacks, and not another form of it. Every other law is a `hysteresis_law`.
+/// @param law_is_spring   of the user's model.
+[[nodiscard]] std::span<const LawCandidate> law_candidates(bool law_is_spring);
+
+/// The entry of a replacement.
+[[nodiscard]] const LawCandidate& law_candidate(const EffectType& replacement);
+
+/// The search range of a parameter of an effect or of a law; nullptr: it is not searched.
+[[nodiscard]] const SearchRange* range_of(const EffectType& effect, const EffectParameter& parameter);
+
+}  // namespace hybridtest

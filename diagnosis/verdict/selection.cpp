@@ -1,0 +1,355 @@
+#include "diagnosis/verdict/selection.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "diagnosis/tuning.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+/// Softmax of the scores.
+std::vector<double> softmax(std::vector<double> scores) {
+  if (scores.empty()) return scores;
+  const double best = *std::ranges::max_element(scores);
+  double sum = 0.0;
+  for (double& score : scores) {
+    score = std::exp((score - best) / tuning::kTemperature);
+    sum += score;
+  }
+  for (double& probability : scores) probability /= sum;
+  return scores;
+}
+
+std::vector<double> scores_of(const std::vector<Candidate>& candidates) {
+  std::vector<double> scores;
+  std::ranges::transform(candidates, std::back_inserter(scores), &Candidate::score);
+  return scores;
+}
+
+/// The median; the fallback if there are no values.
+double median(std::vector<double> values, double fallback) {
+  if (values.empty()) return fallback;
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+/// Energy above the floor of each recording: of all its suspect segments, or of those that one effect acts on.
+std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
+                                                   const EffectType* effect = nullptr) {
+  std::map<std::size_t, GapEnergy> sums;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
+    const GapEnergy one = gap_energy(fit, outcome.segments[i]);
+    GapEnergy& sum = sums[problem.segments[i].segment.recording];
+    sum.total += one.total;
+    sum.floor += one.floor;
+  }
+  std::map<std::size_t, double> excess;
+  for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
+  return excess;
+}
+
+/// What a further effect changes in a typical (median) recording, so that a single unusual recording does not
+/// decide.
+struct Typical {
+  double leaves = 1.0;    // share of the gap that remained before it
+  double explains = 0.0;  // of the whole gap where it acts
+};
+
+Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+                const Candidate& further) {
+  const FitOutcome& with = further.fit;
+  const std::map<std::size_t, double> total = excess_of_recordings(problem, baseline, further.type);
+  const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
+  const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
+  std::vector<double> leaves;
+  std::vector<double> explains;
+  for (const auto& [recording, energy] : total) {
+    if (before.at(recording) > 0.0) leaves.push_back(left.at(recording) / before.at(recording));
+    if (energy > 0.0) explains.push_back((before.at(recording) - left.at(recording)) / energy);
+  }
+  return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
+}
+
+/// A further effect is accepted only if it improves the score on held-out blocks and explains enough. A wrong number
+/// of the model is judged by the gap that it leaves; any other effect also by the whole gap where it acts, unless it
+/// leaves hardly anything: even the right effect never has exactly the shape of the real one.
+bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+                     const Candidate& with) {
+  const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
+  const Typical change = typical(problem, baseline, without, with);
+  const bool matters = is_model_number(problem, *with.type) || change.explains > tuning::kAnotherEffectExplains ||
+                       change.leaves < tuning::kSmallEffectLeaves;
+  return gain > tuning::kAnotherEffectGain && change.leaves < tuning::kAnotherEffectLeaves && matters;
+}
+
+/// Something that a further effect could explain.
+bool is_more_left(const GapEnergy& left, double total) {
+  constexpr double kVariance = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
+  return left.excess() > tuning::kNothingLeft * total && left.total > kVariance * left.floor;
+}
+
+/// The best of `beside` that is accepted; null when there is none.
+/// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
+const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
+                                  const FitOutcome& without, const std::vector<Candidate>& beside) {
+  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); };
+  const auto best = std::ranges::find_if(beside, earns);
+  if (best == beside.end()) return nullptr;
+  const double before = gap_energy(problem, without).excess();
+  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
+  const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
+    return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
+           earns(candidate);
+  });
+  return number == beside.end() ? &*best : &*number;
+}
+
+/// An effect and its probability against the others that were tried in its place.
+struct Accepted {
+  const EffectType* type = nullptr;
+  double probability = 1.0;
+};
+
+/// Effects accepted so far, fitted together.
+struct Growth {
+  FitOutcome fit;
+  std::vector<Accepted> accepted;
+
+  [[nodiscard]] double probability_of(const EffectType* type) const {
+    const auto found = std::ranges::find(accepted, type, &Accepted::type);
+    return found == accepted.end() ? 1.0 : found->probability;
+  }
+};
+
+/// Effects without one of them.
+std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position) {
+  std::vector<EffectSetting> rest = effects;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(position));
+  return rest;
+}
+
+/// Drops what the other effects can do without, the least needed first.
+void prune(const IdentificationProblem& problem, const FitOutcome& baseline, FitOutcome& fit) {
+  while (fit.effects.size() > 1) {
+    std::optional<FitOutcome> best;
+    for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+      FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
+      if (earns_its_place(problem, baseline, rest, {.type = fit.effects[i].type, .fit = fit})) continue;
+      if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
+    }
+    if (!best) return;
+    fit = std::move(*best);
+  }
+}
+
+/// A candidate with the wrong numbers of the model that it needs beside it, as effects.
+Growth with_its_numbers(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                        const Selection& selection, std::size_t position) {
+  const Candidate& candidate = selection.library[position];
+  Growth growth{.fit = refit_effects(problem, candidate.fit.effects, false),
+                .accepted = {{candidate.type, selection.probabilities[position]}}};
+  if (!candidate.fit.with_nuisance) return growth;
+  std::vector<EffectSetting> start = candidate.fit.effects;
+  for (const EffectSetting& number : wrong_numbers(problem, candidate.fit)) {
+    if (number.type != candidate.type) start.push_back(number);
+  }
+  // Of several recordings the numbers differ, and their mean may be far from what fits all: searched everywhere.
+  FitOutcome together = refit_effects(problem, search_effects(coarse, start, false).effects, false);
+  // The candidate stays: it is what the numbers stand beside.
+  for (std::size_t i = start.size(); i-- > candidate.fit.effects.size();) {
+    FitOutcome rest = refit_effects(problem, without(together.effects, i), false);
+    const Candidate with{.type = together.effects[i].type, .fit = together};
+    if (!earns_its_place(problem, selection.baseline, rest, with)) together = std::move(rest);
+  }
+  growth.fit = std::move(together);
+  return growth;
+}
+
+double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
+  return held_out_score(problem, fit) + prior(problem, fit);
+}
+
+/// The chosen law among all laws, beside the effects that were found with it.
+void settle_form(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
+  const auto law = std::ranges::find_if(
+      growth.fit.effects, [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
+  if (law == growth.fit.effects.end() || growth.fit.effects.size() == 1) return;
+  const std::ptrdiff_t position = law - growth.fit.effects.begin();
+  std::vector<EffectSetting> effects = growth.fit.effects;
+  FitOutcome best = growth.fit;
+  double score = score_of(problem, best);
+  for (const Candidate& candidate : selection.library) {
+    const EffectSetting& other = candidate.fit.effects.front();
+    if (other.type->replacement == nullptr || other.type == law->type) continue;
+    effects[static_cast<std::size_t>(position)] = other;
+    FitOutcome fit = refit_effects(problem, effects, false);
+    const double its_score = score_of(problem, fit);
+    if (its_score <= score) continue;
+    score = its_score;
+    best = std::move(fit);
+  }
+  growth.fit = std::move(best);
+}
+
+/// With the round's best, if it is accepted.
+std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& baseline, const Growth& from,
+                            const std::vector<Candidate>& beside) {
+  const Candidate* const next = first_that_earns(problem, baseline, from.fit, beside);
+  if (next == nullptr) return {};
+  Growth growth = from;
+  growth.fit = next->fit;
+  const auto position = static_cast<std::size_t>(next - beside.data());
+  growth.accepted.push_back({next->type, softmax(scores_of(beside))[position]});
+  return growth;
+}
+
+/// The best of the leading candidates, each with the further effect that it needs most. Their probabilities become
+/// those of what was found with them.
+Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                  std::size_t threads, const PartProgress& progress) {
+  Growth best;
+  double best_score = -std::numeric_limits<double>::infinity();
+  const double total = gap_energy(problem, selection.baseline).excess();
+  const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
+  std::vector<double> scores = scores_of(selection.library);
+  for (std::size_t i = 0; i < leaders; ++i) {
+    if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
+    // The same once more, under another name.
+    if (i > 0 && are_alike(selection.library.front(), selection.library[i])) continue;
+    Growth leader = with_its_numbers(problem, coarse, selection, i);
+    if (is_more_left(gap_energy(problem, leader.fit), total)) {
+      const std::vector<Candidate> beside =
+          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, leaders));
+      if (std::optional<Growth> pair = grown(problem, selection.baseline, leader, beside)) leader = std::move(*pair);
+    } else if (i == 0) {
+      return leader;
+    }
+    const double score = score_of(problem, leader.fit);
+    scores[i] = std::max(scores[i], score);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = std::move(leader);
+  }
+  selection.probabilities = softmax(std::move(scores));
+  for (std::size_t i = 0; i < leaders; ++i) {
+    if (selection.library[i].type == best.accepted.front().type) {
+      best.accepted.front().probability = selection.probabilities[i];
+    }
+  }
+  return best;
+}
+
+/// Gap explained by the effects whose bits are set.
+std::vector<double> explained_by_subset(const IdentificationProblem& problem, const std::vector<EffectSetting>& chosen,
+                                        const PartProgress& progress) {
+  const std::size_t subsets = std::size_t{1} << chosen.size();
+  const double total = gap_energy(problem, fit_nothing(problem, false)).total;
+  std::vector<double> explained(subsets, 0.0);
+  for (std::size_t subset = 1; subset < subsets; ++subset) {
+    progress.report("combinations of the causes", subset - 1, subsets - 1);
+    std::vector<EffectSetting> effects;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      if ((subset >> i & 1U) != 0) effects.push_back(chosen[i]);
+    }
+    explained[subset] = std::max(0.0, total - gap_energy(problem, refit_effects(problem, effects, false)).total);
+  }
+  return explained;
+}
+
+double factorial(int n) { return std::tgamma(n + 1.0); }
+
+/// What each of several effects contributes to the gap that they explain together (Shapley, 1953): its
+/// gain on held-out blocks, averaged over all orders in which they can be added. Adds up to one.
+std::vector<double> cause_shares(const IdentificationProblem& problem, const std::vector<EffectSetting>& chosen,
+                                 const PartProgress& progress) {
+  const auto n = static_cast<int>(chosen.size());
+  std::vector<double> shares(chosen.size(), 1.0 / std::max(1, n));
+  if (n < 2) return shares;
+  const std::vector<double> explained = explained_by_subset(problem, chosen, progress);
+  if (explained.back() <= 0.0) return shares;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    double value = 0.0;
+    for (std::size_t subset = 0; subset < explained.size(); ++subset) {
+      if ((subset >> i & 1U) != 0) continue;
+      const int before = std::popcount(subset);
+      value += factorial(before) * factorial(n - before - 1) / factorial(n) *
+               (explained[subset | std::size_t{1} << i] - explained[subset]);
+    }
+    shares[i] = std::max(0.0, value);
+  }
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share = sum > 0.0 ? share / sum : 1.0 / n;
+  return shares;
+}
+
+}  // namespace
+
+bool stands_above_floor(const IdentificationProblem& problem, const FitOutcome& baseline, double multiple) {
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    if (!fit.is_suspect) continue;
+    const double gap = baseline.segments[i].mean_square - fit.floor * fit.floor;
+    const double floor = fit.sample_floor;
+    const double allowance = std::max(0.0, 1.0 / (fit.weight * fit.weight) - fit.floor * fit.floor);
+    if (gap > multiple * multiple * floor * floor + allowance) return true;
+  }
+  return false;
+}
+
+Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, std::size_t threads,
+                         const PartProgress& progress) {
+  Selection selection;
+  selection.baseline = fit_nothing(problem, false);
+  selection.chosen = selection.baseline;
+  if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return selection;
+  selection.library = fit_library(problem, coarse, threads, progress.part(0.0, tuning::kLibraryFitted));
+  if (selection.library.empty()) return selection;
+  // Under a large gap the noise is not known: it is that of the best candidate, and the others are judged by it.
+  const Candidate& best = selection.library.front();
+  settle_noise(problem, best.fit);
+  settle_noise(coarse, refit_effects(coarse, best.fit.effects, best.fit.with_nuisance));
+  score_again(problem, selection.library);
+  put_stage_before_sensor(selection.library);
+  selection.probabilities = softmax(scores_of(selection.library));
+  if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
+    return selection;
+  }
+  Growth growth =
+      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
+  const double total = gap_energy(problem, selection.baseline).excess();
+  const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
+  for (std::size_t round = 0; growth.accepted.size() > 1 && growth.fit.effects.size() < tuning::kEffectsMax &&
+                              is_more_left(gap_energy(problem, growth.fit), total);
+       ++round) {
+    const std::vector<Candidate> beside =
+        fit_beside(problem, coarse, growth.fit.effects, threads, further.round(round, tuning::kEffectsMax - 2));
+    std::optional<Growth> next = grown(problem, selection.baseline, growth, beside);
+    if (!next) break;
+    growth = std::move(*next);
+  }
+  if (growth.fit.effects.size() > 1) {
+    // Comparisons among what was found do at the lower rate, at a fraction of the cost.
+    growth.fit = refit_effects(coarse, growth.fit.effects, false);
+    settle_form(coarse, selection, growth);
+    prune(coarse, fit_nothing(coarse, false), growth.fit);
+    growth.fit = refit_effects(problem, growth.fit.effects, false);
+  }
+  selection.shares = cause_shares(coarse, growth.fit.effects, progress.part(tuning::kEffectsChosen, 1.0));
+  selection.chosen = std::move(growth.fit);
+  for (const EffectSetting& effect : selection.chosen.effects) {
+    selection.chosen_probabilities.push_back(growth.probability_of(effect.type));
+  }
+  return selection;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/peak_oriented.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+/// A specimen whose law has another form than that of the model.
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+
+constexpr double kYield_n = 16e3;  // at 8 mm, of 28 mm
+constexpr double kHardening = 0.05;
+
+std::unique_ptr<Law> real_bilinear() {
+  return std::make_unique<Bilinear>(Bilinear::Parameters{kMadeStiffness_n_per_m, kYield_n, kHardening});
+}
+
+/// The force of a law along the made motion, with noise.
+Recording recording_of(Law& law) {
+  return made_recording(made_motion_m, [&](double time_s) {
+    const double force_n = law.trial(made_motion_m(time_s), 0.0);
+    law.commit();
+    return force_n;
+  });
+}
+
+SiteModel elastic_model(double stiffness_n_per_m) {
+  SiteModel model = made_model();
+  model.make_law = [stiffness_n_per_m] { return std::make_unique<Elastic>(stiffness_n_per_m); };
+  return model;
+}
+
+Diagnosis diagnosis_of(const SiteModel& model, const Recording& recording) {
+  DiagnoseSettings settings;
+  settings.threads = 2;
+  return diagnose(model, {&recording, 1}, settings);
+}
+
+const report::RankedCause& only_cause(const Diagnosis& diagnosis) {
+  const auto count = std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause);
+  EXPECT_EQ(count, 1);
+  return diagnosis.report.ranking.front();
+}
+
+double value_of(const report::RankedCause& cause, std::string_view name) {
+  const auto found = std::ranges::find(cause.parameters, name, &report::ReportedParameter::name);
+  return found == cause.parameters.end() ? std::nan("") : found->value;
+}
+
+/// Whatever the user believes of the stiffness, from a tenth to ten times the real one.
+TEST(LawForm, YieldingUnderAnElasticModelIsOneCause) {
+  const auto real = real_bilinear();
+  const Recording recording = recording_of(*real);
+  for (const double share : {0.1, 1.0, 10.0}) {
+    SCOPED_TRACE(share);
+    const Diagnosis diagnosis = diagnosis_of(elastic_model(share * kMadeStiffness_n_per_m), recording);
+    EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+    const report::RankedCause& cause = only_cause(diagnosis);
+    EXPECT_EQ(cause.effect, "yielding");
+    EXPECT_EQ(cause.law, "bilinear");
+    // 20 N of noise on 16 kN, 6000 samples: a thousandth is ten times what the noise leaves.
+    EXPECT_NEAR(value_of(cause, "stiffness_n_per_m"), kMadeStiffness_n_per_m, 1e-3 * kMadeStiffness_n_per_m);
+    EXPECT_NEAR(value_of(cause, "yield_force_n"), kYield_n, 1e-3 * kYield_n);
+    EXPECT_NEAR(value_of(cause, "hardening_ratio"), kHardening, 1e-3);
+  }
+}
+
+TEST(LawForm, WrongStrengthAloneIsNoMissingEffect) {
+  const auto real = real_bilinear();
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{kMadeStiffness_n_per_m, 1.25 * kYield_n, kHardening});
+  };
+  const Diagnosis diagnosis = diagnosis_of(model, recording_of(*real));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  EXPECT_EQ(only_cause(diagnosis).effect, "strength_error");
+  EXPECT_NEAR(value_of(only_cause(diagnosis), "strength_error_ratio"), -0.2, 1e-3);
+}
+
+/// It reloads towards its largest displacement: called a fracture with certainty before.
+TEST(LawForm, PeakOrientedSpecimenIsALawOfAnotherForm) {
+  PeakOriented::Parameters parameters;
+  parameters.stiffness_n_per_m = kMadeStiffness_n_per_m;
+  parameters.yield_force_n = kYield_n;
+  parameters.hardening_ratio = kHardening;
+  PeakOriented real{parameters};
+  SiteModel model = made_model();
+  model.make_law = real_bilinear;
+  const Diagnosis diagnosis = diagnosis_of(model, recording_of(real));
+  EXPECT_EQ(diagnosis.report.ranking.front().effect, "hysteresis_law");
+  EXPECT_EQ(diagnosis.report.ranking.front().law, "peak_oriented");
+  EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
+}
+
+/// A gap of another size at another interface.
+TEST(VerdictPerInterface, NoInterfaceHidesACauseAtAnother) {
+  const auto late_m = [](double t) { return made_motion_m(t - 0.005); };
+  Recording recording = made_recording(late_m, [&](double t) {
+    const double rises = late_m(t + 1e-5) - late_m(t - 1e-5);
+    return kMadeStiffness_n_per_m * late_m(t) + (rises > 0.0 ? 300.0 : -300.0);
+  });
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
+  const auto has_cause = [&](std::string_view interface, std::string_view effect) {
+    return std::ranges::any_of(diagnosis.report.ranking, [&](const report::RankedCause& cause) {
+      return cause.is_cause && cause.interface == interface && cause.effect == effect;
+    });
+  };
+  EXPECT_TRUE(has_cause("transfer_system", "delay"));
+  EXPECT_TRUE(has_cause("specimen", "coulomb_friction"));
+  for (const char* interface : {"transfer_system", "specimen"}) {
+    const auto gap = std::ranges::find(diagnosis.report.where, interface, &report::InterfaceGap::interface);
+    ASSERT_NE(gap, diagnosis.report.where.end());
+    ASSERT_TRUE(gap->verdict.has_value()) << interface;
+    EXPECT_TRUE(report::names_a_cause(*gap->verdict)) << interface;
+  }
+}
+
+TEST(LawCandidates, StartFromTheirOwnLawsParameters) {
+  for (const bool law_is_spring : {true, false}) {
+    for (const LawCandidate& candidate : law_candidates(law_is_spring)) {
+      SCOPED_TRACE(candidate.type.replacement->law);
+      ASSERT_EQ(candidate.ranges.size(), candidate.type.parameters.size());
+      std::vector<double> values;
+      for (const SearchRange& range : candidate.ranges) values.push_back(0.5 * (range.low + range.high));
+      values[0] = 2.0e6;
+      values[1] = 0.01;
+      const auto law = candidate.type.replacement->make(values);
+      ASSERT_NE(law, nullptr);
+      EXPECT_NEAR(law->initial_stiffness_n_per_m(), 2.0e6, 1.0);
+      // The force is proportional to the first parameter, the others held.
+      std::vector<double> twice = values;
+      twice[0] *= 2.0;
+      const auto stiffer = candidate.type.replacement->make(twice);
+      for (const double displacement_m : {0.004, 0.015, -0.02, 0.001, 0.018}) {
+        const double force_n = law->trial(displacement_m, 0.0);
+        EXPECT_NEAR(stiffer->trial(displacement_m, 0.0), 2.0 * force_n, 1e-6 * std::abs(force_n));
+        law->commit();
+        stiffer->commit();
+      }
+      values[0] = 0.0;
+      EXPECT_EQ(candidate.type.replacement->make(values), nullptr);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest
