@@ -365,7 +365,8 @@ inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named (a tenth of its amplitude), and up to which it
 /// is named in part.
 inline constexpr double kNamedLeaves = 0.01;
-/// Residual over the floor [rms over rms] up to which nothing of a gap is left, and above which no cause is named alone.
+/// Residual over the floor [rms over rms] up to which nothing of a gap is left, and above which no cause is named
+/// alone.
 inline constexpr double kNearFloor = 2.0;
 inline constexpr double kWellAboveFloor = 10.0;
 /// Of kNamedLeaves, so little that the floor does not matter: computed signals have none.

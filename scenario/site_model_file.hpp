@@ -33,8 +33,8 @@ struct SiteModelFile : SiteModelText {
   bool compensators_were_given = false;  // to read_site_model(), because the file names none
   bool has_effects = false;              // in `text` and `rig`, as their last key
 
-  /// With effects added behind those it has, and a law in place of the specimen's own where one of them is a law. A wrong setting of a compensator that has one is corrected there, so
-  /// that the setting is counted once.
+  /// With effects added behind those it has, and a law in place of the specimen's own where one of them is a law. A
+  /// wrong setting of a compensator that has one is corrected there, so that the setting is counted once.
   [[nodiscard]] SiteModelText with_effects(std::span<const ListedEffect> effects) const;
 };
 

@@ -43,10 +43,10 @@ struct Repeatability {
 struct InterfaceGap {
   std::string interface;  // `transfer_system`
   bool is_judged = false;
-  std::string why_not{};     // if not judged: the missing channel or other requirement
-  bool is_at_fault = false;  // its gap is above its noise floor
+  std::string why_not{};             // if not judged: the missing channel or other requirement
+  bool is_at_fault = false;          // its gap is above its noise floor
   std::optional<Verdict> verdict{};  // on this interface alone, if it is at fault
-  double share = 0.0;        // of the whole gap, 0 to 1
+  double share = 0.0;                // of the whole gap, 0 to 1
   Interval share_ci95{};
   double nrmse = 0.0;
   double floor_nrmse = 0.0;                      // of noise
