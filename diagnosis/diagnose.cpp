@@ -78,7 +78,9 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.is_cause = true;
       cause.share = part * selection.shares[i];
       cause.probability = selection.chosen_probabilities[i];
-      cause.is_indistinguishable = is_set && selection.chosen.effects[i].type == selection.library.front().type;
+      cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
+                                     return selection.library[member].type == selection.chosen.effects[i].type;
+                                   });
       listed.push_back(selection.chosen.effects[i].type);
       ranking.push_back(std::move(cause));
     }
@@ -88,7 +90,9 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const Candidate& candidate = selection.library[i];
     if (std::ranges::find(listed, candidate.type) != listed.end()) continue;
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
-    RankedCause cause = ranked(candidate.fit.effects.front(), candidate.fit.parameters.front());
+    const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
+    const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
+    RankedCause cause = ranked(fit.effects.front(), fit.parameters.front());
     cause.probability = selection.probabilities[i];
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "diagnosis/tuning.hpp"
@@ -45,7 +46,7 @@ std::vector<std::size_t> credible(const Selection& selection) {
   for (std::size_t i = 0; i < selection.library.size(); ++i) {
     const Candidate& candidate = selection.library[i];
     const bool is_alike = candidate.parameters <= first.parameters &&
-                          (candidate.held_out > first.held_out - within || are_alike(first, candidate));
+                          (candidate.held_out > first.held_out - within || are_alike(first.fit, candidate.fit));
     if (i == 0 || sum < tuning::kCredible || is_alike) members.push_back(i);
     sum += selection.probabilities[i];
   }
@@ -80,9 +81,12 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.verdict = Verdict::unknown;
   }
   const EffectType* const cause = only_cause(problem, selection);
-  const bool leads = cause != nullptr && selection.library.front().type == cause;
-  if (judgement.verdict == Verdict::unknown || !leads) return judgement;
-  judgement.indistinguishable = credible(selection);
+  if (judgement.verdict == Verdict::unknown || cause == nullptr) return judgement;
+  if (selection.library.front().type == cause) {
+    judgement.indistinguishable = credible(selection);
+  } else {
+    std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
+  }
   if (judgement.verdict == Verdict::named && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
   return judgement;
 }
@@ -149,6 +153,8 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const EffectParameter& parameter = effect.type->parameters[i];
     cause.parameters.push_back(reported(parameter.name, parameter.unit, estimates[i]));
+    // Left out, and so no limit that a search ran into.
+    if (estimates[i].value == parameter.fallback) cause.parameters.back().is_at_bound = false;
   }
   return cause;
 }

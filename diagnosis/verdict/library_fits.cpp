@@ -43,6 +43,10 @@ GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& out
   return sum;
 }
 
+bool is_of_sensor(const EffectType& effect) noexcept {
+  return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
+}
+
 namespace {
 
 std::vector<Candidate> best_first(std::vector<std::optional<Candidate>> fitted) {
@@ -62,10 +66,6 @@ bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& f
   return std::ranges::none_of(wrong_numbers(problem, fit), [](const EffectSetting& number) {
     return number.type->traits.number == ModelNumber::stiffness && std::abs(number.values[0]) > tuning::kSlightlyWrong;
   });
-}
-
-bool is_of_sensor(const EffectType& effect) {
-  return effect.interface == EffectInterface::displacement_sensor || effect.interface == EffectInterface::force_sensor;
 }
 
 /// Whether a parameter is optional in a scenario and this fit is at its default.
@@ -332,19 +332,19 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
   return candidates;
 }
 
-bool are_alike(const Candidate& first, const Candidate& second) {
+bool are_alike(const FitOutcome& first, const FitOutcome& second) {
   double both = 0.0;
   double of_first = 0.0;
   double of_second = 0.0;
-  for (std::size_t i = 0; i < first.fit.segments.size(); ++i) {
-    const Eigen::VectorXd& a = first.fit.segments[i].change;
-    const Eigen::VectorXd& b = second.fit.segments[i].change;
+  for (std::size_t i = 0; i < first.segments.size(); ++i) {
+    const Eigen::VectorXd& a = first.segments[i].change;
+    const Eigen::VectorXd& b = second.segments[i].change;
     of_first += a.squaredNorm();
     of_second += b.squaredNorm();
     if (a.size() == b.size()) both += a.dot(b);
     // Where the model is far off, everything that mends it has the same shape; what is left tells them apart.
-    const double left = first.fit.segments[i].mean_square;
-    const double left_by_second = second.fit.segments[i].mean_square;
+    const double left = first.segments[i].mean_square;
+    const double left_by_second = second.segments[i].mean_square;
     if (std::abs(left - left_by_second) > tuning::kSameResidual * std::min(left, left_by_second)) return false;
   }
   return both > tuning::kSameSignature * std::sqrt(of_first * of_second);
@@ -353,7 +353,7 @@ bool are_alike(const Candidate& first, const Candidate& second) {
 void put_stage_before_sensor(std::vector<Candidate>& candidates) {
   if (candidates.empty() || !is_of_sensor(*candidates.front().type)) return;
   const auto of_stage = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-    return !is_of_sensor(*candidate.type) && are_alike(candidates.front(), candidate);
+    return !is_of_sensor(*candidate.type) && are_alike(candidates.front().fit, candidate.fit);
   });
   if (of_stage != candidates.end()) std::rotate(candidates.begin(), of_stage, of_stage + 1);
 }

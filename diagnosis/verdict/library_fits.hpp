@@ -66,8 +66,10 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// Scores of the same fits after the noise of the problem has changed, best first.
 void score_again(const IdentificationProblem& problem, std::vector<Candidate>& candidates);
 
-/// Whether two candidates change the prediction in the same shape and size: nothing on these recordings splits them.
-[[nodiscard]] bool are_alike(const Candidate& first, const Candidate& second);
+/// Whether two fits change the prediction in the same shape and size: nothing on these recordings splits them.
+[[nodiscard]] bool are_alike(const FitOutcome& first, const FitOutcome& second);
+
+[[nodiscard]] bool is_of_sensor(const EffectType& effect) noexcept;
 
 /// Where a sensor's effect leads, and one of a stage changes the prediction alike, the stage's comes first.
 void put_stage_before_sensor(std::vector<Candidate>& candidates);

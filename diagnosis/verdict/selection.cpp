@@ -213,40 +213,74 @@ std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutco
   return growth;
 }
 
-/// The best of the leading candidates, each with the further effect that it needs most. Their probabilities become
-/// those of what was found with them.
+/// Whether this candidate is grown: the first one is, and one that scores nearly as well; where a sensor's effect
+/// leads, also one of a stage that leaves not much more. The same under another name is not.
+bool may_lead(const IdentificationProblem& problem, const Selection& selection, std::size_t position) {
+  if (position == 0) return true;
+  const Candidate& first = selection.library.front();
+  const Candidate& candidate = selection.library[position];
+  if (are_alike(first.fit, candidate.fit)) return false;
+  if (candidate.score > first.score - tuning::kFarBehind) return true;
+  return is_of_sensor(*first.type) && !is_of_sensor(*candidate.type) &&
+         tuning::kAnotherEffectLeaves * gap_energy(problem, candidate.fit).excess() <
+             gap_energy(problem, first.fit).excess();
+}
+
+/// The leading candidates, each with the further effect that it needs most; by their positions in the library.
+std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                           const Selection& selection, std::size_t threads,
+                                           const PartProgress& progress) {
+  std::map<std::size_t, Growth> leaders;
+  const double total = gap_energy(problem, selection.baseline).excess();
+  const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!may_lead(problem, selection, i)) continue;
+    Growth leader = with_its_numbers(problem, coarse, selection, i);
+    const bool is_enough = !is_more_left(gap_energy(problem, leader.fit), total);
+    if (!is_enough) {
+      const std::vector<Candidate> beside =
+          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, count));
+      if (std::optional<Growth> pair = grown(problem, selection.baseline, leader, beside)) leader = std::move(*pair);
+    }
+    leaders.emplace(i, std::move(leader));
+    if (i == 0 && is_enough) break;
+  }
+  return leaders;
+}
+
+/// Between effects that the recordings cannot tell apart, the score decides nothing.
+void share_evenly(const std::vector<AlikeLeader>& alike, std::vector<double>& probabilities) {
+  double sum = 0.0;
+  for (const AlikeLeader& leader : alike) sum += probabilities[leader.position];
+  for (const AlikeLeader& leader : alike) probabilities[leader.position] = sum / static_cast<double>(alike.size());
+}
+
+/// The best of the leading candidates; of a sensor only if none of a stage changes the prediction alike. The
+/// probabilities become those of what was found with them.
 Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                   std::size_t threads, const PartProgress& progress) {
-  Growth best;
-  double best_score = -std::numeric_limits<double>::infinity();
-  const double total = gap_energy(problem, selection.baseline).excess();
-  const std::size_t leaders = std::min(tuning::kLeadersPaired, selection.library.size());
+  std::map<std::size_t, Growth> leaders = grow_leaders(problem, coarse, selection, threads, progress);
+  if (leaders.size() == 1) return std::move(leaders.begin()->second);
   std::vector<double> scores = scores_of(selection.library);
-  for (std::size_t i = 0; i < leaders; ++i) {
-    if (selection.library[i].score < selection.library.front().score - tuning::kFarBehind) break;
-    // The same once more, under another name.
-    if (i > 0 && are_alike(selection.library.front(), selection.library[i])) continue;
-    Growth leader = with_its_numbers(problem, coarse, selection, i);
-    if (is_more_left(gap_energy(problem, leader.fit), total)) {
-      const std::vector<Candidate> beside =
-          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, leaders));
-      if (std::optional<Growth> pair = grown(problem, selection.baseline, leader, beside)) leader = std::move(*pair);
-    } else if (i == 0) {
-      return leader;
-    }
-    const double score = score_of(problem, leader.fit);
-    scores[i] = std::max(scores[i], score);
-    if (score <= best_score) continue;
-    best_score = score;
-    best = std::move(leader);
+  for (const auto& [position, leader] : leaders) {
+    scores[position] = std::max(scores[position], score_of(problem, leader.fit));
+  }
+  const auto by_score = [&](const auto& leader) { return score_of(problem, leader.second.fit); };
+  auto best = std::ranges::max_element(leaders, {}, by_score);
+  const auto is_alike = [&](const auto& leader) { return are_alike(best->second.fit, leader.second.fit); };
+  if (is_of_sensor(*selection.library[best->first].type)) {
+    const auto of_stage = std::ranges::find_if(leaders, [&](const auto& leader) {
+      return !is_of_sensor(*selection.library[leader.first].type) && is_alike(leader);
+    });
+    if (of_stage != leaders.end()) best = of_stage;
+  }
+  for (const auto& leader : leaders) {
+    if (is_alike(leader)) selection.alike.push_back({leader.first, leader.second.fit});
   }
   selection.probabilities = softmax(std::move(scores));
-  for (std::size_t i = 0; i < leaders; ++i) {
-    if (selection.library[i].type == best.accepted.front().type) {
-      best.accepted.front().probability = selection.probabilities[i];
-    }
-  }
-  return best;
+  share_evenly(selection.alike, selection.probabilities);
+  best->second.accepted.front().probability = selection.probabilities[best->first];
+  return std::move(best->second);
 }
 
 /// Gap explained by the effects whose bits are set.
