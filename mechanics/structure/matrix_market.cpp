@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <iterator>
+#include <cstddef>
 #include <optional>
-#include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,16 +17,17 @@ namespace hybridtest {
 namespace {
 
 constexpr std::size_t kMaxIssues = 20;
-constexpr std::size_t kMaxFileSize = 64U << 20U;
+constexpr std::size_t kMaxFileSize = 1U << 30U;
 
 using Words = std::vector<std::string_view>;
 
-Words split(std::string_view line) {
+/// Keeps the memory of `words`: a file has millions of lines.
+void split(std::string_view line, Words& words) {
   constexpr std::string_view kBlank = " \t\r\f\v";
-  Words words;
+  words.clear();
   while (true) {
     const std::size_t begin = line.find_first_not_of(kBlank);
-    if (begin == std::string_view::npos) return words;
+    if (begin == std::string_view::npos) return;
     line.remove_prefix(begin);
     const std::size_t length = std::min(line.find_first_of(kBlank), line.size());
     words.push_back(line.substr(0, length));
@@ -46,11 +46,33 @@ struct Banner {
   bool is_symmetric = false;
 };
 
+/// A kind of the format that is no matrix of a structure, and why.
+struct OtherKind {
+  std::string_view word;
+  std::string_view why;
+};
+constexpr std::array kOtherKinds{OtherKind{"pattern", "it has places without values"},
+                                 OtherKind{"complex", "the matrices of a structure are real"},
+                                 OtherKind{"skew-symmetric", "mass, damping and stiffness are symmetric"},
+                                 OtherKind{"hermitian", "the matrices of a structure are real"}};
+
+/// One entry, as Eigen takes it, and where it was given.
+struct Entry {
+  int at_row = 0;
+  int at_column = 0;
+  int line = 0;
+  double number = 0.0;
+
+  [[nodiscard]] int row() const noexcept { return at_row; }
+  [[nodiscard]] int col() const noexcept { return at_column; }
+  [[nodiscard]] double value() const noexcept { return number; }
+};
+
 class MatrixMarketParser {
  public:
   MatrixMarketParser(std::string_view text, const std::string& name) : left_{text}, name_{name} {}
 
-  [[nodiscard]] Eigen::MatrixXd parse() {
+  [[nodiscard]] Eigen::SparseMatrix<double> parse() {
     read_banner();
     read_size();
     if (banner_.is_coordinate) {
@@ -59,8 +81,9 @@ class MatrixMarketParser {
       read_array();
     }
     if (next_line()) report("found '" + shown(line_) + "' after the last entry; expected the end of the file");
+    report_duplicates();
     throw_if_issues();
-    return std::move(matrix_);
+    return matrix();
   }
 
  private:
@@ -71,7 +94,7 @@ class MatrixMarketParser {
       line_ = left_.substr(0, length);
       left_.remove_prefix(std::min(length + 1, left_.size()));
       ++line_number_;
-      words_ = split(line_);
+      split(line_, words_);
       if (!words_.empty()) return true;
     }
     return false;
@@ -93,10 +116,12 @@ class MatrixMarketParser {
 
   bool choose(std::size_t word, std::string_view if_true, std::string_view if_false) {
     if (is_word(words_[word], if_true)) return true;
-    if (!is_word(words_[word], if_false)) {
-      report("'" + shown(words_[word]) + "' is not read; expected " + std::string{if_true} + " or " +
-             std::string{if_false});
-    }
+    if (is_word(words_[word], if_false)) return false;
+    const auto* const other =
+        std::ranges::find_if(kOtherKinds, [&](const OtherKind& kind) { return is_word(words_[word], kind.word); });
+    const std::string why = other == kOtherKinds.end() ? "" : ": " + std::string{other->why};
+    report("'" + shown(words_[word]) + "' is not read" + why + "; expected " + std::string{if_true} + " or " +
+           std::string{if_false});
     return false;
   }
 
@@ -126,9 +151,12 @@ class MatrixMarketParser {
     throw_if_issues();
     if (banner_.is_symmetric && rows_ != columns_) fail("a symmetric matrix; expected as many columns as rows");
     const std::int64_t all = banner_.is_symmetric ? rows_ * (rows_ + 1) / 2 : rows_ * columns_;
-    entries_ = banner_.is_coordinate ? read_count(2, 0, all, "entries") : all;
+    entries_ = banner_.is_coordinate ? read_count(2, 0, std::min(all, kMaxMatrixMarketEntries), "entries") : all;
+    if (entries_ > kMaxMatrixMarketEntries) {
+      report("an array of " + std::to_string(entries_) + " entries; expected at most " +
+             std::to_string(kMaxMatrixMarketEntries) + ": write the matrix as coordinate");
+    }
     throw_if_issues();
-    matrix_ = Eigen::MatrixXd::Zero(rows_, columns_);
   }
 
   std::int64_t read_count(std::size_t word, std::int64_t low, std::int64_t high, const char* what) {
@@ -165,7 +193,6 @@ class MatrixMarketParser {
   }
 
   void read_coordinates() {
-    given_in_line_ = Eigen::MatrixXi::Zero(rows_, columns_);
     for (std::int64_t i = 0; i < entries_; ++i) {
       if (!next_entry(i, 3, "row, column and value")) return;
       if (!words_.empty()) read_coordinate();
@@ -182,13 +209,7 @@ class MatrixMarketParser {
       report("an entry above the diagonal of a symmetric matrix; expected the lower triangle alone");
       return;
     }
-    if (given_in_line_(row, column) != 0) {
-      report("row and column were given in line " + std::to_string(given_in_line_(row, column)) +
-             " already; expected each entry once");
-      return;
-    }
-    given_in_line_(row, column) = line_number_;
-    set(row, column, *value);
+    keep(row, column, *value);
   }
 
   void read_array() {
@@ -197,14 +218,46 @@ class MatrixMarketParser {
       for (std::int64_t row = banner_.is_symmetric ? column : 0; row < rows_; ++row, ++found) {
         if (!next_entry(found, 1, "one value")) return;
         if (words_.empty()) continue;
-        if (const std::optional<double> value = read_value(words_[0])) set(row, column, *value);
+        const std::optional<double> value = read_value(words_[0]);
+        if (value && *value != 0.0) keep(row, column, *value);
       }
     }
   }
 
-  void set(std::int64_t row, std::int64_t column, double value) {
-    matrix_(row, column) = value;
-    if (banner_.is_symmetric) matrix_(column, row) = value;
+  void keep(std::int64_t row, std::int64_t column, double value) {
+    kept_.push_back({static_cast<int>(row), static_cast<int>(column), line_number_, value});
+  }
+
+  /// Sorts the entries; issues stay in the order of lines.
+  void report_duplicates() {
+    const auto in_order = [](const Entry& a, const Entry& b) {
+      return std::tie(a.at_column, a.at_row, a.line) < std::tie(b.at_column, b.at_row, b.line);
+    };
+    if (!std::ranges::is_sorted(kept_, in_order)) std::ranges::sort(kept_, in_order);
+    for (std::size_t i = 1; i < kept_.size() && issues_.size() < kMaxIssues; ++i) {
+      const Entry& before = kept_[i - 1];
+      if (before.row() != kept_[i].row() || before.col() != kept_[i].col()) continue;
+      issues_.push_back({.file = name_,
+                         .line = kept_[i].line,
+                         .column = 0,
+                         .what = "row and column were given in line " + std::to_string(before.line) +
+                                 " already; expected each entry once"});
+    }
+    std::ranges::stable_sort(issues_, {}, &ConfigIssue::line);
+  }
+
+  [[nodiscard]] Eigen::SparseMatrix<double> matrix() {
+    std::erase_if(kept_, [](const Entry& entry) { return entry.number == 0.0; });
+    if (banner_.is_symmetric) {
+      const std::size_t lower = kept_.size();
+      for (std::size_t i = 0; i < lower; ++i) {
+        const Entry entry = kept_[i];
+        if (entry.at_row != entry.at_column) kept_.push_back({entry.at_column, entry.at_row, entry.line, entry.number});
+      }
+    }
+    Eigen::SparseMatrix<double> matrix(rows_, columns_);
+    matrix.setFromTriplets(kept_.begin(), kept_.end());
+    return matrix;
   }
 
   std::string_view left_;
@@ -217,17 +270,16 @@ class MatrixMarketParser {
   std::int64_t rows_ = 0;
   std::int64_t columns_ = 0;
   std::int64_t entries_ = 0;
-  Eigen::MatrixXd matrix_;
-  Eigen::MatrixXi given_in_line_;
+  std::vector<Entry> kept_;
 };
 
 }  // namespace
 
-Eigen::MatrixXd read_matrix_market(const std::filesystem::path& file) {
+Eigen::SparseMatrix<double> read_matrix_market(const std::filesystem::path& file) {
   return parse_matrix_market(read_input_file(file, kMaxFileSize, "a Matrix Market file"), file.string());
 }
 
-Eigen::MatrixXd parse_matrix_market(std::string_view text, const std::string& name) {
+Eigen::SparseMatrix<double> parse_matrix_market(std::string_view text, const std::string& name) {
   return MatrixMarketParser{text, name}.parse();
 }
 

@@ -21,13 +21,13 @@ std::function<Eigen::MatrixXd()> read_stiffness(Section& section, int dofs, cons
   if (section.has("matrix_market")) {
     const std::filesystem::path file = named_file(section, "matrix_market", directory).value_or("");
     return [file, dofs] {
-      Eigen::MatrixXd matrix = read_matrix_market(file);
+      const Eigen::SparseMatrix<double> matrix = read_matrix_market(file);
       if (matrix.rows() != dofs || matrix.cols() != dofs) {
         throw ConfigError{file.string() + ": a matrix of " + std::to_string(matrix.rows()) + " by " +
                           std::to_string(matrix.cols()) + "; the interface has " + std::to_string(dofs) +
                           " degrees of freedom"};
       }
-      return matrix;
+      return Eigen::MatrixXd{matrix};
     };
   }
   const auto size = static_cast<std::size_t>(dofs);

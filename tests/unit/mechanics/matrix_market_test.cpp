@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Eigen::MatrixXd parse(const std::string& text) { return parse_matrix_market(text, "k.mtx"); }
+Eigen::MatrixXd parse(const std::string& text) { return Eigen::MatrixXd{parse_matrix_market(text, "k.mtx")}; }
 
 std::vector<std::string> issues(const std::string& text) {
   std::vector<std::string> texts;
@@ -74,9 +75,17 @@ TEST(MatrixMarket, AcceptsCommonFileVariants) {
 TEST(MatrixMarket, ReportsErrorsOfFirstLine) {
   EXPECT_THAT(issues(""), ElementsAre(HasSubstr("empty")));
   EXPECT_THAT(issues("1 1 1\n1 1 1\n"), ElementsAre(HasSubstr("k.mtx:1: found '1 1 1'; expected '%%MatrixMarket")));
-  EXPECT_THAT(issues("%%MatrixMarket matrix coordinate complex hermitian\n1 1 1\n"),
-              ElementsAre("k.mtx:1: 'complex' is not read; expected integer or real",
-                          "k.mtx:1: 'hermitian' is not read; expected symmetric or general"));
+  EXPECT_THAT(
+      issues("%%MatrixMarket matrix coordinate complex hermitian\n1 1 1\n"),
+      ElementsAre("k.mtx:1: 'complex' is not read: the matrices of a structure are real; expected integer or real",
+                  "k.mtx:1: 'hermitian' is not read: the matrices of a structure are real; expected symmetric "
+                  "or general"));
+  EXPECT_THAT(issues("%%MatrixMarket matrix coordinate pattern skew-symmetric\n1 1 1\n"),
+              ElementsAre("k.mtx:1: 'pattern' is not read: it has places without values; expected integer or real",
+                          "k.mtx:1: 'skew-symmetric' is not read: mass, damping and stiffness are symmetric; expected "
+                          "symmetric or general"));
+  EXPECT_THAT(issues("%%MatrixMarket matrix sparse real general\n1 1 1\n"),
+              ElementsAre("k.mtx:1: 'sparse' is not read; expected coordinate or array"));
 }
 
 TEST(MatrixMarket, ReportsErrorsOfSizeLine) {
@@ -86,8 +95,8 @@ TEST(MatrixMarket, ReportsErrorsOfSizeLine) {
   EXPECT_THAT(issues(banner + "2 3 1\n"), ElementsAre(HasSubstr("as many columns as rows")));
   EXPECT_THAT(issues(banner + "2 2 4\n"), ElementsAre("k.mtx:3: '4' entries; expected an integer from 0 to 3"));
   EXPECT_THAT(issues(banner + "0 2000000 1\n"),
-              ElementsAre("k.mtx:3: '0' rows; expected an integer from 1 to 1000",
-                          "k.mtx:3: '2000000' columns; expected an integer from 1 to 1000"));
+              ElementsAre("k.mtx:3: '0' rows; expected an integer from 1 to 100000",
+                          "k.mtx:3: '2000000' columns; expected an integer from 1 to 100000"));
   EXPECT_THAT(issues(banner + "99999999999999999999 2 1\n"), ElementsAre(HasSubstr("rows")));
 }
 
@@ -113,6 +122,41 @@ TEST(MatrixMarket, ListsEveryWrongEntryAtOnce) {
 TEST(MatrixMarket, RejectsDuplicateEntry) {
   EXPECT_THAT(issues("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 2 5\n1 2 5\n"),
               ElementsAre("k.mtx:4: row and column were given in line 3 already; expected each entry once"));
+}
+
+TEST(MatrixMarket, ListsDuplicatesInTheOrderOfLines) {
+  EXPECT_THAT(issues("%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n3 2 5\n1 1 0\n2 1 x\n3 2 0\n1 1 1\n"),
+              ElementsAre("k.mtx:5: 'x'; expected a finite decimal number",
+                          "k.mtx:6: row and column were given in line 3 already; expected each entry once",
+                          "k.mtx:7: row and column were given in line 4 already; expected each entry once"));
+}
+
+TEST(MatrixMarket, RejectsArraysOfTooManyEntries) {
+  EXPECT_THAT(issues("%%MatrixMarket matrix array real general\n10000 10000\n1\n"),
+              ElementsAre("k.mtx:2: an array of 100000000 entries; expected at most 50000000: write the matrix as "
+                          "coordinate"));
+}
+
+TEST(MatrixMarket, ReadsAMillionEntriesInAnyOrder) {
+  constexpr int kSize = 10'000;
+  constexpr int kBand = 100;
+  std::string text = "%%MatrixMarket matrix coordinate real symmetric\n10000 10000 995050\n";
+  for (int row = kSize; row >= 1; --row) {
+    for (int column = std::max(1, row - kBand + 1); column <= row; ++column) {
+      text += std::to_string(row) + ' ' + std::to_string(column) + ' ' + std::to_string(row - column + 1) + ".5\n";
+    }
+  }
+  const Eigen::SparseMatrix<double> matrix = parse_matrix_market(text, "k.mtx");
+  EXPECT_EQ(matrix.rows(), kSize);
+  EXPECT_EQ(matrix.nonZeros(), 2 * 995'050 - kSize);
+  EXPECT_TRUE(matrix.isCompressed());
+  EXPECT_EQ(matrix.coeff(4999, 4900), 100.5);
+  EXPECT_EQ(matrix.coeff(4900, 4999), 100.5);
+  EXPECT_EQ(matrix.coeff(4900, 5000), 0.0);
+}
+
+TEST(MatrixMarket, LeavesOutZeros) {
+  EXPECT_EQ(parse_matrix_market("%%MatrixMarket matrix array real general\n2 2\n1\n0\n0\n2\n", "k.mtx").nonZeros(), 2);
 }
 
 TEST(MatrixMarket, RejectsMissingEntries) {
