@@ -46,7 +46,9 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrato
   HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSubstructures);
   HYBRIDTEST_ASSERT(std::cmp_equal(settings_.ground_acceleration_m_per_s2.size(), settings_.last_step + 1));
   HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
-  row_.resize(4 + 4 * static_cast<std::size_t>(restoring_force_n_.size()));
+  HYBRIDTEST_ASSERT(settings_.stiffness_n_per_m.size() == 0 ||
+                    settings_.stiffness_n_per_m.rows() == restoring_force_n_.size());
+  row_.resize(4 + 4 * settings_.recorded_dofs.size());
   // In paced mode a site answers one step after the command: when its actuators have reached the target.
   if (settings_.mode == CouplingMode::paced) {
     settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
@@ -337,6 +339,7 @@ void Coordinator::complete_step(Instant now) noexcept {
     }
     interface.add_to_structure(force_n, restoring_force_n_);
   }
+  add_elastic_force();
   const Step step = ledger_.step();
   const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
   applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
@@ -363,6 +366,11 @@ void Coordinator::complete_step(Instant now) noexcept {
   open_step(now);
 }
 
+void Coordinator::add_elastic_force() noexcept {
+  if (settings_.stiffness_n_per_m.nonZeros() == 0) return;
+  restoring_force_n_.noalias() += settings_.stiffness_n_per_m * integrator_->current().displacement_m;
+}
+
 void Coordinator::record_step(Instant now) noexcept {
   const MotionState& completed = integrator_->completed();
   const auto step = completed_steps_ - 1;
@@ -371,7 +379,7 @@ void Coordinator::record_step(Instant now) noexcept {
   row_[next++] = static_cast<double>(step) * settings_.step_s;
   row_[next++] = to_seconds(now - started_);
   row_[next++] = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
-  for (Eigen::Index dof = 0; dof < restoring_force_n_.size(); ++dof) {
+  for (const Eigen::Index dof : settings_.recorded_dofs) {
     row_[next++] = completed.displacement_m[dof];
     row_[next++] = completed.velocity_m_per_s[dof];
     row_[next++] = completed.acceleration_m_per_s2[dof];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
 #include <vector>
 
@@ -30,10 +31,14 @@ struct CoordinatorSettings {
   double time_scale = 1.0;  // paced: wall time over model time
   Step last_step = 0;       // the test has the steps 0 .. last_step
   std::vector<CoupledSubstructure> substructures;
+  /// Of the elastic part, which the coordinator computes by itself, n x n. Empty without one.
+  Eigen::SparseMatrix<double> stiffness_n_per_m;
   /// Load on each structure degree of freedom per unit of ground acceleration: -M iota [kg].
   Eigen::VectorXd load_per_ground_acceleration_kg;
   /// At each step 0 .. last_step [m/s2].
   std::vector<double> ground_acceleration_m_per_s2;
+  /// Degrees of freedom in the table of steps.
+  std::vector<Eigen::Index> recorded_dofs;
   bool stop_on_recording_failure = false;            // when any participant cannot record
   Duration settle = std::chrono::milliseconds{300};  // waits for the status of an older coordinator
   Duration discovery_timeout = std::chrono::seconds{30};
@@ -100,6 +105,8 @@ class Coordinator final : public Node {
   void send_command(SubstructureIndex substructure, Instant now) noexcept;
   void repeat_unanswered(Instant now) noexcept;
   void complete_step(Instant now) noexcept;
+  /// K u of the elastic part, added to the forces of the substructures.
+  void add_elastic_force() noexcept;
   void record_step(Instant now) noexcept;
   void record_exchanges() noexcept;
   /// @param who   ended the test: a participant's id or `operator`.

@@ -10,7 +10,7 @@ struct TestResponse {
   double step_s = 0.0;
   Eigen::MatrixXd displacement_m;
   Eigen::MatrixXd velocity_m_per_s;
-  Eigen::MatrixXd restoring_force_n;  // of all substructures together
+  Eigen::MatrixXd restoring_force_n;  // of all substructures and of the elastic part
   Eigen::MatrixXd applied_force_n;    // of the ground motion, -M iota a_g
 
   [[nodiscard]] Eigen::Index steps() const noexcept { return displacement_m.cols(); }

@@ -28,6 +28,9 @@ void print_modes(const Scenario& scenario, const VibrationModes& modes) {
                modes.frequency_rad_per_s[mode] / (2.0 * std::numbers::pi), modes.period_s(mode), 100.0 * ratios[mode],
                modes.effective_mass_kg[mode]);
   }
+  if (modes.count() == scenario.structure.size()) return;
+  fmt::print("and {} more; the highest frequency is at most {:.4g} Hz\n", scenario.structure.size() - modes.count(),
+             modes.highest_frequency_rad_per_s() / (2.0 * std::numbers::pi));
 }
 
 /// One row in brackets after the other.
@@ -52,7 +55,11 @@ void print_stiffness(const SiteStability& stability) {
 
 void print_delays(const SiteStability& stability) {
   const ForceDelay& delay = stability.delay;
-  if (std::isfinite(stability.critical.delay_s)) {
+  if (std::isnan(stability.critical.delay_s)) {
+    fmt::print("  critical delay      not computed: more than {} degrees of freedom. Simulate the test with this\n",
+               kCriticalDelaySizeMax);
+    fmt::print("                      transfer system, and look for motion that grows\n");
+  } else if (std::isfinite(stability.critical.delay_s)) {
     fmt::print("  critical delay      {:.3f} ms, at {:.2f} Hz\n", 1e3 * stability.critical.delay_s,
                stability.critical.frequency_rad_per_s / (2.0 * std::numbers::pi));
   } else {

@@ -24,7 +24,7 @@ struct RunFileHeader {
   std::string start_time_utc;  // ISO 8601, given by the caller: nothing here reads a clock
   std::string software_version;
   std::vector<std::string> substructure_ids;  // in the scenario's order: index of `exchanges.substructure`
-  std::vector<std::string> structure_dofs;    // of the whole structure
+  std::vector<std::string> structure_dofs;    // of the structure, those in the record
   std::vector<std::string> interface_dofs;    // of this substructure; empty for the coordinator
   bool operator==(const RunFileHeader&) const = default;
 };

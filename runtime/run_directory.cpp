@@ -25,13 +25,15 @@ std::string utc_text(const char* format) {
   return text.data();
 }
 
-void copy_ground_motion(const std::filesystem::path& directory, const Scenario& scenario) {
-  const std::filesystem::path written{scenario.ground_motion_text};
-  if (written.is_absolute() || written.lexically_normal().string().starts_with("..")) return;
-  const std::filesystem::path target = directory / written;
-  std::filesystem::create_directories(target.parent_path());
-  if (!std::filesystem::exists(target)) {
-    std::filesystem::copy_file(scenario.ground_motion_file, target, std::filesystem::copy_options::skip_existing);
+void copy_named_files(const std::filesystem::path& directory, const Scenario& scenario) {
+  for (const NamedFile& named : scenario.files) {
+    const std::filesystem::path written{named.written};
+    if (written.is_absolute() || written.lexically_normal().string().starts_with("..")) continue;
+    const std::filesystem::path target = directory / written;
+    std::filesystem::create_directories(target.parent_path());
+    if (!std::filesystem::exists(target)) {
+      std::filesystem::copy_file(named.file, target, std::filesystem::copy_options::skip_existing);
+    }
   }
 }
 
@@ -46,7 +48,7 @@ std::filesystem::path default_run_directory(std::string_view test_name) {
 void prepare_run_directory(const std::filesystem::path& directory, const Scenario& scenario) try {
   std::filesystem::create_directories(directory);
   const std::filesystem::path file = directory / "scenario.yaml";
-  copy_ground_motion(directory, scenario);
+  copy_named_files(directory, scenario);
   // Participants on one machine share the directory; each writes the same bytes.
   const std::filesystem::path partial =
       directory / ("." + std::to_string(scenario.digest[0]) + "." + std::to_string(::getpid()) + ".scenario.yaml");
@@ -82,7 +84,7 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
   header.incarnation = incarnation;
   header.start_time_utc = time_utc();
   header.software_version = software_version();
-  header.structure_dofs = scenario.dofs;
+  header.structure_dofs = scenario.recorded_names();
   for (const SubstructureScenario& substructure : scenario.substructures) {
     header.substructure_ids.push_back(substructure.id);
     if (substructure.id == participant) header.interface_dofs = substructure.interface_names;

@@ -4,15 +4,15 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <span>
 
 #include "coordinator/ground_motion/read_ground_motion.hpp"
 #include "coordinator/preflight/step_stability.hpp"
 #include "core/config/section.hpp"
-#include "core/text/nearest_name.hpp"
-#include "core/text/shown.hpp"
+#include "core/input_file.hpp"
 #include "experimental_site/energy_error.hpp"
-#include "mechanics/structure/damping.hpp"
 #include "mechanics/structure/stiffness_matrix.hpp"
 #include "mechanics/structure/vibration_modes.hpp"
 #include "numerical_substructure/scaled_model.hpp"
@@ -24,8 +24,10 @@
 #include "scenario/catalogue/rigs.hpp"
 #include "scenario/catalogue/simulated_rig.hpp"
 #include "scenario/named_file.hpp"
+#include "scenario/plain_name.hpp"
 #include "scenario/scenario_digest.hpp"
 #include "scenario/sites_in_place.hpp"
+#include "scenario/structure_section.hpp"
 
 namespace hybridtest {
 namespace {
@@ -34,17 +36,11 @@ using config::Section;
 constexpr double kStepsAtMost = 1e9;
 constexpr std::size_t kTestNameLongest = 64;
 
-/// Names become parts of file, partition and column names.
-bool is_plain_name(std::string_view name) noexcept {
-  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
-  return !name.empty() && name.front() != '.' && name.find_first_not_of(kAllowed) == std::string_view::npos;
-}
-
 std::string plain_name(Section& section, std::string_view key, std::size_t longest) {
   std::string name = section.text(key);
   if (name.size() > longest || (!name.empty() && !is_plain_name(name))) {
-    section.error(key, "'" + name + "' does not serve as a name: expected at most " + std::to_string(longest) +
-                           " letters, digits, '_', '-' or '.', the first not a '.'");
+    section.error(key, "'" + name + "' does not serve as a name: expected at most " + std::to_string(longest) + " " +
+                           std::string{kPlainNameRule});
   }
   return name;
 }
@@ -75,7 +71,8 @@ void read_timeouts(Section& root, TimeoutScenario& timeouts) {
   section.finish();
 }
 
-void read_excitation(Section section, const std::filesystem::path& directory, Scenario& scenario) {
+/// The keys that the degrees of freedom decide are read later.
+void read_excitation(Section& section, const std::filesystem::path& directory, Scenario& scenario) {
   scenario.ground_motion_text = section.text("ground_motion");
   const std::optional<std::filesystem::path> file = named_file(section, "ground_motion", directory);
   GroundMotionOptions options;
@@ -84,9 +81,9 @@ void read_excitation(Section section, const std::filesystem::path& directory, Sc
   if (section.has("unit")) {
     options.unit = static_cast<AccelerationUnit>(section.choice("unit", {"g", "m_per_s2", "cm_per_s2"}));
   }
-  section.finish();
   if (!file) return;
   scenario.ground_motion_file = *file;
+  scenario.files.push_back({.file = *file, .written = scenario.ground_motion_text, .is_digested = false});
   try {
     const GroundMotion motion = read_ground_motion(scenario.ground_motion_file, options);
     scenario.ground_motion = motion.facts();
@@ -96,76 +93,14 @@ void read_excitation(Section section, const std::filesystem::path& directory, Sc
   }
 }
 
-Eigen::SparseMatrix<double> diagonal(const Eigen::VectorXd& values) {
-  return Eigen::MatrixXd{values.asDiagonal()}.sparseView();
-}
-
-/// Masses, given per degree of freedom or as a full matrix.
-void read_mass(Section& section, Scenario& scenario) {
-  const std::size_t count = scenario.dofs.size();
-  if (section.has("mass_matrix_kg")) {
-    scenario.structure.mass_kg = section.matrix("mass_matrix_kg", count, count).sparseView();
-  } else {
-    scenario.structure.mass_kg = diagonal(section.numbers_by_name("mass_kg", scenario.dofs, kPositive));
-  }
-}
-
-/// What the damping section says; evaluated once the stiffness is known.
-using DampingRule = std::function<Eigen::SparseMatrix<double>(const LinearStructure&)>;
-
-DampingRule read_damping(Section section, std::size_t dofs) {
-  constexpr Range kRatio{.low = 0.0, .high = 1.0, .high_open = true};
-  const auto type = section.choice("type", {"none", "rayleigh", "mass_and_stiffness", "modal", "matrix"});
-  DampingRule rule = [](const LinearStructure& structure) {
-    return Eigen::SparseMatrix<double>{structure.size(), structure.size()};
-  };
-  if (type == 1) {
-    const double ratio = section.number("ratio", kRatio);
-    const auto modes = section.integers("modes", 1, static_cast<std::int64_t>(dofs));
-    if (modes.size() != 2) {
-      section.error("modes", "expected two modes, such as [1, 2]");
-    } else {
-      rule = [ratio, modes](const LinearStructure& structure) {
-        return rayleigh_damping(structure,
-                                rayleigh_coefficients(ratio, static_cast<int>(modes[0]), static_cast<int>(modes[1]),
-                                                      vibration_modes(structure)));
-      };
-    }
-  } else if (type == 2) {
-    const RayleighCoefficients coefficients{section.number("mass_per_s", kNotNegative),
-                                            section.number("stiffness_s", kNotNegative)};
-    rule = [coefficients](const LinearStructure& structure) { return rayleigh_damping(structure, coefficients); };
-  } else if (type == 3) {
-    const Eigen::VectorXd ratios = section.numbers("ratios", 0, kRatio);
-    rule = [ratios](const LinearStructure& structure) {
-      return modal_damping(structure, vibration_modes(structure), ratios);
-    };
-  } else if (type == 4) {
-    const Eigen::MatrixXd matrix = section.matrix("matrix_n_s_per_m", dofs, dofs);
-    rule = [matrix](const LinearStructure&) { return Eigen::SparseMatrix<double>{matrix.sparseView()}; };
-  }
-  section.finish();
-  return rule;
-}
-
-/// Position of a named degree of freedom; reports an unknown one.
-int dof_position(Section& section, std::string_view key, const std::vector<std::string>& dofs) {
-  const std::string name = section.text(key);
-  const auto found = std::ranges::find(dofs, name);
-  if (found != dofs.end()) return static_cast<int>(found - dofs.begin());
-  std::string what = "no degree of freedom '" + name + "'";
-  if (const auto nearest = nearest_name(name, dofs)) what += "; did you mean '" + *nearest + "'?";
-  if (!name.empty()) section.error(key, what);
-  return 0;
-}
-
-void read_interface(Section& section, const std::vector<std::string>& dofs, SubstructureScenario& substructure) {
+void read_interface(Section& section, const DofTable& table, SubstructureScenario& substructure) {
+  const std::vector<std::string>& dofs = table.names();
   std::vector<InterfaceDof> interface_dofs;
   for (Section& entry : section.sections("interface")) {
-    InterfaceDof interface { .dof = dof_position(entry, "dof", dofs) };
+    InterfaceDof interface { .dof = dof_position(entry, "dof", table) };
     std::string name = dofs.empty() ? "" : dofs[static_cast<std::size_t>(interface.dof)];
     if (entry.has("relative_to")) {
-      interface.relative_to = dof_position(entry, "relative_to", dofs);
+      interface.relative_to = dof_position(entry, "relative_to", table);
       if (!dofs.empty()) name += "_relative_to_" + dofs[static_cast<std::size_t>(interface.relative_to)];
       if (interface.relative_to == interface.dof) {
         entry.error("relative_to", "a degree of freedom relative to itself, expected another one");
@@ -293,7 +228,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.real_time = read_real_time(section, time.mode);
 }
 
-SubstructureScenario read_substructure(Section& section, const Scenario& scenario,
+SubstructureScenario read_substructure(Section& section, const Scenario& scenario, const DofTable& table,
                                        const std::filesystem::path& directory) {
   SubstructureScenario substructure;
   substructure.id = plain_name(section, "id", ParticipantId::kCapacity);
@@ -301,7 +236,7 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   if (substructure.id == kOperatorId) section.error("id", "'operator' stands for the person at the controls");
   const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
-  read_interface(section, scenario.dofs, substructure);
+  read_interface(section, table, substructure);
   const auto dofs = static_cast<int>(substructure.interface.size());
   if (is_numerical) {
     substructure.make_model = read_model(section.section("model"), dofs, directory);
@@ -312,15 +247,32 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   return substructure;
 }
 
-/// K = sum over substructures of B^T K_s B.
+/// K + sum over substructures of B^T K_s B.
 Eigen::SparseMatrix<double> assembled_stiffness(const Scenario& scenario) {
-  const auto count = static_cast<Eigen::Index>(scenario.dofs.size());
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
+  Eigen::SparseMatrix<double> stiffness = scenario.structure.stiffness_n_per_m;
+  if (stiffness.size() == 0) stiffness.resize(scenario.structure.size(), scenario.structure.size());
   for (const SubstructureScenario& substructure : scenario.substructures) {
-    const Eigen::MatrixXd interface = substructure.interface.matrix();
-    stiffness += interface.transpose() * substructure.initial_stiffness_n_per_m * interface;
+    stiffness += substructure.interface.on_structure(substructure.initial_stiffness_n_per_m);
   }
-  return stiffness.sparseView();
+  stiffness.prune(0.0, 0.0);
+  return stiffness;
+}
+
+/// Those at an interface, each once, in order.
+std::vector<Eigen::Index> interface_dofs(const Scenario& scenario) {
+  std::set<Eigen::Index> dofs;
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    for (const InterfaceDof& interface : substructure.interface.dofs()) {
+      dofs.insert(interface.dof);
+      if (interface.relative_to != InterfaceDof::kGround) dofs.insert(interface.relative_to);
+    }
+  }
+  return {dofs.begin(), dofs.end()};
+}
+
+/// Of the elastic part: some force resists a displacement there.
+bool is_held_by(const Eigen::SparseMatrix<double>& stiffness, Eigen::Index dof) {
+  return dof < stiffness.cols() && stiffness.coeff(dof, dof) != 0.0;
 }
 
 void check_substructures(Section& root, const Scenario& scenario) {
@@ -334,14 +286,12 @@ void check_substructures(Section& root, const Scenario& scenario) {
       }
     }
   }
+  const std::vector<Eigen::Index> coupled = interface_dofs(scenario);
   for (std::size_t dof = 0; dof < scenario.dofs.size(); ++dof) {
-    const bool is_coupled = std::ranges::any_of(scenario.substructures, [&](const SubstructureScenario& substructure) {
-      return substructure.interface.uses(static_cast<Eigen::Index>(dof));
-    });
-    if (!is_coupled) {
-      root.error("substructures", "no substructure has the degree of freedom '" + scenario.dofs[dof] +
-                                      "' at its interface: nothing would hold it");
-    }
+    const auto row = static_cast<Eigen::Index>(dof);
+    if (std::ranges::binary_search(coupled, row) || is_held_by(scenario.structure.stiffness_n_per_m, row)) continue;
+    root.error("substructures", "no substructure has the degree of freedom '" + scenario.dofs[dof] +
+                                    "' at its interface: nothing would hold it");
   }
 }
 
@@ -362,6 +312,7 @@ void apply(const NumericalErrors& errors, Scenario& scenario) {
   scenario.structure.mass_kg *= errors.mass;
   scenario.structure.damping_n_s_per_m *= errors.damping;
   if (errors.stiffness == 1.0) return;
+  scenario.structure.stiffness_n_per_m *= errors.stiffness;
   for (SubstructureScenario& substructure : scenario.substructures) {
     if (substructure.role != Role::numerical_substructure) continue;
     substructure.make_model = [make = substructure.make_model, factor = errors.stiffness] {
@@ -370,6 +321,18 @@ void apply(const NumericalErrors& errors, Scenario& scenario) {
     substructure.initial_stiffness_n_per_m *= errors.stiffness;
   }
   scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+}
+
+/// Of the effective text; files of the structure count with their content.
+ScenarioDigest digest_of(const Scenario& scenario) {
+  constexpr std::size_t kAnySize = std::numeric_limits<std::size_t>::max();  // was read before, which bounds it
+  std::string text = scenario.effective;
+  for (const NamedFile& named : scenario.files) {
+    if (!named.is_digested) continue;
+    const ScenarioDigest content = sha256(read_input_file(named.file, kAnySize, "a file of the structure"));
+    text.append(content.begin(), content.end());
+  }
+  return sha256(text);
 }
 
 /// Reports what a part finds wrong with its parameters at the section they came from.
@@ -389,6 +352,12 @@ const SubstructureScenario* Scenario::find(std::string_view id) const noexcept {
   return found == substructures.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> Scenario::recorded_names() const {
+  std::vector<std::string> names;
+  for (const Eigen::Index dof : recorded_dofs) names.push_back(dofs[static_cast<std::size_t>(dof)]);
+  return names;
+}
+
 SubstructureIndex Scenario::index_of(const SubstructureScenario& substructure) const noexcept {
   return static_cast<SubstructureIndex>(&substructure - substructures.data());
 }
@@ -404,13 +373,16 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   scenario.name = plain_name(root, "name", kTestNameLongest);
   if (root.has("description")) static_cast<void>(root.text("description", ""));
   read_time(root.section("time"), scenario.time);
-  read_excitation(root.section("excitation"), document.directory(), scenario);
+  Section excitation = root.section("excitation");
+  read_excitation(excitation, document.directory(), scenario);
 
   Section structure = root.section("structure");
-  scenario.dofs = structure.names("degrees_of_freedom");
-  read_mass(structure, scenario);
-  const DampingRule damping = read_damping(structure.section("damping"), scenario.dofs.size());
-  structure.finish();
+  StructureReading reading = read_structure(structure, document.directory());
+  scenario.dofs = reading.dofs.names();
+  scenario.structure = std::move(reading.structure);
+  scenario.files.insert(scenario.files.end(), reading.files.begin(), reading.files.end());
+  scenario.structure.influence = read_influence(excitation, reading.dofs);
+  excitation.finish();
 
   Section integrator = root.section("integrator");
   scenario.integrator_type = read_integrator_type(integrator);
@@ -418,9 +390,10 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
 
   std::vector<Section> substructures = root.sections("substructures");
   for (Section& section : substructures) {
-    scenario.substructures.push_back(read_substructure(section, scenario, document.directory()));
+    scenario.substructures.push_back(read_substructure(section, scenario, reading.dofs, document.directory()));
   }
   const NumericalErrors errors = read_numerical_errors(root);
+  scenario.recorded_dofs = read_output(root, reading.dofs, interface_dofs(scenario));
   read_timeouts(root, scenario.timeouts);
   Section recording = root.section_or_empty("recording");
   scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
@@ -434,24 +407,22 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   }
   document.throw_if_errors();
   report_at(structure, [&] {
-    scenario.structure.degrees_of_freedom = scenario.dofs;
-    scenario.structure.influence = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scenario.dofs.size()));
     scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
     scenario.structure.damping_n_s_per_m.resize(scenario.structure.size(), scenario.structure.size());
     require_consistent(scenario.structure);
-    scenario.structure.damping_n_s_per_m = damping(scenario.structure);
+    scenario.structure.damping_n_s_per_m = reading.damping(scenario.structure);
     apply(errors, scenario);
   });
   document.throw_if_errors();
   scenario.integrator_step_s = scenario.time.step_s * errors.step;
   report_at(root.section("time"),
-            [&] { require_stable_step(vibration_modes(scenario.structure), scenario.integrator_step_s); });
+            [&] { require_stable_step(vibration_modes(scenario.structure, 0), scenario.integrator_step_s); });
   scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
                               step_s = scenario.integrator_step_s] { return make_integrator(type, structure, step_s); };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();
-  scenario.digest = sha256(scenario.effective);
+  scenario.digest = digest_of(scenario);
   return scenario;
 }
 

@@ -20,6 +20,7 @@
 #include "mechanics/structure/linear_structure.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/loop_sections.hpp"
+#include "scenario/structure_section.hpp"
 
 namespace hybridtest {
 
@@ -84,7 +85,8 @@ struct Scenario {
   TimeoutScenario timeouts;
   bool stop_on_recording_failure = false;
   std::vector<std::string> dofs;
-  LinearStructure structure;  // initial stiffness assembled from the substructures
+  LinearStructure structure;                // initial stiffness assembled from its own and that of the substructures
+  std::vector<Eigen::Index> recorded_dofs;  // rows of those in the coordinator's record, ascending
   std::filesystem::path ground_motion_file;
   std::string ground_motion_text;                    // as written in the scenario
   GroundMotionFacts ground_motion;                   // scaled
@@ -93,9 +95,12 @@ struct Scenario {
   double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
   std::function<std::unique_ptr<Integrator>()> make_integrator;
   std::vector<SubstructureScenario> substructures;
-  std::string effective;  // with defaults filled in
+  std::vector<NamedFile> files;  // that it names, but those of rigs and models
+  std::string effective;         // with defaults filled in
   ScenarioDigest digest{};
 
+  /// Names of `recorded_dofs`.
+  [[nodiscard]] std::vector<std::string> recorded_names() const;
   [[nodiscard]] double model_time_s(Step step) const noexcept { return static_cast<double>(step) * time.step_s; }
   /// nullptr when there is none.
   [[nodiscard]] const SubstructureScenario* find(std::string_view id) const noexcept;

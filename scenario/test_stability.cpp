@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coordinator/preflight/site_coupling.hpp"
 
@@ -42,14 +43,11 @@ SiteStability site_stability(const SubstructureScenario& substructure) {
 /// K + sum over the sites of B^T (K_coupled - K_given) B.
 LinearStructure with_specimens(const LinearStructure& given, const std::vector<SiteStability>& sites,
                                const std::vector<CoupledSite>& coupled) {
-  Eigen::MatrixXd stiffness{given.initial_stiffness_n_per_m};
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    const Eigen::MatrixXd interface = coupled[i].interface.matrix();
-    stiffness +=
-        interface.transpose() * (coupled[i].stiffness_n_per_m - sites[i].site->initial_stiffness_n_per_m) * interface;
-  }
   LinearStructure structure = given;
-  structure.initial_stiffness_n_per_m = stiffness.sparseView();
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    structure.initial_stiffness_n_per_m +=
+        coupled[i].interface.on_structure(coupled[i].stiffness_n_per_m - sites[i].site->initial_stiffness_n_per_m);
+  }
   return structure;
 }
 
@@ -87,7 +85,9 @@ TestStability test_stability(const Scenario& scenario, const VibrationModes& mod
   test.step = step_stability(modes_met);
   for (std::size_t i = 0; i < test.sites.size(); ++i) {
     test.sites[i].stiffness_share = stiffness_share_by_mode(structure, modes_met, coupled[i]);
-    test.sites[i].critical = critical_delay(structure, coupled, i);
+    test.sites[i].critical = structure.size() <= kCriticalDelaySizeMax
+                                 ? critical_delay(structure, coupled, i)
+                                 : CriticalDelay{.delay_s = std::numeric_limits<double>::quiet_NaN()};
   }
   return test;
 }

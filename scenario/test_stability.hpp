@@ -14,8 +14,8 @@ namespace hybridtest {
 struct SiteStability {
   const SubstructureScenario* site = nullptr;
   Eigen::VectorXd stiffness_share;  // of the specimen in each mode, see stiffness_share_by_mode()
-  CriticalDelay critical;
-  ForceDelay delay;  // of the interface degree of freedom where the most remains
+  CriticalDelay critical;           // its delay NaN where the structure is above kCriticalDelaySizeMax: not known
+  ForceDelay delay;                 // of the interface degree of freedom where the most remains
   /// Largest entry of `initial_stiffness_n_per_m` minus the stiffness of the simulated specimen, over the largest entry
   /// of the two; 0 where the specimen is not known. Above kStiffnessTolerance all figures use the specimen.
   double stiffness_error = 0.0;

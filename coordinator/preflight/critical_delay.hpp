@@ -14,6 +14,10 @@ struct CriticalDelay {
   double frequency_rad_per_s = 0.0;  // of the motion at that limit; 0 where there is none
 };
 
+/// Largest structure for which it is computed: the eigenvalues of a full matrix of twice the size are needed, which
+/// takes some ten seconds then.
+inline constexpr Eigen::Index kCriticalDelaySizeMax = 300;
+
 /// Critical delay: the pure delay of the force of one site at which the coupled linear test becomes unstable.
 ///
 /// The equation of motion with the force of site s delayed by tau has the characteristic equation

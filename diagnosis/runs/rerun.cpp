@@ -44,7 +44,7 @@ struct SimulatedTest {
 };
 
 SimulatedTest simulated_test(const Scenario& scenario, const PartProgress& progress) {
-  StepsTable steps{Coordinator::steps_layout(scenario.dofs)};
+  StepsTable steps{Coordinator::steps_layout(scenario.recorded_names())};
   NoRecord nothing;
   SimulationObserver observer;
   observer.sink = [&](const std::string& participant, const TableLayout& table) -> RowSink& {

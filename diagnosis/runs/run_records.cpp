@@ -241,17 +241,19 @@ TestResponse response_of_steps(const Scenario& scenario,
     return Eigen::RowVectorXd{Eigen::Map<const Eigen::RowVectorXd>{values.data(), std::ssize(values)}};
   };
   const Eigen::RowVectorXd ground_m_per_s2 = row_of("ground_acceleration_m_per_s2");
-  const auto dofs = std::ssize(scenario.dofs);
+  const std::vector<std::string> names = scenario.recorded_names();
+  const auto dofs = std::ssize(names);
   for (Eigen::MatrixXd* signal : {&response.displacement_m, &response.velocity_m_per_s, &response.restoring_force_n}) {
     signal->resize(dofs, ground_m_per_s2.size());
   }
   for (Eigen::Index i = 0; i < dofs; ++i) {
-    const std::string& dof = scenario.dofs[static_cast<std::size_t>(i)];
+    const std::string& dof = names[static_cast<std::size_t>(i)];
     response.displacement_m.row(i) = row_of("displacement_" + dof + "_m");
     response.velocity_m_per_s.row(i) = row_of("velocity_" + dof + "_m_per_s");
     response.restoring_force_n.row(i) = row_of("restoring_force_" + dof + "_n");
   }
-  response.applied_force_n = scenario.structure.load_per_ground_acceleration_kg() * ground_m_per_s2;
+  const Eigen::VectorXd load_kg = scenario.structure.load_per_ground_acceleration_kg();
+  response.applied_force_n = load_kg(scenario.recorded_dofs) * ground_m_per_s2;
   return response;
 }
 
@@ -298,9 +300,16 @@ std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const 
   return forces_n;
 }
 
-/// Forces of the numerical substructures, recorded and modelled; omitted if one substructure has no recording.
-void add_numerical_forces(const std::filesystem::path& run, const Scenario& scenario, const Eigen::MatrixXd& velocity,
-                          StructureRecord& record) {
+/// K u of the elastic part of the structure, at each step.
+void add_elastic_forces(const LinearStructure& structure, const Eigen::MatrixXd& displacement_m,
+                        Eigen::MatrixXd& force_n) {
+  if (structure.stiffness_n_per_m.nonZeros() > 0) force_n += structure.stiffness_n_per_m * displacement_m;
+}
+
+/// Forces of the elastic part and of the numerical substructures, recorded and modelled; omitted if one substructure
+/// has no recording. @param ran   the scenario of the run; the recorded force of the elastic part follows from it.
+void add_numerical_forces(const std::filesystem::path& run, const Scenario& scenario, const Scenario& ran,
+                          const Eigen::MatrixXd& velocity, StructureRecord& record) {
   StructureRecording& recording = record.recording;
   Eigen::MatrixXd recorded_n = Eigen::MatrixXd::Zero(recording.displacement_m.rows(), recording.steps());
   Eigen::MatrixXd modelled_n = recorded_n;
@@ -330,6 +339,8 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
       interface.add_to_structure(forces_n->col(i), recorded_n.col(i));
     }
   }
+  add_elastic_forces(ran.structure, recording.displacement_m, recorded_n);
+  add_elastic_forces(scenario.structure, recording.displacement_m, modelled_n);
   recording.numerical_force_n = std::move(recorded_n);
   recording.modelled_numerical_force_n = std::move(modelled_n);
 }
@@ -363,6 +374,12 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   const Scenario ran = read_scenario(run / "scenario.yaml", {});
   require_same_test(scenario, ran);
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
+  if (ran.recorded_dofs.size() < ran.dofs.size()) {
+    throw RecordingError{
+        fmt::format("{}: the output of the scenario has {} of {} degrees of freedom, and the structure "
+                    "cannot be recomputed; expected all of them in the recording",
+                    run.string(), ran.recorded_dofs.size(), ran.dofs.size())};
+  }
   const TestResponse response = recorded_response(run, ran);
   if (response.steps() == 0)
     throw RecordingError{run.string() + ": the coordinator completed no step; expected a test with at least one step"};
@@ -378,8 +395,8 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   record.recording.displacement_m = response.displacement_m;
   record.recording.restoring_force_n = response.restoring_force_n;
   note_differences(scenario, ran, record.recording.ground_m_per_s2, record.notes);
-  add_numerical_forces(run, scenario, commanded_velocity_m_per_s(coordinator, ran, response, ran.integrator_step_s),
-                       record);
+  add_numerical_forces(run, scenario, ran,
+                       commanded_velocity_m_per_s(coordinator, ran, response, ran.integrator_step_s), record);
   return record;
 }
 

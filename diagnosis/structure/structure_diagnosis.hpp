@@ -26,9 +26,9 @@ struct StructureRecording {
   double step_s = 0.0;                 // of the test
   Eigen::RowVectorXd ground_m_per_s2;  // acceleration
   Eigen::MatrixXd displacement_m;      // commanded
-  Eigen::MatrixXd restoring_force_n;   // received, of all substructures together
-  // Of the numerical substructures alone: as received, and as the user's scenario has them along the
-  // recorded displacement. Both without columns where that was not recorded.
+  Eigen::MatrixXd restoring_force_n;   // of all substructures, as received, and of the elastic part
+  // Of the elastic part and the numerical substructures: as in the test, and as the user's scenario has them along
+  // the recorded displacement. Both without columns where that was not recorded.
   Eigen::MatrixXd numerical_force_n;
   Eigen::MatrixXd modelled_numerical_force_n;
 
@@ -39,7 +39,7 @@ struct StructureRecording {
 /// The changes that the effects of the numerical substructure make: ratios, real over model, minus 1.
 struct StructureErrors {
   double mass = 0.0;       // with the load of the ground motion
-  double stiffness = 0.0;  // of the numerical substructures' forces
+  double stiffness = 0.0;  // of the forces of the elastic part and the numerical substructures
   double damping = 0.0;
   double step = 0.0;  // of the integrator
 };

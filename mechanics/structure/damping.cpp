@@ -68,6 +68,11 @@ Eigen::SparseMatrix<double> modal_damping(const LinearStructure& structure, cons
     throw ConfigError{"modal damping has " + std::to_string(ratios.size()) + " ratios, expected from 1 to " +
                       std::to_string(modes.count()) + ", at most one per mode"};
   }
+  if (structure.size() > kFullDampingSizeMax) {
+    throw ConfigError{"modal damping makes a full matrix, and the structure has " + std::to_string(structure.size()) +
+                      " degrees of freedom; expected at most " + std::to_string(kFullDampingSizeMax) +
+                      ", or Rayleigh damping"};
+  }
   for (const double ratio : ratios) require_ratio(ratio);
   const auto damped = ratios.size();
   const Eigen::VectorXd weights = 2.0 * ratios.cwiseProduct(modes.frequency_rad_per_s.head(damped));

@@ -27,10 +27,14 @@ struct RayleighCoefficients {
 [[nodiscard]] Eigen::SparseMatrix<double> rayleigh_damping(const LinearStructure& structure,
                                                            const RayleighCoefficients& coefficients);
 
+/// Modal damping of a larger structure would take the memory and the time of a full matrix.
+inline constexpr Eigen::Index kFullDampingSizeMax = 2000;
+
 /// C = M (sum over modes of 2 ratio omega phi phi^T) M: that ratio in each mode, in general full
 /// (Chopra, section 11.4).
 /// @param ratios   one per mode from the lowest on, in [0, 1); modes beyond the last are undamped.
-/// @throws ConfigError for ratios out of range, none, or more of them than modes.
+/// @throws ConfigError for ratios out of range, none, or more of them than modes, and for a structure of more than
+///         kFullDampingSizeMax degrees of freedom.
 [[nodiscard]] Eigen::SparseMatrix<double> modal_damping(const LinearStructure& structure, const VibrationModes& modes,
                                                         const Eigen::VectorXd& ratios);
 

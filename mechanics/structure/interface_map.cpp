@@ -54,6 +54,28 @@ void InterfaceMap::add_to_structure(const Eigen::Ref<const Eigen::VectorXd>& int
   }
 }
 
+Eigen::SparseMatrix<double> InterfaceMap::on_structure(const Eigen::MatrixXd& interface_n_per_m) const {
+  HYBRIDTEST_ASSERT(interface_n_per_m.rows() == size() && interface_n_per_m.cols() == size());
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int row, int column, double value) {
+    if (row != InterfaceDof::kGround && column != InterfaceDof::kGround) entries.emplace_back(row, column, value);
+  };
+  for (Eigen::Index k = 0; k < size(); ++k) {
+    const auto [row, row_base] = dofs_[static_cast<std::size_t>(k)];
+    for (Eigen::Index l = 0; l < size(); ++l) {
+      const auto [column, column_base] = dofs_[static_cast<std::size_t>(l)];
+      const double value = interface_n_per_m(k, l);
+      add(row, column, value);
+      add(row_base, column, -value);
+      add(row, column_base, -value);
+      add(row_base, column_base, value);
+    }
+  }
+  Eigen::SparseMatrix<double> structure(structure_size_, structure_size_);
+  structure.setFromTriplets(entries.begin(), entries.end());
+  return structure;
+}
+
 Eigen::MatrixXd InterfaceMap::matrix() const {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size(), structure_size_);
   for (Eigen::Index k = 0; k < size(); ++k) {

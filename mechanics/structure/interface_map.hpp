@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "core/interface_vector.hpp"
@@ -48,6 +49,10 @@ class InterfaceMap {
   /// @param structure_n   n forces.
   void add_to_structure(const Eigen::Ref<const Eigen::VectorXd>& interface_n,
                         Eigen::Ref<Eigen::VectorXd> structure_n) const noexcept;
+
+  /// B^T K_s B: a stiffness over the interface as one of the structure, n x n.
+  /// @param interface_n_per_m   p x p.
+  [[nodiscard]] Eigen::SparseMatrix<double> on_structure(const Eigen::MatrixXd& interface_n_per_m) const;
 
   /// B as a dense matrix, p x n.
   [[nodiscard]] Eigen::MatrixXd matrix() const;

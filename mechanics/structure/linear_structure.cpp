@@ -96,6 +96,7 @@ void require_consistent(const LinearStructure& structure) {
   }
   check_size(structure.mass_kg, "mass", size, findings);
   check_size(structure.damping_n_s_per_m, "damping", size, findings);
+  if (structure.stiffness_n_per_m.size() > 0) check_size(structure.stiffness_n_per_m, "stiffness", size, findings);
   check_size(structure.initial_stiffness_n_per_m, "initial stiffness", size, findings);
   if (structure.influence.size() != size) {
     findings.add("the influence vector has " + std::to_string(structure.influence.size()) + " entries, expected " +
@@ -104,11 +105,15 @@ void require_consistent(const LinearStructure& structure) {
   findings.throw_if_any();
   check_finite(structure, structure.mass_kg, "mass", findings);
   check_finite(structure, structure.damping_n_s_per_m, "damping", findings);
+  check_finite(structure, structure.stiffness_n_per_m, "stiffness", findings);
   check_finite(structure, structure.initial_stiffness_n_per_m, "initial stiffness", findings);
   if (!structure.influence.allFinite()) findings.add("the influence vector holds a number that is not finite");
   findings.throw_if_any();
   check_symmetric(structure, structure.mass_kg, "mass", findings);
-  check_symmetric(structure, structure.initial_stiffness_n_per_m, "initial stiffness", findings);
+  check_symmetric(structure, structure.stiffness_n_per_m, "stiffness", findings);
+  if (!findings.any()) {
+    check_symmetric(structure, structure.initial_stiffness_n_per_m, "initial stiffness", findings);
+  }
   check_mass(structure, findings);
   findings.throw_if_any();
 }

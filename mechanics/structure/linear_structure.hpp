@@ -7,13 +7,14 @@
 
 namespace hybridtest {
 
-/// The linear part of the equation of motion, M a + C v + r(u) = -M iota a_g, and the stiffness
-/// that r(u) starts with. Forces and displacements are positive the same way.
+/// The linear part of the equation of motion, M a + C v + K u + r(u) = -M iota a_g, with r of the
+/// substructures, and the stiffness that K u + r(u) starts with. Forces and displacements are positive the same way.
 struct LinearStructure {
   std::vector<std::string> degrees_of_freedom;            // names, for messages
   Eigen::SparseMatrix<double> mass_kg;                    // n x n, symmetric, positive definite
   Eigen::SparseMatrix<double> damping_n_s_per_m;          // n x n
-  Eigen::SparseMatrix<double> initial_stiffness_n_per_m;  // n x n, symmetric; all substructures together
+  Eigen::SparseMatrix<double> stiffness_n_per_m;          // K, n x n, symmetric; empty when substructures have it all
+  Eigen::SparseMatrix<double> initial_stiffness_n_per_m;  // n x n, symmetric; K and all substructures together
   Eigen::VectorXd influence;                              // iota: displacement per unit ground displacement
 
   [[nodiscard]] Eigen::Index size() const noexcept { return mass_kg.rows(); }

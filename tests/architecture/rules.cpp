@@ -90,6 +90,7 @@ const std::vector<Library>& libraries() {
       {"HDF5", {"hdf5.h", "H5", "hdf5/", "hdf5_hl.h"}, {"recording", "tests"}},
       {"nlohmann-json", {"nlohmann/"}, {"recording", "diagnosis", "validation/blind_batches", "launch", "tests"}},
       {"Ceres", {"ceres/"}, {"diagnosis/identification"}},
+      {"Spectra", {"Spectra/"}, {"mechanics"}},
       {"spdlog", {"spdlog/"}, {"runtime", "launch"}},
       {"fmt", {"fmt/"}, {"launch", "runtime", "scenario", "report", "diagnosis", "validation", "tests", "benchmarks"}},
       {"CLI11", {"CLI/"}, {"launch", "runtime", "validation/design_motion/main.cpp", "benchmarks"}},

@@ -48,6 +48,7 @@ CoordinatorSettings settings(CouplingMode mode, Step last_step) {
   settings.last_step = last_step;
   settings.substructures = {{"storey_1", Role::experimental_site, InterfaceMap{2, {{0}}}},
                             {"storey_2", Role::numerical_substructure, InterfaceMap{2, {{1, 0}}}}};
+  settings.recorded_dofs = {0, 1};
   settings.load_per_ground_acceleration_kg = two_storeys().load_per_ground_acceleration_kg();
   for (Step step = 0; step <= last_step; ++step) {
     settings.ground_acceleration_m_per_s2.push_back(

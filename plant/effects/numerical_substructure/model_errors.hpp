@@ -21,7 +21,8 @@ struct MassError {
 };
 
 struct NumericalStiffnessError {
-  static constexpr std::string_view kEquation = "r(u) = (1 + e) r0(u) of every numerical substructure";
+  static constexpr std::string_view kEquation =
+      "r(u) = (1 + e) r0(u) of every numerical substructure and of the elastic part";
   static constexpr std::string_view kSource = "a wrong number of the user's model";
   static constexpr EffectTraits kTraits{.family = EffectFamily::scale, .number = ModelNumber::stiffness};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_error_ratio",

@@ -54,8 +54,11 @@ class CoordinatorTest : public testing::Test {
   };
 
   void make(CouplingMode mode = CouplingMode::lockstep, Step last_step = 5, bool stop_on_recording_failure = false,
-            double time_scale = 1.0) {
+            double time_scale = 1.0, double stiffness_n_per_m = 0.0) {
     CoordinatorSettings settings;
+    if (stiffness_n_per_m != 0.0) {
+      settings.stiffness_n_per_m = Eigen::MatrixXd::Constant(1, 1, stiffness_n_per_m).sparseView();
+    }
     settings.test_name = "test";
     settings.mode = mode;
     settings.step_s = kStep_s;
@@ -64,6 +67,7 @@ class CoordinatorTest : public testing::Test {
     settings.last_step = last_step;
     settings.substructures = {{"a", Role::experimental_site, InterfaceMap{1, {{0}}}},
                               {"b", Role::numerical_substructure, InterfaceMap{1, {{0}}}}};
+    settings.recorded_dofs = {0};
     settings.load_per_ground_acceleration_kg = Eigen::VectorXd::Constant(1, -3.0);
     settings.ground_acceleration_m_per_s2.assign(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2);
     settings.stop_on_recording_failure = stop_on_recording_failure;
@@ -275,6 +279,24 @@ TEST_F(CoordinatorTest, CompletesEveryStepOnceAndInOrder) {
   }
   ASSERT_EQ(exchanges_.size(), 12U);
   EXPECT_NEAR(exchanges_.at(3, exchanges_.column("round_trip_us")), 2000.0, 1e-6);
+}
+
+TEST_F(CoordinatorTest, AddsTheForceOfTheElasticPart) {
+  make(CouplingMode::lockstep, 5, false, 1.0, 2.0e4);
+  start();
+  for (Step step = 0; step < 6; ++step) {
+    answer(0, step, 10.0);
+    answer(1, step, 20.0);
+    advance(milliseconds{1});
+  }
+  ASSERT_EQ(steps_.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double displacement_m = steps_.at(i, steps_.column("displacement_floor_m"));
+    EXPECT_DOUBLE_EQ(displacement_m, 0.001 * static_cast<double>(i));
+    // The integrator of this test hands on as velocity the restoring force that it is given.
+    EXPECT_EQ(steps_.at(i, steps_.column("velocity_floor_m_per_s")), 30.0 + 2.0e4 * displacement_m);
+    EXPECT_EQ(steps_.at(i, steps_.column("restoring_force_floor_n")), 30.0 + 2.0e4 * displacement_m);
+  }
 }
 
 TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {

@@ -110,6 +110,13 @@ TEST(InterfaceMap, ProductsDoNotAllocate) {
   EXPECT_GT(malloc_count(), before) << "the count must see an allocation of Eigen, control";
 }
 
+TEST(InterfaceMap, OnStructureIsTheTripleProduct) {
+  const Eigen::MatrixXd b = interface_matrix();
+  Eigen::MatrixXd stiffness(b.rows(), b.rows());
+  for (Eigen::Index i = 0; i < stiffness.size(); ++i) stiffness.reshaped()[i] = static_cast<double>(i * i % 17);
+  EXPECT_EQ(Eigen::MatrixXd{interface().on_structure(stiffness)}, b.transpose() * stiffness * b);
+}
+
 TEST(InterfaceMap, RejectsDofsThatTheStructureDoesNotHave) {
   EXPECT_THROW((InterfaceMap{3, {{3}}}), ConfigError);
   EXPECT_THROW((InterfaceMap{3, {{-1}}}), ConfigError);

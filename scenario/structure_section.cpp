@@ -1,0 +1,208 @@
+#include "scenario/structure_section.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/config_error.hpp"
+#include "core/text/nearest_name.hpp"
+#include "mechanics/structure/damping.hpp"
+#include "mechanics/structure/matrix_market.hpp"
+#include "mechanics/structure/vibration_modes.hpp"
+#include "scenario/named_file.hpp"
+
+namespace hybridtest {
+namespace {
+
+using config::Section;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+using DampingRule = std::function<SparseMatrix(const LinearStructure&)>;
+
+constexpr std::size_t kAllRecordedUpTo = 100;
+constexpr std::size_t kEvenlyRecorded = 20;
+
+SparseMatrix sparse_diagonal(const Eigen::VectorXd& values) {
+  SparseMatrix matrix(values.size(), values.size());
+  matrix.setIdentity();
+  matrix.diagonal() = values;
+  return matrix;
+}
+
+/// Of one section: reads the files that it names.
+class StructureFiles {
+ public:
+  StructureFiles(Section& section, const std::filesystem::path& directory, std::vector<NamedFile>& files)
+      : section_{section}, directory_{directory}, files_{files} {}
+
+  /// Whatever `read` makes of the file at the key; what it throws is reported there.
+  template <class Read>
+  auto from_file(std::string_view key, Read read) -> std::optional<decltype(read(std::filesystem::path{}))> {
+    const std::string written = section_.text(key);
+    const std::optional<std::filesystem::path> file = named_file(section_, key, directory_);
+    if (!file) return std::nullopt;
+    files_.push_back({.file = *file, .written = written});
+    try {
+      return read(*file);
+    } catch (const ConfigError& error) {
+      section_.error(key, error.what());
+      return std::nullopt;
+    }
+  }
+
+  /// A square matrix with a row for each degree of freedom; of another one, zero.
+  SparseMatrix matrix(std::string_view key, std::size_t dofs) {
+    const auto size = static_cast<Eigen::Index>(dofs);
+    const std::optional<SparseMatrix> found = from_file(key, read_matrix_market);
+    if (!found) return SparseMatrix(size, size);
+    if (found->rows() == size && found->cols() == size) return *found;
+    section_.error(key, "the matrix is " + std::to_string(found->rows()) + " by " + std::to_string(found->cols()) +
+                            "; expected " + std::to_string(size) + " by " + std::to_string(size) +
+                            ", a row and a column for each degree of freedom of degrees_of_freedom");
+    return SparseMatrix(size, size);
+  }
+
+ private:
+  Section& section_;
+  const std::filesystem::path& directory_;
+  std::vector<NamedFile>& files_;
+};
+
+/// Masses of named degrees of freedom: one for each, or a full matrix.
+SparseMatrix read_named_mass(Section& section, const std::vector<std::string>& names) {
+  if (section.has("mass_matrix_kg")) {
+    return section.matrix("mass_matrix_kg", names.size(), names.size()).sparseView();
+  }
+  return sparse_diagonal(section.numbers_by_name("mass_kg", names, kPositive));
+}
+
+DampingRule read_damping(Section section, std::size_t dofs) {
+  constexpr Range kRatio{.low = 0.0, .high = 1.0, .high_open = true};
+  const auto type = section.choice("type", {"none", "rayleigh", "mass_and_stiffness", "modal", "matrix"});
+  DampingRule rule = [](const LinearStructure& structure) { return SparseMatrix{structure.size(), structure.size()}; };
+  if (type == 1) {
+    const double ratio = section.number("ratio", kRatio);
+    const auto modes = section.integers("modes", 1, static_cast<std::int64_t>(dofs));
+    if (modes.size() != 2) {
+      section.error("modes", "expected two modes, such as [1, 2]");
+    } else {
+      rule = [ratio, modes](const LinearStructure& structure) {
+        return rayleigh_damping(structure,
+                                rayleigh_coefficients(ratio, static_cast<int>(modes[0]), static_cast<int>(modes[1]),
+                                                      vibration_modes(structure, std::max(modes[0], modes[1]))));
+      };
+    }
+  } else if (type == 2) {
+    const RayleighCoefficients coefficients{section.number("mass_per_s", kNotNegative),
+                                            section.number("stiffness_s", kNotNegative)};
+    rule = [coefficients](const LinearStructure& structure) { return rayleigh_damping(structure, coefficients); };
+  } else if (type == 3) {
+    const Eigen::VectorXd ratios = section.numbers("ratios", 0, kRatio);
+    rule = [ratios](const LinearStructure& structure) {
+      return modal_damping(structure, vibration_modes(structure, ratios.size()), ratios);
+    };
+  } else if (type == 4) {
+    const Eigen::MatrixXd matrix = section.matrix("matrix_n_s_per_m", dofs, dofs);
+    rule = [matrix](const LinearStructure&) { return SparseMatrix{matrix.sparseView()}; };
+  }
+  section.finish();
+  return rule;
+}
+
+std::string no_such_dof(const std::string& address, const DofTable& dofs) {
+  std::string what = "no degree of freedom '" + address + "'";
+  if (const auto nearest = nearest_name(address, dofs.names())) return what + "; did you mean '" + *nearest + "'?";
+  if (!dofs.has_directions()) return what;
+  return what + "; expected its name, node.direction such as '" + dofs.names().front() + "', or such as 'node 1 dof 1'";
+}
+
+}  // namespace
+
+StructureReading read_structure(Section section, const std::filesystem::path& directory) {
+  StructureReading reading;
+  StructureFiles files{section, directory, reading.files};
+  LinearStructure& structure = reading.structure;
+  if (section.has_optional("mass")) {
+    reading.dofs = files.from_file("degrees_of_freedom", DofTable::read).value_or(DofTable{});
+    structure.mass_kg = files.matrix("mass", reading.dofs.size());
+    structure.stiffness_n_per_m = files.matrix("stiffness", reading.dofs.size());
+  } else {
+    reading.dofs = DofTable{section.names("degrees_of_freedom")};
+    structure.mass_kg = read_named_mass(section, reading.dofs.names());
+    if (section.has_optional("stiffness")) {
+      structure.stiffness_n_per_m = files.matrix("stiffness", reading.dofs.size());
+    }
+  }
+  structure.degrees_of_freedom = reading.dofs.names();
+  if (section.has("damping") && !section.has_mapping("damping")) {
+    const SparseMatrix matrix = files.matrix("damping", reading.dofs.size());
+    reading.damping = [matrix](const LinearStructure&) { return matrix; };
+  } else {
+    reading.damping = read_damping(section.section("damping"), reading.dofs.size());
+  }
+  section.finish();
+  return reading;
+}
+
+Eigen::VectorXd read_influence(Section& excitation, const DofTable& dofs) {
+  const auto size = static_cast<Eigen::Index>(dofs.size());
+  if (const auto mapping = excitation.optional_section("influence")) {
+    Section influence = *mapping;
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+    for (const std::string& key : influence.keys()) {
+      const double value = influence.number(key);
+      const std::optional<int> row = dofs.find(key);
+      if (row) values[*row] = value;
+      if (!row) influence.error(key, no_such_dof(key, dofs));
+    }
+    influence.finish();
+    return values;
+  }
+  if (!dofs.has_directions()) return Eigen::VectorXd::Ones(size);
+  const std::size_t direction = excitation.choice("direction", {kDirections.begin(), kDirections.end()}, "x");
+  const std::vector<int> rows = dofs.in_direction(direction);
+  if (rows.empty()) {
+    excitation.error("direction", "no degree of freedom has the direction " + std::string{kDirections.at(direction)} +
+                                      ": the ground motion would move nothing");
+  }
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+  for (const int row : rows) values[row] = 1.0;
+  return values;
+}
+
+std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& always) {
+  std::set<Eigen::Index> rows{always.begin(), always.end()};
+  if (auto output = root.optional_section("output")) {
+    for (const std::string& pattern : output->names("degrees_of_freedom")) {
+      if (pattern == "interfaces") continue;
+      const std::vector<int> found = dofs.matching(pattern == "all" ? "*" : pattern);
+      if (found.empty()) output->error("degrees_of_freedom", no_such_dof(pattern, dofs));
+      rows.insert(found.begin(), found.end());
+    }
+    output->finish();
+  } else if (dofs.size() <= kAllRecordedUpTo) {
+    for (std::size_t row = 0; row < dofs.size(); ++row) rows.insert(static_cast<Eigen::Index>(row));
+  } else {
+    for (std::size_t i = 0; i < kEvenlyRecorded; ++i) {
+      rows.insert(static_cast<Eigen::Index>(i * (dofs.size() - 1) / (kEvenlyRecorded - 1)));
+    }
+  }
+  if (rows.size() > kRecordedDofsMax) {
+    root.error("output", std::to_string(rows.size()) +
+                             " degrees of freedom to record, those at interfaces among them; "
+                             "expected at most " +
+                             std::to_string(kRecordedDofsMax) +
+                             ", the most that a table of a recording holds: list fewer");
+  }
+  return {rows.begin(), rows.end()};
+}
+
+int dof_position(Section& section, std::string_view key, const DofTable& dofs) {
+  const std::string address = section.text(key);
+  if (const std::optional<int> row = dofs.find(address)) return *row;
+  if (!address.empty()) section.error(key, no_such_dof(address, dofs));
+  return 0;
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/section.hpp"
+#include "mechanics/structure/linear_structure.hpp"
+#include "scenario/dof_table.hpp"
+
+namespace hybridtest {
+
+/// A file that a scenario names by its path, and that a run keeps beside its scenario.
+struct NamedFile {
+  std::filesystem::path file;
+  std::string written;      // the path in the scenario
+  bool is_digested = true;  // its content is part of the scenario's digest
+};
+
+/// What the section `structure` says. `structure` has mass and stiffness; damping follows from the rule once the
+/// initial stiffness of everything is known.
+struct StructureReading {
+  DofTable dofs;
+  LinearStructure structure;
+  std::function<Eigen::SparseMatrix<double>(const LinearStructure&)> damping;
+  std::vector<NamedFile> files;
+};
+
+/// Reports what is wrong at its key.
+/// @param directory   relative paths start there.
+[[nodiscard]] StructureReading read_structure(config::Section section, const std::filesystem::path& directory);
+
+/// How the ground moves the degrees of freedom, iota: those of `direction` by 1, or as the mapping `influence` says.
+/// Without a table of degrees of freedom and without the mapping, all by 1.
+[[nodiscard]] Eigen::VectorXd read_influence(config::Section& excitation, const DofTable& dofs);
+
+/// Most degrees of freedom in the table of steps: HDF5 keeps the names of its columns in 64 KiB.
+inline constexpr std::size_t kRecordedDofsMax = 128;
+
+/// Rows of the degrees of freedom that the coordinator records, in order: those of `output`, or without that section
+/// all of a structure of up to 100, of a larger one 20 evenly over the table; and the ones in `always`.
+[[nodiscard]] std::vector<Eigen::Index> read_output(config::Section& root, const DofTable& dofs,
+                                                    const std::vector<Eigen::Index>& always);
+
+/// Row that the text at `key` addresses; reports an unknown one and returns 0.
+[[nodiscard]] int dof_position(config::Section& section, std::string_view key, const DofTable& dofs);
+
+}  // namespace hybridtest

@@ -1,0 +1,181 @@
+#include "scenario/structure_section.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "runtime/run_directory.hpp"
+#include "tests/unit/scenario/scenario_file.hpp"
+
+namespace hybridtest {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Two floors that move along x and y. The elastic part is a storey between them in each direction; substructures
+/// hold the first floor.
+class StructureSection : public testing::Test {
+ protected:
+  StructureSection() {
+    write("m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n4 4 4\n1 1 2e4\n2 2 2e4\n3 3 1e4\n4 4 1e4\n");
+    write("k.mtx",
+          "%%MatrixMarket matrix coordinate real symmetric\n4 4 6\n"
+          "1 1 3e6\n2 2 5e6\n3 1 -3e6\n3 3 3e6\n4 2 -5e6\n4 4 5e6\n");
+    write("dofs.csv", "node,direction,name\n1,x,\n1,y,\n2,x,roof_x\n2,y,roof_y\n");
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream{file_.directory() / name} << text;
+  }
+
+  [[nodiscard]] std::string text(const std::string& structure = kStructure) const {
+    std::string text = kScenarioText;
+    const std::size_t begin = text.find("structure:\n");
+    text.replace(begin, text.find("integrator:") - begin, structure);
+    text.replace(text.find("dof: floor_1}]"), 13, "dof: node 1 dof 1}");
+    const std::size_t numerical = text.find("  - id: storey_2");
+    return text.replace(numerical, std::string::npos,
+                        "  - id: storey_2\n    kind: numerical\n    interface: [{dof: 1.y}]\n"
+                        "    model: {type: elastic, stiffness_n_per_m: 6.0e6}\n");
+  }
+
+  static constexpr const char* kStructure =
+      "structure: {mass: m.mtx, stiffness: k.mtx, damping: {type: rayleigh, ratio: 0.02, modes: [1, 4]}, "
+      "degrees_of_freedom: dofs.csv}\n";
+  ScenarioFile file_;
+};
+
+TEST_F(StructureSection, ReadsMatricesAndAddsThoseOfSubstructures) {
+  const Scenario scenario = file_.read(text());
+  EXPECT_THAT(scenario.dofs, ElementsAre("1.x", "1.y", "roof_x", "roof_y"));
+  const Eigen::MatrixXd own{{3e6, 0, -3e6, 0}, {0, 5e6, 0, -5e6}, {-3e6, 0, 3e6, 0}, {0, -5e6, 0, 5e6}};
+  Eigen::MatrixXd all = own;
+  all(0, 0) += 4.0e6;
+  all(1, 1) += 6.0e6;
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.stiffness_n_per_m}, own);
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.initial_stiffness_n_per_m}, all);
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.mass_kg}.diagonal(), Eigen::Vector4d(2e4, 2e4, 1e4, 1e4));
+  EXPECT_THAT(scenario.substructures[0].interface_names, ElementsAre("1.x"));
+  EXPECT_EQ(scenario.substructures[1].interface.dofs()[0].dof, 1);
+  EXPECT_GT(scenario.structure.damping_n_s_per_m.coeff(2, 2), 0.0);
+}
+
+TEST_F(StructureSection, GroundMovesOneDirection) {
+  EXPECT_EQ(file_.read(text()).structure.influence, Eigen::Vector4d(1, 0, 1, 0));
+  EXPECT_EQ(file_.read(text(), {"excitation.direction=y"}).structure.influence, Eigen::Vector4d(0, 1, 0, 1));
+  EXPECT_EQ(file_.read(text(), {"excitation.influence={roof_y: 0.5, node 1 dof 1: -1}"}).structure.influence,
+            Eigen::Vector4d(-1, 0, 0, 0.5));
+  EXPECT_THAT(file_.errors(text(), {"excitation.direction=rz"}), Contains(HasSubstr("would move nothing")));
+  EXPECT_THAT(file_.errors(text(), {"excitation.influence={roof_z: 1}"}),
+              Contains(HasSubstr("no degree of freedom 'roof_z'; did you mean 'roof_x'?")));
+}
+
+TEST_F(StructureSection, DampingIsAMatrixToo) {
+  write("c.mtx", "%%MatrixMarket matrix coordinate real symmetric\n4 4 1\n3 3 7.0\n");
+  const Scenario scenario = file_.read(text(), {"structure.damping=c.mtx"});
+  EXPECT_EQ(scenario.structure.damping_n_s_per_m.nonZeros(), 1);
+  EXPECT_EQ(scenario.structure.damping_n_s_per_m.coeff(2, 2), 7.0);
+}
+
+TEST_F(StructureSection, NamedDofsTakeAStiffnessFile) {
+  write("storey.mtx", "%%MatrixMarket matrix array real symmetric\n2 2\n1e6\n-1e6\n1e6\n");
+  const Scenario scenario = file_.read(kScenarioText, {"structure.stiffness=storey.mtx"});
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.initial_stiffness_n_per_m},
+            (Eigen::MatrixXd{{8.0e6, -4.0e6}, {-4.0e6, 4.0e6}}));
+  EXPECT_EQ(file_.read(kScenarioText).structure.stiffness_n_per_m.size(), 0);
+}
+
+TEST_F(StructureSection, ReportsWrongFilesAtTheirKeys) {
+  write("small.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 1 2e4\n");
+  EXPECT_THAT(file_.errors(text(), {"structure.mass=small.mtx"}),
+              Contains(HasSubstr("the matrix is 2 by 2; expected 4 by 4")));
+  write("pattern.mtx", "%%MatrixMarket matrix coordinate pattern symmetric\n4 4 1\n1 1\n");
+  EXPECT_THAT(
+      file_.errors(text(), {"structure.stiffness=pattern.mtx"}),
+      Contains(AllOf(HasSubstr("pattern.mtx:1: 'pattern' is not read"), HasSubstr("expected integer or real"))));
+  EXPECT_THAT(file_.errors(text(), {"structure.mass=none.mtx"}), Contains(HasSubstr("there is no file")));
+  write("wrong.csv", "node,direction\n1,x\n1,u\n");
+  EXPECT_THAT(file_.errors(text(), {"structure.degrees_of_freedom=wrong.csv"}),
+              Contains(HasSubstr("wrong.csv:3: 'u'")));
+  write("skew.mtx",
+        "%%MatrixMarket matrix coordinate real general\n4 4 5\n1 1 1e6\n2 2 1e6\n3 3 1e6\n4 4 1e6\n1 3 1e5\n");
+  EXPECT_THAT(
+      file_.errors(text(), {"structure.stiffness=skew.mtx"}),
+      Contains(AllOf(HasSubstr("stiffness matrix is not symmetric"), HasSubstr("'1.x'"), HasSubstr("'roof_x'"))));
+}
+
+TEST_F(StructureSection, RejectsDofThatNothingHolds) {
+  write("loose.mtx", "%%MatrixMarket matrix coordinate real symmetric\n4 4 2\n1 1 3e6\n2 2 5e6\n");
+  EXPECT_THAT(file_.errors(text(), {"structure.stiffness=loose.mtx"}), Contains(HasSubstr("'roof_x'")));
+}
+
+TEST_F(StructureSection, UnknownAddressExplainsTheWaysToName) {
+  EXPECT_THAT(
+      file_.errors(text(), {"substructures[storey_2].interface=[{dof: node 9 dof 2}]"}),
+      Contains(AllOf(HasSubstr("no degree of freedom 'node 9 dof 2'"), HasSubstr("node.direction such as '1.x'"))));
+}
+
+TEST_F(StructureSection, DigestDependsOnTheContentOfFiles) {
+  const ScenarioDigest digest = file_.read(text()).digest;
+  EXPECT_EQ(file_.read(text()).digest, digest);
+  write("k.mtx",
+        "%%MatrixMarket matrix coordinate real symmetric\n4 4 6\n"
+        "1 1 3e6\n2 2 5e6\n3 1 -3e6\n3 3 3e6\n4 2 -5e6\n4 4 5.1e6\n");
+  EXPECT_NE(file_.read(text()).digest, digest);
+}
+
+TEST_F(StructureSection, RunDirectoryHoldsTheFiles) {
+  const Scenario scenario = file_.read(text());
+  const TemporaryDirectory run;
+  prepare_run_directory(run.path(), scenario);
+  EXPECT_EQ(read_scenario(run / "scenario.yaml", {}).digest, scenario.digest);
+}
+
+TEST_F(StructureSection, OutputChoosesRecordedDofs) {
+  EXPECT_THAT(file_.read(text()).recorded_names(), ElementsAre("1.x", "1.y", "roof_x", "roof_y"));
+  EXPECT_THAT(file_.read(text(), {"output={degrees_of_freedom: [interfaces]}"}).recorded_names(),
+              ElementsAre("1.x", "1.y"));
+  EXPECT_THAT(file_.read(text(), {"output={degrees_of_freedom: [2.y]}"}).recorded_names(),
+              ElementsAre("1.x", "1.y", "roof_y"));
+  EXPECT_THAT(file_.read(text(), {"output={degrees_of_freedom: [all]}"}).recorded_names().size(), 4);
+  EXPECT_THAT(file_.errors(text(), {"output={degrees_of_freedom: [2.z]}"}),
+              Contains(HasSubstr("no degree of freedom '2.z'")));
+}
+
+/// A chain of many floors on the substructures, in x alone.
+TEST_F(StructureSection, LargeStructureRecordsInterfacesAndTwentyMore) {
+  constexpr int kFloors = 1000;
+  std::string mass = "%%MatrixMarket matrix coordinate real symmetric\n1000 1000 1000\n";
+  std::string stiffness = "%%MatrixMarket matrix coordinate real symmetric\n1000 1000 1999\n";
+  std::string dofs = "node,direction\n";
+  for (int floor = 1; floor <= kFloors; ++floor) {
+    const std::string at = std::to_string(floor);
+    mass += at + " " + at + " 1e3\n";
+    stiffness += at + " " + at + (floor == kFloors ? " 1e8\n" : " 2e8\n");
+    if (floor > 1) stiffness += at + " " + std::to_string(floor - 1) + " -1e8\n";
+    dofs += at + ",x\n";
+  }
+  write("m.mtx", mass);
+  write("k.mtx", stiffness);
+  write("dofs.csv", dofs);
+  const std::vector<std::string> overrides{"substructures[storey_2].interface=[{dof: 500.x}]",
+                                           "structure.damping.modes=[1, 3]"};
+  const Scenario scenario = file_.read(text(), overrides);
+  const std::vector<std::string> names = scenario.recorded_names();
+  EXPECT_EQ(names.size(), 21U);  // the first floor is at an interface and the first of the twenty
+  EXPECT_THAT(names, AllOf(Contains("1.x"), Contains("500.x"), Contains("1000.x")));
+  std::vector<std::string> all = overrides;
+  all.emplace_back("output={degrees_of_freedom: [all]}");
+  EXPECT_THAT(file_.errors(text(), all), Contains(HasSubstr("1000 degrees of freedom to record")));
+  std::vector<std::string> modal = overrides;
+  modal.emplace_back("structure.damping.modes=[1, 201]");
+  EXPECT_THAT(file_.errors(text(), modal), Contains(HasSubstr("the lowest 200")));
+}
+
+}  // namespace
+}  // namespace hybridtest
