@@ -185,20 +185,21 @@ std::optional<std::string> place_in_words(std::string_view text) {
 }  // namespace
 
 DofTable::DofTable(std::vector<std::string> names) : names_{std::move(names)} {
-  for (std::size_t row = 0; row < names_.size(); ++row) enter(names_[row], static_cast<int>(row));
+  for (std::size_t row = 0; row < names_.size(); ++row) enter(static_cast<int>(row));
 }
 
-void DofTable::enter(std::string key, int row) { rows_.try_emplace(std::move(key), row); }
+void DofTable::enter(int row) {
+  rows_.try_emplace(names_[static_cast<std::size_t>(row)], row);
+  if (has_directions()) rows_.try_emplace(places_[static_cast<std::size_t>(row)], row);
+}
 
 DofTable DofTable::parse(std::string_view text, const std::string& file) {
   DofTable table;
   for (TableRow& row : TableReader{text, file}.read()) {
-    const auto number = static_cast<int>(table.names_.size());
-    table.enter(row.name, number);
-    table.enter(row.place, number);
     table.names_.push_back(std::move(row.name));
     table.places_.push_back(std::move(row.place));
     table.directions_.push_back(row.direction);
+    table.enter(static_cast<int>(table.size()) - 1);
   }
   return table;
 }
@@ -207,18 +208,46 @@ DofTable DofTable::read(const std::filesystem::path& file) {
   return parse(read_input_file(file, kTableBytesMax, "a table of degrees of freedom"), file.string());
 }
 
-std::optional<int> DofTable::find(std::string_view address) const {
-  const auto row_of = [&](const std::string& key) -> std::optional<int> {
-    const auto found = rows_.find(key);
-    return found == rows_.end() ? std::nullopt : std::optional{found->second};
-  };
-  if (const auto row = row_of(std::string{address})) return row;
-  if (!has_directions()) return std::nullopt;
-  if (const auto place = place_in_words(address)) return row_of(*place);
+std::vector<std::string> DofTable::keys_of(std::string_view address) const {
+  std::vector<std::string> keys{std::string{address}};
+  if (const auto place = place_in_words(address)) keys.push_back(*place);
   const std::size_t point = address.rfind('.');
-  if (point == std::string_view::npos) return std::nullopt;
+  if (point == std::string_view::npos) return keys;
   const std::optional<std::size_t> direction = direction_of(address.substr(point + 1));
-  return direction ? row_of(place_of(address.substr(0, point), *direction)) : std::nullopt;
+  if (direction && has_directions()) keys.push_back(place_of(address.substr(0, point), *direction));
+  return keys;
+}
+
+std::optional<int> DofTable::find(std::string_view address) const {
+  for (const std::string& key : keys_of(address)) {
+    if (const auto found = rows_.find(key); found != rows_.end()) return found->second;
+  }
+  return std::nullopt;
+}
+
+DofTable DofTable::only(const std::vector<Eigen::Index>& kept, const std::string& why_gone) const {
+  DofTable table;
+  for (const Eigen::Index kept_row : kept) {
+    const auto row = static_cast<std::size_t>(kept_row);
+    table.names_.push_back(names_[row]);
+    if (has_directions()) {
+      table.places_.push_back(places_[row]);
+      table.directions_.push_back(directions_[row]);
+    }
+    table.enter(static_cast<int>(table.size()) - 1);
+  }
+  table.gone_ = gone_;
+  for (const auto& [key, row] : rows_) {
+    if (!table.rows_.contains(key)) table.gone_.try_emplace(key, why_gone);
+  }
+  return table;
+}
+
+std::string DofTable::why_gone(std::string_view address) const {
+  for (const std::string& key : keys_of(address)) {
+    if (const auto found = gone_.find(key); found != gone_.end()) return found->second;
+  }
+  return {};
 }
 
 std::vector<int> DofTable::matching(std::string_view pattern) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -41,16 +42,24 @@ class DofTable {
   [[nodiscard]] std::optional<int> find(std::string_view address) const;
   /// Rows that a pattern matches by name or by node and direction, in order: `*` stands for any letters, `?` for one.
   [[nodiscard]] std::vector<int> matching(std::string_view pattern) const;
+  /// The table of these rows alone, in order. Another one is known as `why_gone`: "has no mass and is condensed".
+  [[nodiscard]] DofTable only(const std::vector<Eigen::Index>& kept, const std::string& why_gone) const;
+  /// Why an address finds nothing that only() left out; empty for one that never was.
+  [[nodiscard]] std::string why_gone(std::string_view address) const;
+
   /// Rows of a direction, as its position in kDirections.
   [[nodiscard]] std::vector<int> in_direction(std::size_t direction) const;
 
  private:
-  void enter(std::string key, int row);
+  void enter(int row);
+  /// The texts that may stand for the address in the maps.
+  [[nodiscard]] std::vector<std::string> keys_of(std::string_view address) const;
 
   std::vector<std::string> names_;
-  std::vector<std::string> places_;      // `node.direction`; empty when the scenario names them
-  std::vector<std::size_t> directions_;  // positions in kDirections; likewise
-  std::unordered_map<std::string, int> rows_;
+  std::vector<std::string> places_;                    // `node.direction`; empty when the scenario names them
+  std::vector<std::size_t> directions_;                // positions in kDirections; likewise
+  std::unordered_map<std::string, int> rows_;          // by name and by place
+  std::unordered_map<std::string, std::string> gone_;  // likewise, with the reason
 };
 
 }  // namespace hybridtest

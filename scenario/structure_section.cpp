@@ -10,6 +10,7 @@
 #include "core/text/nearest_name.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "mechanics/structure/matrix_market.hpp"
+#include "mechanics/structure/reduction.hpp"
 #include "mechanics/structure/vibration_modes.hpp"
 #include "scenario/named_file.hpp"
 
@@ -111,10 +112,48 @@ DampingRule read_damping(Section section, std::size_t dofs) {
 }
 
 std::string no_such_dof(const std::string& address, const DofTable& dofs) {
+  if (const std::string why = dofs.why_gone(address); !why.empty()) {
+    return "the degree of freedom '" + address + "' " + why;
+  }
   std::string what = "no degree of freedom '" + address + "'";
   if (const auto nearest = nearest_name(address, dofs.names())) return what + "; did you mean '" + *nearest + "'?";
   if (!dofs.has_directions()) return what;
   return what + "; expected its name, node.direction such as '" + dofs.names().front() + "', or such as 'node 1 dof 1'";
+}
+
+/// The list `constraints`, one for each degree of freedom that others carry along.
+std::vector<RigidConstraint> read_constraints(Section& section, const DofTable& dofs) {
+  std::vector<RigidConstraint> constraints;
+  for (Section& entry : section.sections("constraints")) {
+    RigidConstraint constraint{.dof = dof_position(entry, "dof", dofs), .follows = {}};
+    Section others = entry.section("equals");
+    for (const std::string& key : others.keys()) {
+      const double factor = others.number(key);
+      if (const std::optional<int> row = dofs.find(key)) {
+        constraint.follows.emplace_back(*row, factor);
+      } else {
+        others.error(key, no_such_dof(key, dofs));
+      }
+    }
+    others.finish();
+    entry.finish();
+    constraints.push_back(std::move(constraint));
+  }
+  return constraints;
+}
+
+/// Without degrees of freedom that have a constraint, then without those that have no mass.
+void reduce(const std::vector<RigidConstraint>& constraints, StructureReading& reading) {
+  if (reading.dofs.size() == 0 || reading.structure.mass_kg.rows() == 0) return;  // reported
+  const auto take = [&](ReducedStructure reduced, const std::string& why_gone) {
+    if (reduced.kept.size() == reading.dofs.size()) return;
+    reading.dofs = reading.dofs.only(reduced.kept, why_gone);
+    reading.structure = std::move(reduced.structure);
+  };
+  if (!constraints.empty()) {
+    take(with_constraints(reading.structure, constraints), "follows others by a constraint; name one that it follows");
+  }
+  take(without_massless(reading.structure), "has no mass and is condensed; give it a mass to use it");
 }
 
 }  // namespace
@@ -123,10 +162,14 @@ StructureReading read_structure(Section section, const std::filesystem::path& di
   StructureReading reading;
   StructureFiles files{section, directory, reading.files};
   LinearStructure& structure = reading.structure;
-  if (section.has_optional("mass")) {
+  std::vector<RigidConstraint> constraints;
+  const bool has_matrices = section.has_optional("mass");
+  if (has_matrices) {
     reading.dofs = files.from_file("degrees_of_freedom", DofTable::read).value_or(DofTable{});
     structure.mass_kg = files.matrix("mass", reading.dofs.size());
     structure.stiffness_n_per_m = files.matrix("stiffness", reading.dofs.size());
+    structure.degrees_of_freedom = reading.dofs.names();
+    if (section.has_optional("constraints")) constraints = read_constraints(section, reading.dofs);
   } else {
     reading.dofs = DofTable{section.names("degrees_of_freedom")};
     structure.mass_kg = read_named_mass(section, reading.dofs.names());
@@ -135,13 +178,21 @@ StructureReading read_structure(Section section, const std::filesystem::path& di
     }
   }
   structure.degrees_of_freedom = reading.dofs.names();
-  if (section.has("damping") && !section.has_mapping("damping")) {
-    const SparseMatrix matrix = files.matrix("damping", reading.dofs.size());
-    reading.damping = [matrix](const LinearStructure&) { return matrix; };
+  const bool is_damping_a_file = section.has("damping") && !section.has_mapping("damping");
+  if (is_damping_a_file) {
+    structure.damping_n_s_per_m = files.matrix("damping", reading.dofs.size());
   } else {
     reading.damping = read_damping(section.section("damping"), reading.dofs.size());
   }
   section.finish();
+  try {
+    if (has_matrices) reduce(constraints, reading);
+  } catch (const ConfigError& error) {
+    section.error("mass", error.what());
+  }
+  if (is_damping_a_file) {
+    reading.damping = [matrix = structure.damping_n_s_per_m](const LinearStructure&) { return matrix; };
+  }
   return reading;
 }
 

@@ -86,6 +86,13 @@ std::string dof_name(const LinearStructure& structure, Eigen::Index dof) {
   return "number " + std::to_string(dof + 1);
 }
 
+void require_symmetric(const LinearStructure& structure) {
+  Findings findings;
+  check_symmetric(structure, structure.mass_kg, "mass", findings);
+  check_symmetric(structure, structure.stiffness_n_per_m, "stiffness", findings);
+  findings.throw_if_any();
+}
+
 void require_consistent(const LinearStructure& structure) {
   Findings findings;
   const Eigen::Index size = structure.size();

@@ -28,6 +28,10 @@ struct LinearStructure {
 /// @throws ConfigError listing everything that is wrong, by names of degrees of freedom.
 void require_consistent(const LinearStructure& structure);
 
+/// Mass and stiffness equal their transposes.
+/// @throws ConfigError naming the first entries of each that do not.
+void require_symmetric(const LinearStructure& structure);
+
 /// Of the degree of freedom for messages: its name in quotes or, without one, its number.
 [[nodiscard]] std::string dof_name(const LinearStructure& structure, Eigen::Index dof);
 

@@ -147,6 +147,42 @@ TEST_F(StructureSection, OutputChoosesRecordedDofs) {
               Contains(HasSubstr("no degree of freedom '2.z'")));
 }
 
+TEST_F(StructureSection, CondensesDofsWithoutMass) {
+  write("light.mtx", "%%MatrixMarket matrix coordinate real symmetric\n4 4 3\n1 1 2e4\n2 2 2e4\n4 4 1e4\n");
+  write("series.mtx",
+        "%%MatrixMarket matrix coordinate real symmetric\n4 4 7\n"
+        "1 1 3e6\n2 2 5e6\n3 1 -3e6\n3 3 9e6\n4 2 -5e6\n4 3 -6e6\n4 4 11e6\n");
+  const std::vector<std::string> overrides{"structure.mass=light.mtx", "structure.stiffness=series.mtx",
+                                           "structure.damping.modes=[1, 3]"};
+  const Scenario scenario = file_.read(text(), overrides);
+  EXPECT_THAT(scenario.dofs, ElementsAre("1.x", "1.y", "roof_y"));
+  // 3 and 6 MN/m in series are 2 MN/m.
+  EXPECT_NEAR(scenario.structure.stiffness_n_per_m.coeff(0, 0), 2.0e6, 1e-6);
+  EXPECT_NEAR(scenario.structure.stiffness_n_per_m.coeff(0, 2), -2.0e6, 1e-6);
+  EXPECT_NEAR(scenario.structure.stiffness_n_per_m.coeff(2, 2), 7.0e6, 1e-6);
+  EXPECT_EQ(scenario.structure.influence, Eigen::Vector3d(1, 0, 0));
+  std::vector<std::string> at_interface = overrides;
+  at_interface.emplace_back("substructures[storey_2].interface=[{dof: node 2 dof 1}]");
+  EXPECT_THAT(file_.errors(text(), at_interface),
+              Contains(HasSubstr("'node 2 dof 1' has no mass and is condensed; give it a mass to use it")));
+}
+
+TEST_F(StructureSection, DofsWithAConstraintFollowOthers) {
+  const std::string constraint = "structure.constraints=[{dof: roof_y, equals: {1.y: 2.0, 1.x: 0.5}}]";
+  const std::string modes = "structure.damping.modes=[1, 3]";
+  const Scenario scenario = file_.read(text(), {constraint, modes});
+  EXPECT_THAT(scenario.dofs, ElementsAre("1.x", "1.y", "roof_x"));
+  // T^T M T with the row (0.5, 2, 0) of roof_y.
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.mass_kg},
+            (Eigen::MatrixXd{{2.25e4, 1e4, 0}, {1e4, 6e4, 0}, {0, 0, 1e4}}));
+  EXPECT_EQ(Eigen::MatrixXd{scenario.structure.stiffness_n_per_m},
+            (Eigen::MatrixXd{{4.25e6, 2.5e6, -3e6}, {2.5e6, 5e6, 0}, {-3e6, 0, 3e6}}));
+  EXPECT_THAT(file_.errors(text(), {constraint, modes, "output={degrees_of_freedom: [roof_y]}"}),
+              Contains(HasSubstr("'roof_y' follows others by a constraint")));
+  EXPECT_THAT(file_.errors(text(), {"structure.constraints=[{dof: roof_y, equals: {1.z: 1}}]"}),
+              Contains(HasSubstr("no degree of freedom '1.z'")));
+}
+
 /// A chain of many floors on the substructures, in x alone.
 TEST_F(StructureSection, LargeStructureRecordsInterfacesAndTwentyMore) {
   constexpr int kFloors = 1000;

@@ -1,0 +1,136 @@
+// Cost of one step of a structure from matrices: the elastic force K u and the step of the integrator, over that of
+// the sparse work that the method consists of, by Eigen alone: the products K u and C v and the solution of
+// (M/dt^2 + C/2dt) d = f. Measured in one run for frames of 10 to 10 000 degrees of freedom with Rayleigh damping.
+//
+// The kinds take turns in short rounds, so that other work on the machine affects all of them alike. The result is
+// the median over the rounds. Exit code 1 when an integrator takes more than 1.3 times as long at any size.
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/central_difference.hpp"
+#include "coordinator/explicit_newmark.hpp"
+#include "mechanics/structure/damping.hpp"
+
+namespace {
+
+using namespace hybridtest;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+constexpr double kStep_s = 0.001;
+constexpr double kRatioMax = 1.3;
+constexpr int kTurns = 400;
+constexpr int kDofStepsPerTurn = 20'000;  // a turn takes as long for each size
+
+/// Floors of `width` frames side by side: columns from floor to floor, slabs from frame to frame.
+LinearStructure frame(int floors, int width) {
+  constexpr double kStorey_n_per_m = 4.0e7;
+  constexpr double kSlab_n_per_m = 4.0e8;
+  const int size = floors * width;
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto connect = [&](int upper, int lower, double stiffness_n_per_m) {
+    entries.emplace_back(upper, upper, stiffness_n_per_m);
+    if (lower < 0) return;
+    entries.emplace_back(lower, lower, stiffness_n_per_m);
+    entries.emplace_back(upper, lower, -stiffness_n_per_m);
+    entries.emplace_back(lower, upper, -stiffness_n_per_m);
+  };
+  for (int dof = 0; dof < size; ++dof) {
+    connect(dof, dof - width, kStorey_n_per_m);
+    if (dof % width > 0) connect(dof, dof - 1, kSlab_n_per_m);
+  }
+  LinearStructure structure;
+  structure.mass_kg = SparseMatrix(size, size);
+  structure.mass_kg.setIdentity();
+  structure.mass_kg *= 4.0e3;
+  structure.stiffness_n_per_m = SparseMatrix(size, size);
+  structure.stiffness_n_per_m.setFromTriplets(entries.begin(), entries.end());
+  structure.initial_stiffness_n_per_m = structure.stiffness_n_per_m;
+  structure.influence = Eigen::VectorXd::Ones(size);
+  structure.damping_n_s_per_m = rayleigh_damping(structure, {.mass_per_s = 0.1, .stiffness_s = 1.0e-4});
+  return structure;
+}
+
+struct StepKind {
+  std::string name;
+  std::function<double()> step;
+  std::vector<double> us_per_step;
+};
+
+/// One step after the other under a constant load.
+StepKind with_integrator(std::string name, const LinearStructure& structure, std::shared_ptr<Integrator> integrator) {
+  const auto size = structure.size();
+  return {std::move(name),
+          [integrator, stiffness = structure.stiffness_n_per_m, restoring_n = Eigen::VectorXd{size},
+           applied_n = Eigen::VectorXd::Constant(size, 4.0e3).eval()]() mutable {
+            restoring_n.setZero();
+            restoring_n.noalias() += stiffness * integrator->current().displacement_m;
+            integrator->advance(restoring_n, applied_n);
+            return integrator->current().displacement_m[0];
+          },
+          {}};
+}
+
+StepKind with_eigen(const LinearStructure& structure) {
+  const SparseMatrix effective =
+      structure.mass_kg / (kStep_s * kStep_s) + structure.damping_n_s_per_m / (2.0 * kStep_s);
+  const auto factor = std::make_shared<Eigen::SimplicialLDLT<SparseMatrix>>(effective);
+  return {"Eigen alone",
+          [factor, stiffness = structure.stiffness_n_per_m, damping = structure.damping_n_s_per_m,
+           force_n = Eigen::VectorXd{structure.size()}, solution_m = Eigen::VectorXd{structure.size()},
+           motion = Eigen::VectorXd::Constant(structure.size(), 1.0e-3).eval()]() mutable {
+            force_n.noalias() = stiffness * motion;
+            force_n.noalias() += damping * motion;
+            solution_m = factor->solve(force_n);
+            return solution_m[0];
+          },
+          {}};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void take_turn(StepKind& kind, int steps, double& sink) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (int step = 0; step < steps; ++step) sink += kind.step();
+  const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - begin;
+  kind.us_per_step.push_back(spent.count() / steps);
+}
+
+}  // namespace
+
+int main() {
+  double sink = 0.0;
+  double worst = 0.0;
+  std::printf("%8s  %-20s %12s %8s\n", "dofs", "", "us a step", "ratio");
+  for (const auto& [floors, width] : {std::pair{5, 2}, {10, 10}, {40, 25}, {100, 100}}) {
+    const LinearStructure structure = frame(floors, width);
+    std::vector<StepKind> kinds{
+        with_eigen(structure),
+        with_integrator("central_difference", structure, std::make_shared<CentralDifference>(structure, kStep_s)),
+        with_integrator("explicit_newmark", structure, std::make_shared<ExplicitNewmark>(structure, kStep_s))};
+    const int steps = std::max(1, kDofStepsPerTurn / (floors * width));
+    for (int turn = 0; turn < kTurns; ++turn) {
+      for (StepKind& kind : kinds) take_turn(kind, steps, sink);
+    }
+    const double bare_us = median(kinds.front().us_per_step);
+    for (const StepKind& kind : kinds) {
+      const double us = median(kind.us_per_step);
+      std::printf("%8d  %-20s %12.3f %8.2f\n", floors * width, kind.name.c_str(), us, us / bare_us);
+      worst = std::max(worst, us / bare_us);
+    }
+  }
+  std::printf("largest ratio %.2f, at most %.1f is asked (checksum %.6g)\n", worst, kRatioMax, sink);
+  return worst <= kRatioMax && std::isfinite(sink) ? 0 : 1;
+}
