@@ -51,8 +51,9 @@ struct Stage {
   Judgement judgement;
 
   [[nodiscard]] bool has_causes() const { return report::names_a_cause(judgement.verdict); }
+  [[nodiscard]] bool changes_model() const { return has_causes() || !judgement.corrections.empty(); }
   [[nodiscard]] bool concerns(std::string_view interface) const {
-    if (has_causes()) {
+    if (changes_model()) {
       return std::ranges::any_of(selection.chosen.effects, [&](const EffectSetting& effect) {
         return name_of(effect.type->interface) == interface;
       });
@@ -74,6 +75,8 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
   const bool is_set = judgement.verdict == Verdict::set;
   if (stage.has_causes()) {
     for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+      listed.push_back(selection.chosen.effects[i].type);
+      if (judgement.is_correction(i)) continue;
       RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
       cause.is_cause = true;
       cause.share = part * selection.shares[i];
@@ -81,7 +84,6 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
-      listed.push_back(selection.chosen.effects[i].type);
       ranking.push_back(std::move(cause));
     }
     std::ranges::stable_sort(ranking, std::greater{}, &RankedCause::share);
@@ -173,10 +175,24 @@ std::string next_experiment(std::span<const Stage> stages, const std::vector<rep
   return {};
 }
 
+/// Numbers of the model that are slightly off.
+std::vector<RankedCause> corrections_of(std::span<const Stage> stages) {
+  std::vector<RankedCause> corrections;
+  for (const Stage& stage : stages) {
+    for (const std::size_t i : stage.judgement.corrections) {
+      corrections.push_back(ranked(stage.selection.chosen.effects[i], stage.selection.chosen.parameters[i]));
+      corrections.back().probability = stage.selection.chosen_probabilities[i];
+      corrections.back().share = stage.selection.shares[i];
+    }
+  }
+  return corrections;
+}
+
+/// Causes and corrections.
 std::vector<EffectSetting> causes_of(std::span<const Stage> stages, std::span<const Trace> traces) {
   std::vector<EffectSetting> causes;
   for (const Stage& stage : stages) {
-    if (!stage.has_causes()) continue;
+    if (!stage.changes_model()) continue;
     causes.insert(causes.end(), stage.selection.chosen.effects.begin(), stage.selection.chosen.effects.end());
   }
   std::ranges::transform(traces, std::back_inserter(causes), &Trace::effect);
@@ -212,22 +228,24 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
 }
 
 void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
-                                   std::vector<Stage>& stages, std::vector<std::string>& notes) {
+                                   const VerdictPolicy& policy, std::vector<Stage>& stages,
+                                   std::vector<std::string>& notes) {
   for (Stage& stage : stages) {
     if (!stage.has_causes()) continue;
     // Beside the causes of the other stages, so that this one's own part is judged.
     const std::vector<EffectSetting> causes = causes_of(stages, {});
-    const Verdict verdict = verdict_carried_over(stage.judgement.verdict,
-                                                 shrinks(model, causes, at_suspects(stage.problem, held_out), seed));
+    const Verdict verdict = verdict_carried_over(
+        stage.judgement.verdict, shrinks(model, causes, at_suspects(stage.problem, held_out), seed), policy);
     if (verdict == stage.judgement.verdict) continue;
     notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
                     " fits the fitted recordings but not the held-out ones.");
-    stage.judgement = {.verdict = verdict, .indistinguishable = {}, .gap_left = 1.0};
+    stage.judgement = {.verdict = verdict, .indistinguishable = {}, .corrections = {}, .gap_left = 1.0};
   }
 }
 
-/// The channels of the chain one after the other. What a channel names of the displacement sensor also changes the
-/// force, and is added to the model before the force is judged.
+/// The channels of the chain one after the other. What explains a channel is added to the model before the next one is
+/// judged: what a channel names of the displacement sensor also changes the force, and a further effect earns nothing
+/// by what is explained already.
 std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
                                 const IdentificationProblem& whole, const DiagnoseSettings& settings,
                                 const PartProgress& progress) {
@@ -246,16 +264,12 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     IdentificationProblem thinner = judged_at(coarse, outputs[i]);
     stage.selection = select_effects(stage.problem, thinner, settings.threads, progress.round(i, outputs.size()));
     settle_noise(stage.problem, stage.selection.chosen);
-    stage.judgement = judge(stage.problem, stage.selection);
-    if (stage.has_causes() && i + 1 < outputs.size()) {
+    stage.judgement = judge(stage.problem, stage.selection, settings.policy);
+    if (stage.changes_model() && i + 1 < outputs.size()) {
       SiteModel corrected = fine.model;
-      std::ranges::copy_if(
-          stage.selection.chosen.effects, std::back_inserter(corrected.effects),
-          [](const EffectSetting& effect) { return effect.type->interface == EffectInterface::displacement_sensor; });
-      if (corrected.effects.size() > fine.model.effects.size()) {
-        fine = make_problem(corrected, segments);
-        coarse = make_problem(corrected, thin);
-      }
+      std::ranges::copy(stage.selection.chosen.effects, std::back_inserter(corrected.effects));
+      fine = make_problem(corrected, segments);
+      coarse = make_problem(corrected, thin);
     }
     stages.push_back(std::move(stage));
   }
@@ -363,7 +377,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {
-    drop_what_does_not_carry_over(model, held_out, settings.seed, stages, report.notes);
+    drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);
   }
   diagnosis.causes = causes_of(stages, traces);
   if (!diagnosis.causes.empty()) {
@@ -383,12 +397,13 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     explained.push_back(parts.explained - before);
     judgements.push_back(stage.judgement);
   }
-  report.verdict = verdict_with(traces, verdict_of(judgements), parts);
+  report.verdict = verdict_with(traces, verdict_of(judgements), parts, settings.policy);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const double part = parts.explained > 0.0 ? explained[i] / parts.explained : 1.0;
     std::ranges::move(rank(stages[i], part), std::back_inserter(report.ranking));
   }
   put_causes_first(report.ranking);
+  report.corrections = corrections_of(stages);
   const FitOutcome all_causes = fit_of_all(problem, stages);
   settle_noise(problem, all_causes);
   report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
@@ -398,8 +413,11 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   for (report::InterfaceGap& gap : report.where) {
     if (!gap.is_at_fault) continue;
     for (const Stage& stage : stages) {
-      if (stage.judgement.verdict != Verdict::none && stage.concerns(gap.interface)) {
+      if (!stage.concerns(gap.interface)) continue;
+      if (stage.judgement.verdict != Verdict::none) {
         gap.verdict = stage.judgement.verdict;
+      } else if (!stage.judgement.corrections.empty()) {
+        gap.is_at_fault = gap.verdict.has_value();
       }
     }
   }

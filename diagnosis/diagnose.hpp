@@ -10,6 +10,7 @@
 #include "diagnosis/progress.hpp"
 #include "diagnosis/recording.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
+#include "diagnosis/verdict/policy.hpp"
 #include "plant/site_model.hpp"
 
 namespace hybridtest {
@@ -23,6 +24,7 @@ struct DiagnoseSettings {
   std::string model_part;
   std::string made_at_utc;  // likewise; empty: the report has no date
   std::string made_by;
+  VerdictPolicy policy;
   PartProgress progress;  // of the whole diagnosis of one degree of freedom
 };
 

@@ -372,6 +372,9 @@ inline constexpr double kWellAboveFloor = 10.0;
 /// Of kNamedLeaves, so little that the floor does not matter: computed signals have none.
 inline constexpr double kNearNothing = 0.1;
 inline constexpr double kPartialLeaves = 0.3;
+/// Share of the output [rms over rms] by which a number of the model may be off: load cells, displacement transducers
+/// and measured stiffnesses are rarely known to better than a hundredth or two.
+inline constexpr double kNumbersWithin = 0.025;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;
 /// A cause that changes a held-out prediction by less than this share of the floor does not act there. Example: a limit

@@ -26,6 +26,7 @@ struct DiagnoseOptions {
   std::filesystem::path out;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
+  VerdictPolicy policy;
 };
 
 /// The first run directory, preferably a held-out one: a CSV file does not contain the whole test.
@@ -57,6 +58,11 @@ int run_diagnosis(const DiagnoseOptions& options) {
   DiagnoseSettings settings;
   settings.seed = options.seed;
   settings.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  settings.policy = options.policy;
+  if (settings.policy.partial_leaves < settings.policy.named_leaves) {
+    throw ConfigError{fmt::format("--partial-leaves {} is less than --named-leaves {}; expected at least as much",
+                                  settings.policy.partial_leaves, settings.policy.named_leaves)};
+  }
   settings.made_at_utc = time_utc();
   SiteDiagnosis diagnosis;
   {
@@ -103,6 +109,30 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
   command->add_option("--seed", options->seed, "Seed of the resampling for the confidence intervals")
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Number of threads; 0: one per core")->capture_default_str();
+  constexpr auto kPolicy = "What counts as a cause";
+  const CLI::Range share{0.0, 1.0};
+  command
+      ->add_option("--named-leaves", options->policy.named_leaves,
+                   "Share of the gap's energy up to which its cause is named, 0 to 1")
+      ->check(share)
+      ->capture_default_str()
+      ->group(kPolicy);
+  command
+      ->add_option("--partial-leaves", options->policy.partial_leaves,
+                   "Likewise up to which it is named in part; with more left the gap is unknown")
+      ->check(share)
+      ->capture_default_str()
+      ->group(kPolicy);
+  command->add_option("--credible", options->policy.credible, "Probability of a set of effects, 0.5 to 0.999")
+      ->check(CLI::Range{0.5, 0.999})
+      ->capture_default_str()
+      ->group(kPolicy);
+  command
+      ->add_option("--numbers-within", options->policy.numbers_within,
+                   "Share of the output up to which a wrong number of the model is corrected without being a cause")
+      ->check(share)
+      ->capture_default_str()
+      ->group(kPolicy);
   command->callback([options, &action] { action = [options] { return run_diagnosis(*options); }; });
 }
 

@@ -222,6 +222,7 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
   FitOutcome outcome;
   outcome.effects = projection.settings(places, solution);
   outcome.with_nuisance = with_nuisance;
+  outcome.cost_of_numbers = cost_of_numbers(problem, outcome.effects);
   for (auto i = static_cast<Eigen::Index>(plan.linear.size()); i < solution.coefficients.size(); ++i) {
     outcome.nuisance.push_back(solution.coefficients[i]);
   }

@@ -35,6 +35,7 @@ struct FitOutcome {
   std::vector<std::vector<ParameterEstimate>> parameters;  // per effect
   bool with_nuisance = false;
   std::vector<double> nuisance;         // coefficients of the touched segments' columns, one behind the other
+  double cost_of_numbers = 0.0;         // of the free ones, beside these effects [nats]
   std::vector<SegmentResult> segments;  // as in the problem
 };
 

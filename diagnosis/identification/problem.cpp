@@ -1,5 +1,6 @@
 #include "diagnosis/identification/problem.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -276,12 +277,35 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
   }
 }
 
+namespace {
+
+/// Leaves the numbers of the model free in a segment whose gap is not judged: every prediction is compared beside the
+/// numbers that suit it best, so that no candidate earns anything by them.
+void free_numbers(FitSegment& fit) {
+  if (fit.nuisance.cols() == 0) return;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns{fit.nuisance};
+  const Eigen::Index rank = columns.rank();
+  fit.numbers.directions = columns.householderQ() * Eigen::MatrixXd::Identity(fit.nuisance.rows(), rank);
+  const double slight = tuning::kNumbersWithin * fit.measured.norm();
+  const double noise = std::sqrt(static_cast<double>(fit.measured.size()) / fit.independent) / fit.weight;
+  fit.numbers.slight = slight;
+  fit.numbers.resolved = std::min(1.0, noise / slight);
+  const Eigen::VectorXd gap = fit.measured - fit.baseline;
+  fit.numbers.off = fit.numbers.directions.transpose() * gap;
+  fit.measured -= fit.numbers.directions * fit.numbers.off;
+}
+
+}  // namespace
+
 IdentificationProblem judged_at(const IdentificationProblem& problem, Channel output) {
   IdentificationProblem part = problem;
   const auto is_here = [output](const FitSegment& fit) { return fit.segment.to == output; };
   const bool any_clear =
       std::ranges::any_of(part.segments, [&](const FitSegment& fit) { return is_here(fit) && is_clear(fit); });
-  for (FitSegment& fit : part.segments) fit.is_suspect = is_here(fit) && (!any_clear || is_clear(fit));
+  for (FitSegment& fit : part.segments) {
+    fit.is_suspect = is_here(fit) && (!any_clear || is_clear(fit));
+    if (!is_here(fit)) free_numbers(fit);
+  }
   return part;
 }
 
@@ -292,8 +316,10 @@ bool is_model_number(const IdentificationProblem& problem, const EffectType& typ
   });
 }
 
-Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
-                        std::span<const EffectSetting> added) {
+namespace {
+
+Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem, const FitSegment& segment,
+                                           std::span<const EffectSetting> added) {
   const bool touched =
       std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
   if (!touched) return segment.baseline;
@@ -301,6 +327,32 @@ Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& 
   SiteModel remembered = problem.model;
   remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };
   return segment.average(predict(remembered, segment.segment, added));
+}
+
+}  // namespace
+
+Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
+                        std::span<const EffectSetting> added) {
+  Eigen::VectorXd predicted = predict_with_right_numbers(problem, segment, added);
+  const Eigen::MatrixXd& directions = segment.numbers.directions;
+  if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));
+  return predicted;
+}
+
+double cost_of_numbers(const IdentificationProblem& problem, std::span<const EffectSetting> added) {
+  double cost = 0.0;
+  for (const FitSegment& fit : problem.segments) {
+    const FreeNumbers& numbers = fit.numbers;
+    if (numbers.directions.cols() == 0) continue;
+    const Eigen::VectorXd change = predict_with_right_numbers(problem, fit, added) - fit.baseline;
+    const Eigen::VectorXd off = (numbers.off - numbers.directions.transpose() * change) / numbers.slight;
+    for (const double number : off) {
+      if (std::abs(number) > tuning::kTwoSided95 * numbers.resolved) {
+        cost += 0.5 * number * number - std::log(numbers.resolved);
+      }
+    }
+  }
+  return cost;
 }
 
 }  // namespace hybridtest

@@ -28,6 +28,14 @@ struct SignalScales {
 
 [[nodiscard]] SignalScales scales_of(std::span<const Segment> segments);
 
+/// Numbers of the model that are free in a segment, along orthogonal directions of the output; see judged_at().
+struct FreeNumbers {
+  Eigen::MatrixXd directions;  // orthonormal columns; none: the numbers are as the model has them
+  Eigen::VectorXd off;         // by how much they are off without any effect, along each direction
+  double slight = 0.0;         // by how much a model may be off there [standard deviation]
+  double resolved = 1.0;       // over that, what noise leaves of doubt in it
+};
+
 /// A segment for fits: averaged over `averaged` neighbouring samples, which keeps the frequencies that a
 /// hybrid test excites and removes noise above them.
 struct FitSegment {
@@ -53,7 +61,8 @@ struct FitSegment {
   std::shared_ptr<const Discrepancy> discrepancy;
   // Whether its residual counts as part of the gap: it is well above the floor, or no residual is.
   bool is_suspect = true;
-  std::shared_ptr<const LawMemory> law;    // of the specimen, along the recorded motion; null where there is none
+  std::shared_ptr<const LawMemory> law;  // of the specimen, along the recorded motion; null where there is none
+  FreeNumbers numbers;
   std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
 
   [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
@@ -76,13 +85,20 @@ struct IdentificationProblem {
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
 /// The same problem with the gap of one channel to explain. The other segments stay: an effect of a displacement sensor
-/// shows in force and motion alike. So one interface never hides what is wrong at another.
+/// shows in force and motion alike. So one interface never hides what is wrong at another. In the other segments the
+/// numbers of the model are free.
 [[nodiscard]] IdentificationProblem judged_at(const IdentificationProblem& problem, Channel output);
 
 /// A slightly wrong number of the user's model.
 [[nodiscard]] bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept;
 
-/// Averaged prediction with effects added; the baseline where none touches the segment.
+/// What it costs to believe that the free numbers are off by what these effects need beside them [nats]: each is within
+/// `slight` before the test, and within `resolved` of that after it (Laplace's approximation; MacKay, Neural
+/// Computation 4, 1992). A number that noise explains costs nothing.
+[[nodiscard]] double cost_of_numbers(const IdentificationProblem& problem, std::span<const EffectSetting> added);
+
+/// Averaged prediction with effects added, beside the free numbers that suit it; the baseline where none touches the
+/// segment.
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                                       std::span<const EffectSetting> added);
 

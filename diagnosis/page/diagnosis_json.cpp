@@ -41,9 +41,9 @@ Json cause_entry(const report::RankedCause& cause) {
   Json entry{{"interface", cause.interface}, {"effect", cause.effect}};
   if (!cause.law.empty()) entry["law"] = cause.law;
   entry["probability"] = cause.probability;
-  if (cause.is_cause) {
+  if (cause.is_cause || cause.share > 0.0) {
     entry["share"] = cause.share;
-  } else {
+  } else if (cause.share == 0.0) {
     entry["indistinguishable"] = cause.is_indistinguishable;
   }
   entry["parameters"] = Json::object();
@@ -128,6 +128,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const report::RankedCause& cause : report.ranking) {
     json[cause.is_cause ? "causes" : "alternatives"].push_back(cause_entry(cause));
   }
+  json["corrections"] = Json::array();
+  for (const report::RankedCause& number : report.corrections) json["corrections"].push_back(cause_entry(number));
   json["shrink"] = Json::object();
   if (report.interface_shrink) json["shrink"]["interface"] = shrink_entry(*report.interface_shrink);
   if (report.response_shrink) {

@@ -112,6 +112,7 @@ std::string causes_part(const DiagnosisReport& report) {
     }
   }
   html += alike_text(report);
+  if (!report.corrections.empty()) html += fmt::format("<p>{}</p>\n", escaped(corrections_sentence(report)));
   if (!report.next_experiment.empty()) {
     html += fmt::format("<p class=\"next\"><b>Next experiment:</b> {}</p>\n", escaped(report.next_experiment));
   }

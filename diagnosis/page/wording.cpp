@@ -140,9 +140,28 @@ const InterfaceGap* main_fault(const DiagnosisReport& report) {
   return largest;
 }
 
+std::string corrections_sentence(const DiagnosisReport& report) {
+  std::vector<std::string> numbers;
+  for (const RankedCause& correction : report.corrections) {
+    for (const ReportedParameter& parameter : correction.parameters) {
+      if (!parameter.ci95) continue;
+      numbers.push_back(fmt::format("{} of the {}: {} {} ({})", plain(correction.effect), plain(correction.interface),
+                                    plain_parameter(parameter.name, parameter.unit),
+                                    quantity(parameter.value, parameter.unit),
+                                    between(*parameter.ci95, parameter.unit)));
+    }
+  }
+  if (numbers.empty()) return {};
+  return "Numbers of the model that are slightly off, each within what the policy allows: " + joined(numbers) +
+         ". They are corrected in augmented_model.yaml and are no causes.";
+}
+
 std::string verdict_sentence(const DiagnosisReport& report) {
   switch (report.verdict) {
-    case Verdict::none: return "The model agrees with the recordings: no gap is larger than its noise floor.";
+    case Verdict::none:
+      return report.corrections.empty()
+                 ? "The model agrees with the recordings: no gap is larger than its noise floor."
+                 : "The model lacks nothing. Some of its numbers are slightly off, and correcting them closes the gap.";
     case Verdict::named: return named_sentence(report);
     case Verdict::set:
       return where_it_lies(report) + "; these recordings cannot distinguish " + joined(causes(report)) +

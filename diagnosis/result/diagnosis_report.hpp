@@ -152,6 +152,8 @@ struct DiagnosisReport {
   Verdict verdict = Verdict::not_excited;
   std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share
   std::vector<RankedCause> ranking;
+  // Numbers of the model that are slightly off: corrected in the augmented model, but no causes.
+  std::vector<RankedCause> corrections{};
   std::vector<SensorFacts> sensors{};
   std::vector<Finding> findings{};
   std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause

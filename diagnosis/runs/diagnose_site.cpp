@@ -12,6 +12,7 @@
 #include "diagnosis/intake/units.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
 #include "diagnosis/page/diagnosis_page.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
 #include "recording/error.hpp"
@@ -204,6 +205,7 @@ std::string summary_of(const SiteDiagnosis& site) {
     text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect, law, cause.probability);
     if (cause.is_cause) text += parameters_in_words(cause);
   }
+  if (!report.corrections.empty()) text += "\n  " + report::corrections_sentence(report) + "\n";
   if (report.interface_shrink) {
     const report::Shrink& shrink = *report.interface_shrink;
     text += fmt::format("\n  gap there, NRMSE         {:.4f} before, {:.4f} after, floor {:.4f}\n", shrink.nrmse_before,

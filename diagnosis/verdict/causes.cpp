@@ -15,11 +15,11 @@ using report::Verdict;
 
 /// A cause is named when what it leaves is near the floor, or small and not well above it; with more left it is one
 /// part of the answer.
-Verdict verdict_by_remainder(const GapEnergy& after, double left) noexcept {
+Verdict verdict_by_remainder(const GapEnergy& after, double left, const VerdictPolicy& policy) noexcept {
   const double over_floor = after.floor > 0.0 ? std::sqrt(after.total / after.floor) : 0.0;
-  const bool is_small = left <= tuning::kNamedLeaves &&
-                        (over_floor <= tuning::kWellAboveFloor || left <= tuning::kNamedLeaves * tuning::kNearNothing);
-  if (left > tuning::kPartialLeaves) return Verdict::unknown;
+  const bool is_small = left <= policy.named_leaves &&
+                        (over_floor <= tuning::kWellAboveFloor || left <= policy.named_leaves * tuning::kNearNothing);
+  if (left > policy.partial_leaves) return Verdict::unknown;
   return is_small || over_floor <= tuning::kNearFloor ? Verdict::named : Verdict::partial;
 }
 
@@ -31,15 +31,16 @@ double gap_to_explain(const IdentificationProblem& problem, const Selection& sel
 }
 
 /// Several effects that explain a gap only together, and leave part of it, are a curve fit and not a cause.
-bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total) {
+bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total,
+                  const VerdictPolicy& policy) {
   return selection.chosen.effects.size() > 1 &&
-         gap_energy(problem, selection.library.front().fit).excess() > tuning::kPartialLeaves * total;
+         gap_energy(problem, selection.library.front().fit).excess() > policy.partial_leaves * total;
 }
 
 /// The most probable candidates, until their sum of probabilities is large enough; and those that the data alone cannot
 /// tell from the first one, with no more parameters, however rare they are.
-std::vector<std::size_t> credible(const Selection& selection) {
-  const double within = tuning::kTemperature * std::log(tuning::kCredible / (1.0 - tuning::kCredible));
+std::vector<std::size_t> credible(const Selection& selection, double probability) {
+  const double within = tuning::kTemperature * std::log(probability / (1.0 - probability));
   const Candidate& first = selection.library.front();
   std::vector<std::size_t> members;
   double sum = 0.0;
@@ -47,24 +48,53 @@ std::vector<std::size_t> credible(const Selection& selection) {
     const Candidate& candidate = selection.library[i];
     const bool is_alike = candidate.parameters <= first.parameters &&
                           (candidate.held_out > first.held_out - within || are_alike(first.fit, candidate.fit));
-    if (i == 0 || sum < tuning::kCredible || is_alike) members.push_back(i);
+    if (i == 0 || sum < probability || is_alike) members.push_back(i);
     sum += selection.probabilities[i];
   }
   return members;
 }
 
+/// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
+bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
+  return std::ranges::all_of(problem.segments, [&](const FitSegment& fit) {
+    if (!fit.is_suspect || !fit.segment.touched_by(*effect.type)) return true;
+    return (predict(problem, fit, std::span{&effect, 1}) - fit.baseline).norm() <= share * fit.measured.norm();
+  });
+}
+
+/// Numbers of the model that are slightly off. A zero is known exactly before a test: an offset is always a cause.
+std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, const Selection& selection, double share) {
+  std::vector<std::size_t> corrections;
+  for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+    const EffectSetting& effect = selection.chosen.effects[i];
+    const ModelNumber number = effect.type->traits.number;
+    if (number == ModelNumber::none || number == ModelNumber::offset) continue;
+    if (changes_at_most(problem, effect, share)) corrections.push_back(i);
+  }
+  return corrections;
+}
+
 /// The one chosen effect that is not a wrong number of the model beside another; null when there are several.
-const EffectType* only_cause(const IdentificationProblem& problem, const Selection& selection) {
+const EffectType* only_cause(const IdentificationProblem& problem, const Selection& selection,
+                             const Judgement& judgement) {
   const std::vector<EffectSetting>& effects = selection.chosen.effects;
   if (effects.size() == 1) return effects.front().type;
-  const auto is_cause = [&](const EffectSetting& effect) { return !is_model_number(problem, *effect.type); };
-  if (std::ranges::count_if(effects, is_cause) != 1) return nullptr;
-  return std::ranges::find_if(effects, is_cause)->type;
+  const EffectType* only = nullptr;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (is_model_number(problem, *effects[i].type) || judgement.is_correction(i)) continue;
+    if (only != nullptr) return nullptr;
+    only = effects[i].type;
+  }
+  return only;
 }
 
 }  // namespace
 
-Judgement judge(const IdentificationProblem& problem, const Selection& selection) {
+bool Judgement::is_correction(std::size_t chosen) const {
+  return std::ranges::find(corrections, chosen) != corrections.end();
+}
+
+Judgement judge(const IdentificationProblem& problem, const Selection& selection, const VerdictPolicy& policy) {
   Judgement judgement;
   if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return judgement;
   if (selection.chosen.effects.empty()) {
@@ -76,14 +106,20 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   const double total = gap_to_explain(problem, selection);
   const GapEnergy after = gap_energy(problem, selection.chosen);
   judgement.gap_left = total > 0.0 ? after.excess() / total : 0.0;
-  judgement.verdict = verdict_by_remainder(after, judgement.gap_left);
-  if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total)) {
+  judgement.verdict = verdict_by_remainder(after, judgement.gap_left, policy);
+  if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total, policy)) {
     judgement.verdict = Verdict::unknown;
   }
-  const EffectType* const cause = only_cause(problem, selection);
-  if (judgement.verdict == Verdict::unknown || cause == nullptr) return judgement;
+  if (judgement.verdict == Verdict::unknown) return judgement;
+  judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
+  if (judgement.verdict == Verdict::named && judgement.corrections.size() == selection.chosen.effects.size()) {
+    judgement.verdict = Verdict::none;
+    return judgement;
+  }
+  const EffectType* const cause = only_cause(problem, selection, judgement);
+  if (cause == nullptr) return judgement;
   if (selection.library.front().type == cause) {
-    judgement.indistinguishable = credible(selection);
+    judgement.indistinguishable = credible(selection, policy.credible);
   } else {
     std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
   }
@@ -190,14 +226,15 @@ Verdict verdict_of(std::span<const Judgement> judgements) {
   return count(Verdict::set) > 0 ? Verdict::set : Verdict::named;
 }
 
-Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts) {
+Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts,
+                     const VerdictPolicy& policy) {
   if (traces.empty()) return verdict;
   switch (verdict) {
     case Verdict::none: return Verdict::named;
     case Verdict::set:
       // The set is kept, unless the choice between its members changes hardly anything.
-      return parts.traced < (1.0 - tuning::kNamedLeaves) * parts.all() ? Verdict::set : Verdict::named;
-    default: return parts.left <= tuning::kNamedLeaves * parts.all() ? Verdict::named : Verdict::partial;
+      return parts.traced < (1.0 - policy.named_leaves) * parts.all() ? Verdict::set : Verdict::named;
+    default: return parts.left <= policy.named_leaves * parts.all() ? Verdict::named : Verdict::partial;
   }
 }
 

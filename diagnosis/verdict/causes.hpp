@@ -5,6 +5,7 @@
 
 #include "diagnosis/result/diagnosis_report.hpp"
 #include "diagnosis/traces/traces.hpp"
+#include "diagnosis/verdict/policy.hpp"
 #include "diagnosis/verdict/selection.hpp"
 
 namespace hybridtest {
@@ -14,10 +15,16 @@ struct Judgement {
   report::Verdict verdict = report::Verdict::none;
   // Positions in Selection::library of effects that cannot be distinguished from the first cause, itself included.
   std::vector<std::size_t> indistinguishable;
+  // Positions in Selection::chosen of numbers of the model that are slightly off: corrected, but no causes.
+  std::vector<std::size_t> corrections;
   double gap_left = 0.0;  // share of the repeatable gap that the chosen effects leave
+
+  [[nodiscard]] bool is_correction(std::size_t chosen) const;
 };
 
-[[nodiscard]] Judgement judge(const IdentificationProblem& problem, const Selection& selection);
+/// A gap that nothing causes but numbers of the model that are slightly off is `none`.
+[[nodiscard]] Judgement judge(const IdentificationProblem& problem, const Selection& selection,
+                              const VerdictPolicy& policy = {});
 
 /// An effect with its parameters and their 95 % intervals, where they have a standard error; its probability, its share
 /// and whether it is a cause are set by the caller.
@@ -50,7 +57,7 @@ void add_gap(const IdentificationProblem& problem, const Selection& selection, c
 /// Traces are certain: if there are any, the verdict names them. The verdict is complete only if the rest of the gap
 /// is explained too.
 [[nodiscard]] report::Verdict verdict_with(std::span<const Trace> traces, report::Verdict verdict,
-                                           const GapParts& parts);
+                                           const GapParts& parts, const VerdictPolicy& policy);
 
 /// Lists the traces as causes, in front of causes with a smaller share of the gap.
 void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vector<report::RankedCause>& ranking);

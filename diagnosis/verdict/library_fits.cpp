@@ -17,7 +17,7 @@
 namespace hybridtest {
 
 double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome) {
-  double score = 0.0;
+  double score = -outcome.cost_of_numbers;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double allowed = 1.0 / (fit.weight * fit.weight);
@@ -333,6 +333,7 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
 }
 
 bool are_alike(const FitOutcome& first, const FitOutcome& second) {
+  if (std::abs(first.cost_of_numbers - second.cost_of_numbers) > tuning::kSensorPrior) return false;
   double both = 0.0;
   double of_first = 0.0;
   double of_second = 0.0;

@@ -13,7 +13,7 @@ namespace hybridtest {
 ///
 /// Gaussian residuals with the variance of the held-out blocks. Neighbouring samples of a structured residual contain
 /// the same information: the number of independent ones is that of the segment's noise (FitSegment::independent), the
-/// same for all candidates.
+/// same for all candidates. Wrong numbers of the model that are needed elsewhere cost what cost_of_numbers() says.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
@@ -66,7 +66,8 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// Scores of the same fits after the noise of the problem has changed, best first.
 void score_again(const IdentificationProblem& problem, std::vector<Candidate>& candidates);
 
-/// Whether two fits change the prediction in the same shape and size: nothing on these recordings splits them.
+/// Whether two fits change the prediction in the same shape and size, and need the same of the numbers of the model:
+/// nothing on these recordings splits them.
 [[nodiscard]] bool are_alike(const FitOutcome& first, const FitOutcome& second);
 
 [[nodiscard]] bool is_of_sensor(const EffectType& effect) noexcept;

@@ -251,6 +251,10 @@ std::string absence_not_excluded(const Suspect& suspect) {
 
 }  // namespace
 
+bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  return !absence_not_excluded({problem, fit.effects[position], fit.parameters[position]}).empty();
+}
+
 std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
     const Suspect suspect{problem, candidate.fit.effects[i], candidate.fit.parameters[i]};

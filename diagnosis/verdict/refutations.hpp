@@ -7,6 +7,11 @@
 
 namespace hybridtest {
 
+/// Whether the 95 % interval of what an effect is proportional to, or of its only parameter, holds the value at which
+/// it is absent.
+/// @param position   in the fit's effects.
+[[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
+
 /// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves, or an effect
 /// that was fitted together with it. In words, with values; empty when nothing speaks against it. Refuted are
 ///

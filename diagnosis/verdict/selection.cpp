@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
 
@@ -80,16 +81,22 @@ Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline
   return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
 }
 
-/// A further effect is accepted only if it improves the score on held-out blocks and explains enough. A wrong number
-/// of the model is judged by the gap that it leaves; any other effect also by the whole gap where it acts, unless it
-/// leaves hardly anything: even the right effect never has exactly the shape of the real one.
+/// A number of the model, or the damping that every model leaves out.
+bool is_number(const IdentificationProblem& problem, const EffectType& type) {
+  return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
+}
+
+/// A further effect is accepted only if it improves the score on held-out blocks and explains enough. Wrong numbers of
+/// the model are expected: the score alone decides. Any other effect is also judged by the gap that it leaves and by
+/// the whole gap where it acts, unless it leaves hardly anything: even the right effect never has exactly the shape of
+/// the real one.
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
+  if (gain <= tuning::kAnotherEffectGain || is_number(problem, *with.type)) return gain > tuning::kAnotherEffectGain;
   const Typical change = typical(problem, baseline, without, with);
-  const bool matters = is_model_number(problem, *with.type) || change.explains > tuning::kAnotherEffectExplains ||
-                       change.leaves < tuning::kSmallEffectLeaves;
-  return gain > tuning::kAnotherEffectGain && change.leaves < tuning::kAnotherEffectLeaves && matters;
+  const bool matters = change.explains > tuning::kAnotherEffectExplains || change.leaves < tuning::kSmallEffectLeaves;
+  return change.leaves < tuning::kAnotherEffectLeaves && matters;
 }
 
 /// Something that a further effect could explain.
@@ -138,13 +145,16 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   return rest;
 }
 
-/// Drops what the other effects can do without, the least needed first.
+/// Drops what the other effects can do without, the least needed first, and numbers of the model that may as well be
+/// right.
 void prune(const IdentificationProblem& problem, const FitOutcome& baseline, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
     std::optional<FitOutcome> best;
     for (std::size_t i = 0; i < fit.effects.size(); ++i) {
       FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
-      if (earns_its_place(problem, baseline, rest, {.type = fit.effects[i].type, .fit = fit})) continue;
+      const EffectType& type = *fit.effects[i].type;
+      const bool may_be_right = is_number(problem, type) && may_be_absent(problem, fit, i);
+      if (!may_be_right && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit})) continue;
       if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
     }
     if (!best) return;

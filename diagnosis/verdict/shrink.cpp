@@ -116,18 +116,17 @@ using report::Verdict;
 namespace {
 
 /// Whether the causes act, but certainly leave most of the gap, or more of its explainable part than is accepted.
-bool contradicts(const Shrink& held_out) {
+bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
   if (!held_out.ci95 || !(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return false;
   const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);
-  return held_out.ci95->high < std::max(tuning::kCarriesOver, (1.0 - tuning::kPartialLeaves) * explainable);
+  return held_out.ci95->high < std::max(tuning::kCarriesOver, (1.0 - policy.partial_leaves) * explainable);
 }
 
 }  // namespace
 
-Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out) {
-  if (!report::names_a_cause(verdict) || held_out.empty() || !std::ranges::all_of(held_out, contradicts)) {
-    return verdict;
-  }
+Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out, const VerdictPolicy& policy) {
+  const auto against = [&](const Shrink& one) { return contradicts(one, policy); };
+  if (!report::names_a_cause(verdict) || held_out.empty() || !std::ranges::all_of(held_out, against)) return verdict;
   const bool is_clear = std::ranges::any_of(
       held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kUnknownOverFloor * one.floor_nrmse; });
   return is_clear ? Verdict::unknown : Verdict::none;

@@ -5,6 +5,7 @@
 
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
+#include "diagnosis/verdict/policy.hpp"
 
 namespace hybridtest {
 
@@ -19,6 +20,7 @@ namespace hybridtest {
 /// channel does not reject them.
 /// @param verdict    from the fitted recordings.
 /// @param held_out   of held-out recordings, one for each kind of segment that the causes act on.
-[[nodiscard]] report::Verdict verdict_carried_over(report::Verdict verdict, std::span<const report::Shrink> held_out);
+[[nodiscard]] report::Verdict verdict_carried_over(report::Verdict verdict, std::span<const report::Shrink> held_out,
+                                                   const VerdictPolicy& policy = {});
 
 }  // namespace hybridtest

@@ -13,7 +13,8 @@ class ViscousDamping final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + c v";
   static constexpr std::string_view kSource = "Chopra (2012), section 1.4";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .follows_derivatives = true, .needs_time = true};
+  static constexpr EffectTraits kTraits{
+      .family = EffectFamily::rate, .number = ModelNumber::damping, .follows_derivatives = true, .needs_time = true};
   static constexpr std::array kParameters{EffectParameter{.name = "damping_n_s_per_m",
                                                           .unit = "N s/m",
                                                           .what = "c, real less model damping",
