@@ -239,7 +239,9 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     if (verdict == stage.judgement.verdict) continue;
     notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
                     " fits the fitted recordings but not the held-out ones.");
-    stage.judgement = {.verdict = verdict, .indistinguishable = {}, .corrections = {}, .gap_left = 1.0};
+    stage.judgement = Judgement{};
+    stage.judgement.verdict = verdict;
+    stage.judgement.gap_left = 1.0;
   }
 }
 
@@ -374,6 +376,9 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   IdentificationProblem problem = make_problem(model, segments);
   std::vector<Stage> stages =
       judge_stages(model, segments, problem, settings, progress.part(tuning::kPrepared, tuning::kSelected));
+  std::vector<Judgement*> all_judgements;
+  std::ranges::transform(stages, std::back_inserter(all_judgements), [](Stage& stage) { return &stage.judgement; });
+  settle_corrections(all_judgements);
   const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {

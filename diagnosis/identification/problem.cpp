@@ -279,19 +279,29 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
 
 namespace {
 
+/// The directions in which wrong numbers of the model move the output of a segment, and damping that it lacks.
+Eigen::MatrixXd directions_of_numbers(const SiteModel& model, const FitSegment& fit) {
+  Eigen::MatrixXd columns = fit.nuisance;
+  const EffectType* const damping = find_effect(specimen, ModelNumber::damping);
+  if (fit.segment.touched_by(*damping)) {
+    const EffectSetting setting{.type = damping, .values = {1.0}};
+    columns.conservativeResize(fit.measured.size(), columns.cols() + 1);
+    columns.rightCols(1) = fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline;
+  }
+  if (columns.cols() == 0) return columns;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposed{columns};
+  return decomposed.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), decomposed.rank());
+}
+
 /// Leaves the numbers of the model free in a segment whose gap is not judged: every prediction is compared beside the
 /// numbers that suit it best, so that no candidate earns anything by them.
-void free_numbers(FitSegment& fit) {
-  if (fit.nuisance.cols() == 0) return;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns{fit.nuisance};
-  const Eigen::Index rank = columns.rank();
-  fit.numbers.directions = columns.householderQ() * Eigen::MatrixXd::Identity(fit.nuisance.rows(), rank);
-  const double slight = tuning::kNumbersWithin * fit.measured.norm();
+void free_numbers(const SiteModel& model, FitSegment& fit) {
+  fit.numbers.directions = directions_of_numbers(model, fit);
+  if (fit.numbers.directions.cols() == 0) return;
+  fit.numbers.slight = tuning::kNumbersWithin * fit.measured.norm();
   const double noise = std::sqrt(static_cast<double>(fit.measured.size()) / fit.independent) / fit.weight;
-  fit.numbers.slight = slight;
-  fit.numbers.resolved = std::min(1.0, noise / slight);
-  const Eigen::VectorXd gap = fit.measured - fit.baseline;
-  fit.numbers.off = fit.numbers.directions.transpose() * gap;
+  fit.numbers.resolved = std::min(1.0, noise / fit.numbers.slight);
+  fit.numbers.off = fit.numbers.directions.transpose() * (fit.measured - fit.baseline);
   fit.measured -= fit.numbers.directions * fit.numbers.off;
 }
 
@@ -304,7 +314,7 @@ IdentificationProblem judged_at(const IdentificationProblem& problem, Channel ou
       std::ranges::any_of(part.segments, [&](const FitSegment& fit) { return is_here(fit) && is_clear(fit); });
   for (FitSegment& fit : part.segments) {
     fit.is_suspect = is_here(fit) && (!any_clear || is_clear(fit));
-    if (!is_here(fit)) free_numbers(fit);
+    if (!is_here(fit)) free_numbers(problem.model, fit);
   }
   return part;
 }

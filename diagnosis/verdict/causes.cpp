@@ -62,13 +62,14 @@ bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& 
   });
 }
 
-/// Numbers of the model that are slightly off. A zero is known exactly before a test: an offset is always a cause.
+/// Numbers of the model that are slightly off. Not among them: a zero, which is known exactly before a test, and
+/// damping that the model does not have.
 std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, const Selection& selection, double share) {
   std::vector<std::size_t> corrections;
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     const EffectSetting& effect = selection.chosen.effects[i];
     const ModelNumber number = effect.type->traits.number;
-    if (number == ModelNumber::none || number == ModelNumber::offset) continue;
+    if (number == ModelNumber::none || number == ModelNumber::offset || number == ModelNumber::damping) continue;
     if (changes_at_most(problem, effect, share)) corrections.push_back(i);
   }
   return corrections;
@@ -112,10 +113,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   }
   if (judgement.verdict == Verdict::unknown) return judgement;
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
-  if (judgement.verdict == Verdict::named && judgement.corrections.size() == selection.chosen.effects.size()) {
-    judgement.verdict = Verdict::none;
-    return judgement;
-  }
+  judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
   const EffectType* const cause = only_cause(problem, selection, judgement);
   if (cause == nullptr) return judgement;
   if (selection.library.front().type == cause) {
@@ -215,6 +213,23 @@ void add_gap(const IdentificationProblem& problem, const Selection& selection, c
   const double left = judgement.verdict == Verdict::unknown ? rest : judgement.gap_left * rest;
   parts.left += left;
   parts.explained += std::max(0.0, rest - left);
+}
+
+void settle_corrections(std::span<Judgement* const> judgements) {
+  const auto has_causes = [](const Judgement* one) {
+    return report::names_a_cause(one->verdict) && !one->only_corrects;
+  };
+  std::size_t numbers = 0;
+  for (const Judgement* one : judgements) numbers += one->corrections.size();
+  const bool is_a_cause = numbers == 1 && std::ranges::none_of(judgements, has_causes);
+  for (Judgement* const one : judgements) {
+    if (!one->only_corrects) continue;
+    if (is_a_cause) {
+      one->corrections.clear();
+    } else if (one->verdict == Verdict::named || one->verdict == Verdict::set) {
+      one->verdict = Verdict::none;
+    }
+  }
 }
 
 Verdict verdict_of(std::span<const Judgement> judgements) {

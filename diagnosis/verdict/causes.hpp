@@ -17,14 +17,18 @@ struct Judgement {
   std::vector<std::size_t> indistinguishable;
   // Positions in Selection::chosen of numbers of the model that are slightly off: corrected, but no causes.
   std::vector<std::size_t> corrections;
-  double gap_left = 0.0;  // share of the repeatable gap that the chosen effects leave
+  bool only_corrects = false;  // nothing else was chosen
+  double gap_left = 0.0;       // share of the repeatable gap that the chosen effects leave
 
   [[nodiscard]] bool is_correction(std::size_t chosen) const;
 };
 
-/// A gap that nothing causes but numbers of the model that are slightly off is `none`.
 [[nodiscard]] Judgement judge(const IdentificationProblem& problem, const Selection& selection,
                               const VerdictPolicy& policy = {});
+
+/// A gap that nothing causes but numbers of the model that are slightly off is `none`: the numbers of a model never are
+/// exact. But where a single number is off and nothing else is wrong at any interface, it is the cause.
+void settle_corrections(std::span<Judgement* const> judgements);
 
 /// An effect with its parameters and their 95 % intervals, where they have a standard error; its probability, its share
 /// and whether it is a cause are set by the caller.
