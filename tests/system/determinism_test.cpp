@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/shear_frame.hpp"
 #include "tests/support/system_fixture.hpp"
 
 /// The same scenario gives the same bytes: over DDS in several processes, simulated in one, and at every
@@ -22,7 +23,7 @@ struct Shipped {
 
 void PrintTo(const Shipped& shipped, std::ostream* stream) { *stream << shipped.scenario; }
 
-class Determinism : public SystemTest, public ::testing::WithParamInterface<Shipped> {
+class SameBits : public SystemTest {
  protected:
   /// Bit for bit, so that NaN equals NaN and 0 does not equal -0.
   void expect_same_column(const std::string& participant, const std::string& table, const std::string& column) const {
@@ -50,6 +51,8 @@ class Determinism : public SystemTest, public ::testing::WithParamInterface<Ship
   }
 };
 
+class Determinism : public SameBits, public ::testing::WithParamInterface<Shipped> {};
+
 TEST_P(Determinism, RunAndSimulateGiveTheSameBits) {
   const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
   StartedProgram run = start_run(scenario, "run", {"--set", "time.duration_s=4"});
@@ -64,6 +67,18 @@ TEST_P(Determinism, RunAndSimulateGiveTheSameBits) {
     expect_same_table(site, "control");
   }
   for (const std::string& numerical : GetParam().numerical) expect_same_table(numerical, "steps");
+}
+
+/// That its motion is right, MatrixStructure shows under simulated time.
+TEST_F(SameBits, FrameOfTenThousandRunsAsItIsSimulated) {
+  const std::filesystem::path scenario = test::shear_frame::write_files(directory());
+  StartedProgram run = start_run(scenario, "run", {"--set", "time.duration_s=0.3"});
+  StartedProgram simulated = start_simulate(scenario, "simulated", {"--set", "time.duration_s=0.3"});
+  ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
+  ASSERT_THAT(simulated.wait(), ::testing::Optional(kExitCompleted)) << simulated.standard_error();
+  EXPECT_EQ(recorded("run").last_step("coordinator"), 300.0);
+  expect_same_table("coordinator", "steps", {"wall_time_s"});
+  for (const char* site : {"first", "second"}) expect_same_table(site, "control");
 }
 
 TEST_P(Determinism, ControlSensorSeedChangesTheRecords) {

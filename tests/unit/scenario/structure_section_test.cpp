@@ -1,5 +1,6 @@
 #include "scenario/structure_section.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -190,11 +191,10 @@ TEST_F(StructureSection, LargeStructureRecordsInterfacesAndTwentyMore) {
   std::string stiffness = "%%MatrixMarket matrix coordinate real symmetric\n1000 1000 1999\n";
   std::string dofs = "node,direction\n";
   for (int floor = 1; floor <= kFloors; ++floor) {
-    const std::string at = std::to_string(floor);
-    mass += at + " " + at + " 1e3\n";
-    stiffness += at + " " + at + (floor == kFloors ? " 1e8\n" : " 2e8\n");
-    if (floor > 1) stiffness += at + " " + std::to_string(floor - 1) + " -1e8\n";
-    dofs += at + ",x\n";
+    mass += fmt::format("{0} {0} 1e3\n", floor);
+    stiffness += fmt::format("{0} {0} {1}e8\n", floor, floor == kFloors ? 1 : 2);
+    if (floor > 1) stiffness += fmt::format("{} {} -1e8\n", floor, floor - 1);
+    dofs += fmt::format("{},x\n", floor);
   }
   write("m.mtx", mass);
   write("k.mtx", stiffness);
