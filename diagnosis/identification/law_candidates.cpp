@@ -287,7 +287,7 @@ struct Table {
   /// The last law refines the one before it.
   void refine(std::vector<double> start) {
     laws.back().refines = &laws[laws.size() - 2].type;
-    laws.back().neutral = std::move(start);
+    laws.back().start = std::move(start);
   }
 };
 

@@ -18,8 +18,8 @@ struct LawCandidate {
   std::vector<SearchRange> ranges;  // one per parameter of the effect
   // Searched only where no simpler law explains the gap; from the result of this one. null: searched by itself.
   const EffectType* refines = nullptr;
-  // The parameters that make this law of the one that it refines, behind that law's own.
-  std::vector<double> neutral;
+  // Where the search begins for the parameters that it has beyond that law's.
+  std::vector<double> start;
 };
 
 /// Laws of increasing detail. Beside a spring, a law that yields is called `yielding`: it is what the user's model

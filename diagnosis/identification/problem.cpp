@@ -157,7 +157,7 @@ double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_
 /// Root mean square of the noise in a remainder. Noise is as large in every phase of the motion and all the time; a
 /// part of the specimen that the features do not hold is not. So the typical group of samples counts: by place and
 /// direction of the motion, and by time.
-double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder) {
+double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, double independent) {
   constexpr std::size_t kGroups = tuning::kNoiseGroups;
   std::vector<double> displacement(fit.segment.input.size());
   std::ranges::transform(fit.segment.input, displacement.begin(), &Motion::displacement_m);
@@ -174,17 +174,15 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder) {
   }
   std::vector<std::size_t> time(size);
   for (std::size_t i = 0; i < size; ++i) time[i] = i * kGroups / size;
-  const double independent = independent_samples(remainder);
   const double typical = std::min(median_energy(remainder, phase, kGroups, independent),
                                   median_energy(remainder, time, kGroups, independent));
   double level = std::min(
       {root_mean_square(remainder), std::sqrt(typical), tuning::kNoiseShareMax * root_mean_square(fit.measured)});
   // Where cycles repeat, what does not repeat is seen.
-  const std::vector<double> place(place_m.begin(), place_m.end());
-  const std::vector<double> measured(fit.measured.begin(), fit.measured.end());
-  const std::vector<double> left(remainder.begin(), remainder.end());
+  const auto span_of = [size](const Eigen::VectorXd& values) { return std::span{values.data(), size}; };
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
-  if (const auto cycles = floor_of_cycles({period_s, place, measured, left})) level = std::min(level, cycles->rms);
+  if (const auto cycles = floor_of_cycles({period_s, span_of(place_m), span_of(fit.measured), span_of(remainder)}))
+    level = std::min(level, cycles->rms);
   return level;
 }
 
@@ -192,15 +190,18 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder) {
 void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
-  const bool is_noise = parts.repeatable < parts.total - parts.repeatable;
-  const double deviation = is_noise ? noise_level(fit, parts.remainder) : 0.0;
+  // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the
+  // specimen's history, which features of the motion hold badly, and no noise.
+  const bool is_noise = !fit.segment.is_quasi_static && parts.repeatable < parts.total - parts.repeatable;
+  const double independent = independent_samples(parts.remainder);
+  const double deviation = is_noise ? noise_level(fit, parts.remainder, independent) : 0.0;
   // What smoothing does to the prediction is no noise and comes on top.
   fit.floor = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
   fit.sample_floor = std::max(fit.channel_sample_floor, std::sqrt(fit.floor * fit.floor + averaged_away));
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
-  fit.independent = independent_samples(parts.remainder);
+  fit.independent = independent;
 }
 
 FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) {
@@ -267,9 +268,6 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     FitSegment& fit = problem.segments[i];
-    // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the
-    // specimen's history, which features of the motion hold badly, and no noise.
-    if (fit.segment.is_quasi_static) continue;
     const Eigen::VectorXd& change = best.segments[i].change;
     Eigen::VectorXd residual = fit.measured - fit.baseline;
     if (change.size() > 0) residual -= change;

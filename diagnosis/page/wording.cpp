@@ -35,8 +35,7 @@ std::vector<std::string> causes(const DiagnosisReport& report) {
   std::vector<std::string> names;
   for (const RankedCause& cause : report.ranking) {
     if (!cause.is_cause) continue;
-    names.push_back(plain(cause.effect));
-    if (!cause.law.empty()) names.back() += fmt::format(" ({}: the specimen {})", plain(cause.law), cause.in_words);
+    names.push_back(plain(cause.effect) + law_in_words(cause));
   }
   return names;
 }
@@ -69,6 +68,10 @@ std::string plain(std::string_view name) {
   std::string text{name};
   std::ranges::replace(text, '_', ' ');
   return text;
+}
+
+std::string law_in_words(const RankedCause& cause) {
+  return cause.law.empty() ? "" : fmt::format(" ({}: the specimen {})", plain(cause.law), cause.in_words);
 }
 
 std::string plain_parameter(std::string_view name, std::string_view unit) {

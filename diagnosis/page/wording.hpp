@@ -27,6 +27,8 @@ namespace hybridtest::report {
 
 /// The interface at fault whose share is largest; nullptr when there is none.
 [[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
+/// ` (takeda: the specimen …)` for a law in place of the specimen's own; empty for an effect.
+[[nodiscard]] std::string law_in_words(const RankedCause& cause);
 /// The numbers of the model that are slightly off, with their values; empty when there are none.
 [[nodiscard]] std::string corrections_sentence(const DiagnosisReport& report);
 /// The verdict in one to three sentences.

@@ -201,8 +201,8 @@ std::string summary_of(const SiteDiagnosis& site) {
       causes = false;
     }
     if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
-    const std::string law = cause.law.empty() ? "" : fmt::format(" ({}: the specimen {})", cause.law, cause.in_words);
-    text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect, law, cause.probability);
+    text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect,
+                        report::law_in_words(cause), cause.probability);
     if (cause.is_cause) text += parameters_in_words(cause);
   }
   if (!report.corrections.empty()) text += "\n  " + report::corrections_sentence(report) + "\n";

@@ -1,11 +1,11 @@
 #include "diagnosis/verdict/causes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "core/parameters/unit_of.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -127,14 +127,6 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
 
 namespace {
 
-/// The unit that ends a parameter's name.
-std::string unit_in(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kEndings{
-      {{"_n_per_m", "N/m"}, {"_m_per_j", "m/J"}, {"_per_j", "1/J"}, {"_per_m", "1/m"}, {"_n", "N"}, {"_m", "m"}}};
-  const auto found = std::ranges::find_if(kEndings, [&](const auto& ending) { return name.ends_with(ending.first); });
-  return found == kEndings.end() ? std::string{} : std::string{found->second};
-}
-
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
   report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
   parameter.is_at_bound = estimate.at_bound;
@@ -166,7 +158,7 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
   }
   std::vector<report::ReportedParameter> parameters;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    parameters.push_back(reported(own[i].name, unit_in(own[i].name), found[i]));
+    parameters.push_back(reported(own[i].name, unit_of(own[i].name), found[i]));
   }
   return parameters;
 }

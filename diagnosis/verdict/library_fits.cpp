@@ -283,7 +283,7 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
     constexpr double kClear = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
     if (!(left.excess() > tuning::kNothingLeft * total && left.total > kClear * left.floor)) return;
     EffectSetting start{.type = &law.type, .values = simpler->fit.effects.front().values};
-    start.values.insert(start.values.end(), law.neutral.begin(), law.neutral.end());
+    start.values.insert(start.values.end(), law.start.begin(), law.start.end());
     std::optional<Candidate> found = fit_together(coarse, &law.type, {start}, refit_effects);
     if (!found) continue;
     // The same law with more of its parameters is no further candidate.
@@ -371,8 +371,13 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   std::erase_if(effects, [&](const EffectType* effect) {
     // Of the laws the simplest stands for all: which one it is, is asked when the effects beside it are known.
     if (effect->replacement != nullptr && effect != &law_candidates(problem.law_is_spring).front().type) return true;
+    // A law in place of the specimen's own has its own stiffness and strength.
+    const ModelNumber number = effect->traits.number;
+    const bool is_of_law = effect->interface == EffectInterface::specimen &&
+                           (number == ModelNumber::stiffness || number == ModelNumber::strength);
     return std::ranges::any_of(base, [&](const EffectSetting& setting) {
-      return setting.type == effect || (setting.type->replacement != nullptr && effect->replacement != nullptr);
+      return setting.type == effect ||
+             (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law));
     });
   });
   IdentificationProblem extended = coarse;

@@ -166,9 +166,11 @@ void prune(const IdentificationProblem& problem, const FitOutcome& baseline, Fit
 Growth with_its_numbers(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                         const Selection& selection, std::size_t position) {
   const Candidate& candidate = selection.library[position];
-  Growth growth{.fit = refit_effects(problem, candidate.fit.effects, false),
-                .accepted = {{candidate.type, selection.probabilities[position]}}};
-  if (!candidate.fit.with_nuisance) return growth;
+  Growth growth{.fit = {}, .accepted = {{candidate.type, selection.probabilities[position]}}};
+  if (!candidate.fit.with_nuisance) {
+    growth.fit = refit_effects(problem, candidate.fit.effects, false);
+    return growth;
+  }
   std::vector<EffectSetting> start = candidate.fit.effects;
   for (const EffectSetting& number : wrong_numbers(problem, candidate.fit)) {
     if (number.type != candidate.type) start.push_back(number);

@@ -8,9 +8,6 @@
 
 namespace hybridtest {
 
-/// `N/m` for `stiffness_n_per_m`; empty when the key does not end in a unit.
-[[nodiscard]] std::string unit_of(std::string_view key);
-
 /// Text for a cell of a Markdown table: a bar would end the cell.
 [[nodiscard]] std::string cell(std::string_view words);
 

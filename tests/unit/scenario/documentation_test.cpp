@@ -42,17 +42,6 @@ TEST(Documentation, APartWithoutItsMarkersIsRefused) {
   EXPECT_THROW(static_cast<void>(with_generated_parts("# Scenario files\n")), ConfigError);
 }
 
-TEST(Documentation, TakesTheUnitFromTheKey) {
-  EXPECT_EQ(unit_of("stiffness_n_per_m"), "N/m");
-  EXPECT_EQ(unit_of("leakage_m3_per_s_pa"), "m³/(s Pa)");
-  EXPECT_EQ(unit_of("proportional_gain_per_m2"), "1/m²");
-  EXPECT_EQ(unit_of("slope_m_per_s_min"), "m/s");
-  EXPECT_EQ(unit_of("damping_n_s_per_m"), "N s/m");
-  EXPECT_EQ(unit_of("hardening_ratio"), "");
-  EXPECT_EQ(unit_of("n"), "");
-  EXPECT_EQ(unit_of("a2_s2"), "s²");
-}
-
 TEST(EffectsText, NamesEveryEffectAndParameter) {
   const std::string text = effects_text();
   for (const EffectType& type : effect_library()) {

@@ -130,6 +130,8 @@ Answer read_answer(std::string_view text) {
     }
     for (const Json& cause : json.at("causes")) answer.causes.push_back(read_cause(cause));
     std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
+    const Json corrections = json.value("corrections", Json::array());
+    for (const Json& number : corrections) answer.corrections.push_back(read_cause(number));
     double largest = 0.0;
     std::string at_largest;
     const Json places = json.value("where", Json::array());
@@ -336,6 +338,15 @@ bool is_of_the_library(const KeyCase& key) {
 
 }  // namespace
 
+Answer with_true_corrections(const KeyCase& key, Answer answer) {
+  const bool was_silent = answer.causes.empty();
+  for (const AnsweredCause& number : answer.corrections) {
+    if (is_in(key.acceptable, number)) answer.causes.push_back(number);
+  }
+  if (was_silent && !answer.causes.empty() && answer.verdict == "none") answer.verdict = "named";
+  return answer;
+}
+
 Answer without_tolerated(const KeyCase& key, Answer answer) {
   if (!answer.names_a_cause() || answer.causes.empty()) return answer;
   if (answer.is_set() && cause_is_right(key, answer)) return answer;
@@ -362,7 +373,7 @@ MarkedCase mark(const KeyCase& key, const std::optional<Answer>& given) {
   marked.key = key;
   marked.given.verdict = "missing";
   if (given) marked.given = *given;
-  marked.answer = without_tolerated(key, marked.given);
+  marked.answer = without_tolerated(key, with_true_corrections(key, marked.given));
   const Answer& answer = marked.answer;
   const bool is_right = cause_is_right(key, answer);
   const bool is_cleared = key.truth == TruthClass::none || key.truth == TruthClass::unknown;

@@ -58,7 +58,8 @@ struct AnsweredCause {
 /// The fields of a diagnosis.json (hybridtest/diagnosis/1) that scoring uses.
 struct Answer {
   std::string verdict;
-  std::vector<AnsweredCause> causes;  // most probable first
+  std::vector<AnsweredCause> causes;            // most probable first
+  std::vector<AnsweredCause> corrections = {};  // numbers of the model that are slightly off, said to be no causes
   /// The interface of the largest share, and those whose own verdict is `unknown`.
   std::vector<std::string> faulty_interfaces;
   std::optional<double> variance_removed;  // at the interface, held out
@@ -101,6 +102,10 @@ struct ParameterError {
   double relative = 0.0;
   std::optional<bool> is_in_interval;
 };
+
+/// The answer with a correction counted as a cause where it is an acceptable one: a wrong number that was found is
+/// found, however small. Behind the causes; a `none` with one becomes `named`.
+[[nodiscard]] Answer with_true_corrections(const KeyCase& key, Answer answer);
 
 /// The answer without the causes that the key tolerates. A set with one of them, and a list of nothing else, says
 /// `none` of the effect; a `partial` of nothing else says `unknown`.

@@ -247,6 +247,20 @@ TEST(Score, WrongNumbersAreNeitherRightNorWrong) {
   EXPECT_FALSE(mark(friction, named("named", {stiffness})).is_effect_right.value());
 }
 
+TEST(Score, CorrectionCountsWhereItIsTheTruth) {
+  const Cause gain{"transfer_system", "gain"};
+  Answer corrected;
+  corrected.verdict = "none";
+  corrected.corrections = {{.interface = gain.interface, .effect = gain.effect, .probability = 1.0, .parameters = {}}};
+  KeyCase key = key_case(TruthClass::named, {kFriction});
+  EXPECT_FALSE(mark(key, corrected).is_effect_right.value());
+  EXPECT_EQ(mark(key, corrected).answer.verdict, "none");
+  key.acceptable = {gain};
+  EXPECT_TRUE(mark(key, corrected).is_effect_right.value());
+  EXPECT_EQ(mark(key, corrected).answer.verdict, "named");
+  EXPECT_FALSE(mark(key_case(TruthClass::none, {}), corrected).is_falsely_named.value());
+}
+
 TEST(Score, PairNeedsACauseForEachEffectAtTwiceTheFloor) {
   KeyCase key = key_case(TruthClass::pair, {kFriction, kBias});
   const Cause stribeck{"specimen", "stribeck_friction"};
