@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "diagnosis/identification/continuation.hpp"
@@ -18,6 +19,7 @@
 #include "diagnosis/verdict/experiments.hpp"
 #include "diagnosis/verdict/selection.hpp"
 #include "diagnosis/verdict/shrink.hpp"
+#include "diagnosis/verdict/stiffness_loss.hpp"
 #include "diagnosis/verdict/where.hpp"
 
 namespace hybridtest {
@@ -64,6 +66,19 @@ struct Stage {
   }
 };
 
+/// Of a law in place of the specimen's own, over the recording in which it has lost most; 0 for an effect.
+double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetting& cause) {
+  double most = 0.0;
+  if (cause.type->replacement == nullptr) return most;
+  const std::unique_ptr<Law> law = cause.type->replacement->make(cause.values);
+  for (const FitSegment& fit : problem.segments) {
+    if (law != nullptr && fit.segment.to == Channel::measured_force) {
+      most = std::max(most, lost_stiffness(*law, fit.segment.input));
+    }
+  }
+  return most;
+}
+
 /// The causes of the verdict first, then the other candidates.
 /// @param part   of the whole explained gap, that this stage explains.
 std::vector<RankedCause> rank(const Stage& stage, double part) {
@@ -79,6 +94,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       if (judgement.is_correction(i)) continue;
       RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
       cause.is_cause = true;
+      cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
       cause.probability = selection.chosen_probabilities[i];
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {

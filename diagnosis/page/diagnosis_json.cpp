@@ -39,7 +39,10 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
 
 Json cause_entry(const report::RankedCause& cause) {
   Json entry{{"interface", cause.interface}, {"effect", cause.effect}};
-  if (!cause.law.empty()) entry["law"] = cause.law;
+  if (!cause.law.empty()) {
+    entry["law"] = cause.law;
+    entry["lost_stiffness"] = cause.lost_stiffness;
+  }
   entry["probability"] = cause.probability;
   if (cause.is_cause || cause.share > 0.0) {
     entry["share"] = cause.share;

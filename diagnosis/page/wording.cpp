@@ -50,8 +50,22 @@ std::string where_it_lies(const DiagnosisReport& report) {
 std::string removal(const DiagnosisReport& report) {
   if (!report.interface_shrink) return ".";
   const Shrink& shrink = *report.interface_shrink;
+  // Of a gap larger than the output itself, hardly anything seems to be left.
+  if (shrink.nrmse_before > 1.0) {
+    const double left = std::max(0.0, std::pow(shrink.nrmse_after, 2) - std::pow(shrink.floor_nrmse, 2));
+    return fmt::format(": the gap was {:.3g} times the output, and {} of the output's energy is left above the noise.",
+                       shrink.nrmse_before, percent(left));
+  }
   return fmt::format(": {} of the energy of this gap is explained, {} is left above the noise.",
                      percent(shrink.variance_removed), percent(shrink.unknown_share));
+}
+
+/// The share of a gap says little where a model is far off: what is left of the output does.
+std::string remainder(const DiagnosisReport& report) {
+  if (!report.interface_shrink || !(report.interface_shrink->floor_nrmse > 0.0)) return {};
+  const Shrink& shrink = *report.interface_shrink;
+  return fmt::format(" The residual is {} of the output, {:.2g} times its noise floor.", percent(shrink.nrmse_after),
+                     shrink.nrmse_after / shrink.floor_nrmse);
 }
 
 std::string named_sentence(const DiagnosisReport& report) {
@@ -71,7 +85,14 @@ std::string plain(std::string_view name) {
 }
 
 std::string law_in_words(const RankedCause& cause) {
-  return cause.law.empty() ? "" : fmt::format(" ({}: the specimen {})", plain(cause.law), cause.in_words);
+  if (cause.law.empty()) return {};
+  // Less is not seen in a plot of force against displacement.
+  constexpr double kWorthSaying = 0.02;
+  const std::string lost =
+      cause.lost_stiffness < kWorthSaying
+          ? ""
+          : fmt::format(", and has lost {} of its stiffness by the end", percent(cause.lost_stiffness));
+  return fmt::format(" ({}: the specimen {}{})", plain(cause.law), cause.in_words, lost);
 }
 
 std::string plain_parameter(std::string_view name, std::string_view unit) {
@@ -169,7 +190,8 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     case Verdict::set:
       return where_it_lies(report) + "; these recordings cannot distinguish " + joined(causes(report)) +
              removal(report);
-    case Verdict::partial: return named_sentence(report) + " No effect in the library explains what is left.";
+    case Verdict::partial:
+      return named_sentence(report) + remainder(report) + " No effect in the library explains what is left.";
     case Verdict::unknown:
       return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
     case Verdict::not_excited:
