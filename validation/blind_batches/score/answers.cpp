@@ -129,7 +129,10 @@ Answer read_answer(std::string_view text) {
                                "not_excited"};
     }
     for (const Json& cause : json.at("causes")) answer.causes.push_back(read_cause(cause));
-    std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
+    // Causes of different gaps are in the order of their shares; their probabilities do not compare.
+    if (answer.is_set()) {
+      std::ranges::stable_sort(answer.causes, std::ranges::greater{}, &AnsweredCause::probability);
+    }
     const Json corrections = json.value("corrections", Json::array());
     for (const Json& number : corrections) answer.corrections.push_back(read_cause(number));
     double largest = 0.0;

@@ -58,7 +58,7 @@ struct AnsweredCause {
 /// The fields of a diagnosis.json (hybridtest/diagnosis/1) that scoring uses.
 struct Answer {
   std::string verdict;
-  std::vector<AnsweredCause> causes;            // most probable first
+  std::vector<AnsweredCause> causes;            // largest share first; of a set, most probable first
   std::vector<AnsweredCause> corrections = {};  // numbers of the model that are slightly off, said to be no causes
   /// The interface of the largest share, and those whose own verdict is `unknown`.
   std::vector<std::string> faulty_interfaces;
