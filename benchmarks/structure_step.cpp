@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/central_difference.hpp"
-#include "coordinator/explicit_newmark.hpp"
+#include "coordinator/integrators/central_difference.hpp"
+#include "coordinator/integrators/explicit_newmark.hpp"
 #include "mechanics/structure/damping.hpp"
 
 namespace {

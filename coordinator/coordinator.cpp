@@ -294,8 +294,8 @@ void Coordinator::open_step(Instant now) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
     const InterfaceMap& interface = settings_.substructures[i].interface;
-    // The previous point is final now: its velocity and acceleration are in equilibrium.
-    if (step > 0) fill_point(interface, step - 1, integrator_->completed(), command.points[0]);
+    // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
+    if (step > 0) fill_rates(interface, integrator_->completed(), command.points[0]);
     std::move_backward(command.points.begin(), command.points.end() - 1, command.points.end());
     fill_point(interface, step, current, command.points[0]);
     command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
@@ -491,6 +491,10 @@ void Coordinator::fill_point(const InterfaceMap& interface, Step step, const Mot
   point.step = step;
   point.model_time_s = static_cast<double>(step) * settings_.step_s;
   interface.to_interface(motion.displacement_m, point.displacement_m);
+  fill_rates(interface, motion, point);
+}
+
+void Coordinator::fill_rates(const InterfaceMap& interface, const MotionState& motion, CommandPoint& point) noexcept {
   interface.to_interface(motion.velocity_m_per_s, point.velocity_m_per_s);
   interface.to_interface(motion.acceleration_m_per_s2, point.acceleration_m_per_s2);
 }

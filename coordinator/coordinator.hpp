@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "coordinator/integrator.hpp"
+#include "coordinator/integrators/integrator.hpp"
 #include "coordinator/step_ledger.hpp"
 #include "core/messages.hpp"
 #include "core/node.hpp"
@@ -122,6 +122,7 @@ class Coordinator final : public Node {
   void control(ControlVerb verb, StopReason reason = StopReason::none) noexcept;
   void fill_point(const InterfaceMap& interface, Step step, const MotionState& motion,
                   CommandPoint& point) const noexcept;
+  static void fill_rates(const InterfaceMap& interface, const MotionState& motion, CommandPoint& point) noexcept;
 
   CoordinatorSettings settings_;
   std::unique_ptr<Integrator> integrator_;

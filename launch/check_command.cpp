@@ -53,9 +53,29 @@ void print_stiffness(const SiteStability& stability) {
   fmt::print("  damping, energy error and the stability limit of the step come from its number.\n");
 }
 
-void print_delays(const SiteStability& stability) {
+void print_step(const Scenario& scenario, const TestStability& stability) {
+  const double step_s = scenario.integrator_step_s;
+  fmt::print("\n{}: step {:.6g} s, ", scenario.integrator.text, step_s);
+  if (!scenario.integrator.needs.initial_stiffness) {
+    fmt::print("stable up to {:.6g} s ({:.1f} % used)\n", stability.step.step_s_max,
+               100.0 * step_s / stability.step.step_s_max);
+    return;
+  }
+  fmt::print("stable with any step while no stiffness exceeds the initial one\n");
+  if (stability.grows) {
+    fmt::print("  UNSTABLE: a free vibration with the specimens and the delays that remain grows\n");
+  }
+  if (stability.has_modes_beyond_step) {
+    fmt::print("  modes above {:.4g} Hz are faster than the step can show; the integrator slows them down\n",
+               1.0 / (std::numbers::pi * step_s));
+  }
+}
+
+void print_delays(const SiteStability& stability, bool is_known) {
   const ForceDelay& delay = stability.delay;
-  if (std::isnan(stability.critical.delay_s)) {
+  if (!is_known) {
+    fmt::print("  critical delay      not known with modes faster than the step: look at a simulated run\n");
+  } else if (std::isnan(stability.critical.delay_s)) {
     fmt::print("  critical delay      not computed: more than {} degrees of freedom. Simulate the test with this\n",
                kCriticalDelaySizeMax);
     fmt::print("                      transfer system, and look for motion that grows\n");
@@ -68,7 +88,7 @@ void print_delays(const SiteStability& stability) {
   fmt::print("  transfer system     {:.3f} ms delay at low frequency\n", 1e3 * delay.transfer_s);
   fmt::print("  compensated         {:.3f} ms by the command, {:.3f} ms by the force\n",
              1e3 * (delay.transfer_s - delay.after_command_s), 1e3 * (delay.after_command_s - delay.remaining_s));
-  if (!std::isfinite(stability.critical.delay_s)) return;
+  if (!is_known || !std::isfinite(stability.critical.delay_s)) return;
   fmt::print("  delay margin        {:.3f} ms", 1e3 * stability.margin_s());
   if (stability.is_unstable()) {
     fmt::print("   UNSTABLE: the motion will grow until an interlock ends the test\n");
@@ -89,7 +109,7 @@ void print_interlocks(const SiteLimits& limits) {
              limits.stuck_judges_force ? "displacement or force" : "displacement", 1e3 * limits.stuck_while_moving_m);
 }
 
-void print_site(const Scenario& scenario, const SiteStability& stability) {
+void print_site(const Scenario& scenario, const SiteStability& stability, bool delay_is_known) {
   const SiteScenario& site = stability.site->site;
   fmt::print("\nsite {}: {} rig\n", stability.site->id, site.rig_type);
   fmt::print("  control rate        {:.6g} Hz requested, {:.6g} Hz used ({} per step)\n", site.control_rate_hz,
@@ -98,7 +118,7 @@ void print_site(const Scenario& scenario, const SiteStability& stability) {
   fmt::print("  stiffness share    ");
   for (const double share : stability.stiffness_share) fmt::print(" {:.1f} %", 100.0 * share);
   fmt::print(" of modes 1 to {}\n", stability.stiffness_share.size());
-  print_delays(stability);
+  print_delays(stability, delay_is_known);
   print_interlocks(site.loop.limits);
 }
 
@@ -125,14 +145,13 @@ int check(const std::filesystem::path& file, const std::vector<std::string>& ove
              scenario.substructures.size(), scenario.time.last_step);
   print_ground_motion(scenario);
   print_modes(scenario, modes);
-  fmt::print("\n{}: step {:.6g} s, stable up to {:.6g} s ({:.1f} % used)\n", scenario.integrator_type,
-             scenario.time.step_s, stability.step.step_s_max, 100.0 * scenario.time.step_s / stability.step.step_s_max);
-  for (const SiteStability& site : stability.sites) print_site(scenario, site);
+  print_step(scenario, stability);
+  for (const SiteStability& site : stability.sites) print_site(scenario, site, !stability.has_modes_beyond_step);
   const bool is_unstable = stability.is_unstable(scenario.integrator_step_s);
   if (is_unstable) {
     fmt::print(
         "\nUNSTABLE: do not run this test with a specimen. Compensate the delay of each site to within its critical\n"
-        "delay, or shorten the step.\n");
+        "delay, correct its initial stiffness, or shorten the step.\n");
   }
   if (stability.has_wrong_stiffness()) {
     fmt::print("\nWRONG STIFFNESS: correct initial_stiffness_n_per_m, which is off by more than a factor of two.\n");

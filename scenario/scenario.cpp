@@ -18,7 +18,6 @@
 #include "numerical_substructure/scaled_model.hpp"
 #include "scenario/catalogue/compensators.hpp"
 #include "scenario/catalogue/force_compensators.hpp"
-#include "scenario/catalogue/integrators.hpp"
 #include "scenario/catalogue/numerical_effects.hpp"
 #include "scenario/catalogue/numerical_models.hpp"
 #include "scenario/catalogue/rigs.hpp"
@@ -385,8 +384,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   excitation.finish();
 
   Section integrator = root.section("integrator");
-  scenario.integrator_type = read_integrator_type(integrator);
-  integrator.finish();
+  scenario.integrator = read_integrator(integrator);
 
   std::vector<Section> substructures = root.sections("substructures");
   for (Section& section : substructures) {
@@ -415,10 +413,12 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   });
   document.throw_if_errors();
   scenario.integrator_step_s = scenario.time.step_s * errors.step;
-  report_at(root.section("time"),
-            [&] { require_stable_step(vibration_modes(scenario.structure, 0), scenario.integrator_step_s); });
-  scenario.make_integrator = [structure = scenario.structure, type = scenario.integrator_type,
-                              step_s = scenario.integrator_step_s] { return make_integrator(type, structure, step_s); };
+  if (!scenario.integrator.needs.initial_stiffness) {
+    report_at(root.section("time"),
+              [&] { require_stable_step(vibration_modes(scenario.structure, 0), scenario.integrator_step_s); });
+  }
+  scenario.make_integrator = [structure = scenario.structure, make = scenario.integrator.make,
+                              step_s = scenario.integrator_step_s] { return make(structure, step_s, {}); };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "coordinator/preflight/free_vibration.hpp"
 #include "coordinator/preflight/site_coupling.hpp"
 
 namespace hybridtest {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kPushShare = 0.001;  // of the displacement limit
 
 /// With the stiffness that its specimen turns out to have.
@@ -51,6 +54,21 @@ LinearStructure with_specimens(const LinearStructure& given, const std::vector<S
   return structure;
 }
 
+/// With the stiffness of the specimens and the delays that remain and are not learnt.
+bool vibration_grows(const Scenario& scenario, const LinearStructure& structure,
+                     const std::vector<SiteStability>& sites, const std::vector<CoupledSite>& coupled) {
+  Eigen::SparseMatrix<double> prompt = structure.initial_stiffness_n_per_m;
+  std::vector<DelayedForce> delayed;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const double delay_s = sites[i].delay.is_learnt ? 0.0 : sites[i].delay.remaining_s;
+    if (delay_s == 0.0) continue;
+    delayed.push_back(
+        {coupled[i].interface.on_structure(coupled[i].stiffness_n_per_m), delay_s / scenario.time.step_s});
+    prompt -= delayed.back().stiffness_n_per_m;
+  }
+  return free_vibration_grows(*scenario.make_integrator(), prompt, delayed);
+}
+
 }  // namespace
 
 double SiteStability::margin_s() const noexcept { return critical.delay_s - std::abs(delay.remaining_s); }
@@ -61,7 +79,8 @@ bool SiteStability::is_unstable() const noexcept {
 }
 
 bool TestStability::is_unstable(double step_s) const noexcept {
-  return step_s > step.step_s_max || std::ranges::any_of(sites, &SiteStability::is_unstable);
+  if (step_s > step.step_s_max || grows) return true;
+  return !has_modes_beyond_step && std::ranges::any_of(sites, &SiteStability::is_unstable);
 }
 
 bool TestStability::has_wrong_stiffness() const noexcept {
@@ -83,6 +102,11 @@ TestStability test_stability(const Scenario& scenario, const VibrationModes& mod
       is_as_given ? scenario.structure : with_specimens(scenario.structure, test.sites, coupled);
   const VibrationModes modes_met = is_as_given ? modes : vibration_modes(structure);
   test.step = step_stability(modes_met);
+  if (scenario.integrator.needs.initial_stiffness) {
+    test.has_modes_beyond_step = scenario.integrator_step_s > std::exchange(test.step.step_s_max, kNoLimit);
+    test.grows =
+        (test.has_modes_beyond_step || !is_as_given) && vibration_grows(scenario, structure, test.sites, coupled);
+  }
   for (std::size_t i = 0; i < test.sites.size(); ++i) {
     test.sites[i].stiffness_share = stiffness_share_by_mode(structure, modes_met, coupled[i]);
     test.sites[i].critical = structure.size() <= kCriticalDelaySizeMax

@@ -28,10 +28,16 @@ struct SiteStability {
 };
 
 struct TestStability {
-  StepStability step;
+  StepStability step;  // of an integrator that needs the initial stiffness: no limit
+  /// The step is longer than 2/omega of the highest mode, which such an integrator slows down: the critical delays are
+  /// those of the structure, not of the test.
+  bool has_modes_beyond_step = false;
+  /// With such modes, or with specimens that differ from the initial stiffness that the integrator needs: stepped
+  /// through a free vibration with the stiffness of the specimens and the delays that remain, the motion grows.
+  bool grows = false;
   std::vector<SiteStability> sites;  // experimental ones, in the order of the scenario
 
-  /// Of the step or of a site.
+  /// Of the step, of the vibration, or of a site.
   [[nodiscard]] bool is_unstable(double step_s) const noexcept;
   /// Of a site: damping and energy error of the test would be wrong.
   [[nodiscard]] bool has_wrong_stiffness() const noexcept;

@@ -18,11 +18,12 @@ void require_stable_step(const VibrationModes& modes, double step_s) {
   const StepStability limit = step_stability(modes);
   if (step_s <= limit.step_s_max) return;
   const double omega = limit.highest_frequency_rad_per_s;
-  char text[512];
+  char text[640];
   std::snprintf(text, sizeof text,
                 "the step of %.6g s is too long for an explicit integrator: the highest mode of the structure has "
                 "%.6g rad/s (%.6g Hz, period %.6g s), so the step must be at most T_n/pi = %.6g s; shorten the step, "
-                "or take the stiff or light part that makes this mode out of the structure",
+                "take an integrator without a limit, such as cr, kr_alpha or alpha_operator_splitting, or take the "
+                "stiff or light part that makes this mode out of the structure",
                 step_s, omega, omega / (2.0 * std::numbers::pi), 2.0 * std::numbers::pi / omega, limit.step_s_max);
   throw ConfigError{text};
 }

@@ -18,7 +18,6 @@
 #include "recording/run_file_reader.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/run_directory.hpp"
-#include "scenario/catalogue/integrators.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/scenario_digest.hpp"
 
@@ -89,10 +88,38 @@ Eigen::MatrixXd at_interface(const RunFileReader& coordinator, const Scenario& s
   return at_interface;
 }
 
+std::function<std::vector<double>(const std::string&)> steps_of(const RunFileReader& coordinator) {
+  return [&coordinator](const std::string& name) { return coordinator.column("steps", name); };
+}
+
+/// What the integrator commanded, one column per step.
+struct CommandedMotion {
+  Eigen::MatrixXd displacement_m;
+  Eigen::MatrixXd velocity_m_per_s;
+};
+
+/// Steps the integrator through the recorded forces again: a command that it corrects afterwards is not recorded.
+CommandedMotion commanded_motion(const Scenario& ran, const TestResponse& response) {
+  const auto integrator = ran.make_integrator();
+  CommandedMotion commanded{response.displacement_m, response.velocity_m_per_s};
+  for (Eigen::Index i = 0; i < response.steps(); ++i) {
+    commanded.displacement_m.col(i) = integrator->current().displacement_m;
+    commanded.velocity_m_per_s.col(i) = integrator->current().velocity_m_per_s;
+    integrator->advance(response.restoring_force_n.col(i), response.applied_force_n.col(i));
+  }
+  return commanded;
+}
+
 /// One motion per interface degree of freedom.
 std::vector<SentMotion> sent_motions(const RunFileReader& coordinator, const Scenario& scenario,
                                      const InterfaceMap& interface) {
-  const Eigen::MatrixXd displacement_m = at_interface(coordinator, scenario, interface, "displacement_", "_m");
+  const bool records_all_dofs = scenario.recorded_dofs.size() == scenario.dofs.size();
+  const Eigen::MatrixXd displacement_m =
+      scenario.integrator.needs.corrects_displacement && records_all_dofs
+          ? Eigen::MatrixXd{interface.matrix() *
+                            commanded_motion(scenario, response_of_steps(scenario, steps_of(coordinator)))
+                                .displacement_m}
+          : at_interface(coordinator, scenario, interface, "displacement_", "_m");
   const Eigen::MatrixXd velocity_m_per_s = at_interface(coordinator, scenario, interface, "velocity_", "_m_per_s");
   std::vector<SentMotion> sent(static_cast<std::size_t>(interface.size()));
   for (Eigen::Index k = 0; k < interface.size(); ++k) {
@@ -229,7 +256,7 @@ Recording read_recording(const std::filesystem::path& path, RecordingRole role, 
 
 TestResponse recorded_response(const std::filesystem::path& run, const Scenario& scenario) {
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
-  return response_of_steps(scenario, [&](const std::string& name) { return coordinator.column("steps", name); });
+  return response_of_steps(scenario, steps_of(coordinator));
 }
 
 TestResponse response_of_steps(const Scenario& scenario,
@@ -269,20 +296,6 @@ void require_same_test(const Scenario& scenario, const Scenario& ran) {
   if (!same) throw ConfigError{what + "the substructures or their interfaces differ; expected the same"};
 }
 
-/// Velocity sent with a command: that of the step before plus its acceleration times the step. One column per step.
-Eigen::MatrixXd commanded_velocity_m_per_s(const RunFileReader& coordinator, const Scenario& scenario,
-                                           const TestResponse& response, double step_s) {
-  Eigen::MatrixXd velocity = Eigen::MatrixXd::Zero(response.displacement_m.rows(), response.steps());
-  for (Eigen::Index dof = 0; dof < velocity.rows(); ++dof) {
-    const std::vector<double> acceleration =
-        coordinator.column("steps", "acceleration_" + scenario.dofs[static_cast<std::size_t>(dof)] + "_m_per_s2");
-    for (Eigen::Index i = 1; i < velocity.cols(); ++i) {
-      velocity(dof, i) = response.velocity_m_per_s(dof, i - 1) + step_s * acceleration[static_cast<std::size_t>(i - 1)];
-    }
-  }
-  return velocity;
-}
-
 /// The forces of a numerical substructure, one column per step; nothing if a step is missing.
 std::optional<Eigen::MatrixXd> recorded_forces(const RunFileReader& file, const SubstructureScenario& substructure,
                                                Eigen::Index steps) {
@@ -309,7 +322,7 @@ void add_elastic_forces(const LinearStructure& structure, const Eigen::MatrixXd&
 /// Forces of the elastic part and of the numerical substructures, recorded and modelled; omitted if one substructure
 /// has no recording. @param ran   the scenario of the run; the recorded force of the elastic part follows from it.
 void add_numerical_forces(const std::filesystem::path& run, const Scenario& scenario, const Scenario& ran,
-                          const Eigen::MatrixXd& velocity, StructureRecord& record) {
+                          const CommandedMotion& commanded, StructureRecord& record) {
   StructureRecording& recording = record.recording;
   Eigen::MatrixXd recorded_n = Eigen::MatrixXd::Zero(recording.displacement_m.rows(), recording.steps());
   Eigen::MatrixXd modelled_n = recorded_n;
@@ -331,16 +344,16 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
     InterfaceVector velocity_m_per_s;
     InterfaceVector force_n = InterfaceVector::Zero(interface.size());
     for (Eigen::Index i = 0; i < recording.steps(); ++i) {
-      interface.to_interface(recording.displacement_m.col(i), displacement_m);
-      interface.to_interface(velocity.col(i), velocity_m_per_s);
+      interface.to_interface(commanded.displacement_m.col(i), displacement_m);
+      interface.to_interface(commanded.velocity_m_per_s.col(i), velocity_m_per_s);
       model->trial(displacement_m, velocity_m_per_s, force_n);
       model->commit();
       interface.add_to_structure(force_n, modelled_n.col(i));
       interface.add_to_structure(forces_n->col(i), recorded_n.col(i));
     }
   }
-  add_elastic_forces(ran.structure, recording.displacement_m, recorded_n);
-  add_elastic_forces(scenario.structure, recording.displacement_m, modelled_n);
+  add_elastic_forces(ran.structure, commanded.displacement_m, recorded_n);
+  add_elastic_forces(scenario.structure, commanded.displacement_m, modelled_n);
   recording.numerical_force_n = std::move(recorded_n);
   recording.modelled_numerical_force_n = std::move(modelled_n);
 }
@@ -348,9 +361,9 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
 /// Adds notes on differences of the configuration for which there is no effect.
 void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen::RowVectorXd& ground_m_per_s2,
                       std::vector<std::string>& notes) {
-  if (scenario.integrator_type != ran.integrator_type) {
+  if (scenario.integrator.text != ran.integrator.text) {
     notes.push_back(fmt::format("The integrator of the scenario is {}, that of the recorded test is {}.",
-                                scenario.integrator_type, ran.integrator_type));
+                                scenario.integrator.text, ran.integrator.text));
   }
   if (scenario.time.step_s != ran.time.step_s) {
     notes.push_back(fmt::format("The step of the scenario is {} s, that of the recorded test is {} s.",
@@ -386,8 +399,8 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   StructureRecord record;
   record.model.structure = scenario.structure;
   record.model.step_s = scenario.integrator_step_s;
-  record.model.make_integrator = [type = scenario.integrator_type](const LinearStructure& structure, double step_s) {
-    return make_integrator(type, structure, step_s);
+  record.model.make_integrator = [make = scenario.integrator.make](const LinearStructure& structure, double step_s) {
+    return make(structure, step_s, {});
   };
   const std::vector<double> ground = coordinator.column("steps", "ground_acceleration_m_per_s2");
   record.recording.step_s = ran.time.step_s;
@@ -395,8 +408,7 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   record.recording.displacement_m = response.displacement_m;
   record.recording.restoring_force_n = response.restoring_force_n;
   note_differences(scenario, ran, record.recording.ground_m_per_s2, record.notes);
-  add_numerical_forces(run, scenario, ran,
-                       commanded_velocity_m_per_s(coordinator, ran, response, ran.integrator_step_s), record);
+  add_numerical_forces(run, scenario, ran, commanded_motion(ran, response), record);
   return record;
 }
 

@@ -29,7 +29,6 @@ Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const 
   Eigen::VectorXd force_n;
   Eigen::VectorXd applied_n;
   for (Eigen::Index i = 0; i < recording.steps(); ++i) {
-    displacement_m.col(i) = integrator->current().displacement_m;
     force_n = recording.restoring_force_n.col(i);
     // If model and recording agree, this adds exactly zero.
     if (recording.has_numerical_forces()) {
@@ -38,6 +37,7 @@ Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const 
     }
     applied_n = load_kg * recording.ground_m_per_s2[i];
     integrator->advance(force_n, applied_n);
+    displacement_m.col(i) = integrator->completed().displacement_m;
   }
   return displacement_m;
 }

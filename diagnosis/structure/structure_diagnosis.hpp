@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "coordinator/integrator.hpp"
+#include "coordinator/integrators/integrator.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 #include "plant/effects/effect_type.hpp"

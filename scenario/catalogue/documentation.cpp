@@ -1,6 +1,7 @@
 #include "scenario/catalogue/documentation.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "compensation/transfer_system_model.hpp"
 #include "core/config_error.hpp"
@@ -10,6 +11,7 @@
 #include "scenario/catalogue/compensators.hpp"
 #include "scenario/catalogue/delay_estimators.hpp"
 #include "scenario/catalogue/force_compensators.hpp"
+#include "scenario/catalogue/integrators.hpp"
 #include "scenario/catalogue/laws.hpp"
 #include "scenario/catalogue/parameter_table.hpp"
 #include "scenario/catalogue/transfer_systems.hpp"
@@ -72,7 +74,8 @@ std::string effects_markdown() {
 std::vector<GeneratedPart> generated_parts() {
   ParameterTable plant;
   TransferSystemModel{}.serialize(plant);
-  return {{"laws", table_of(laws())},
+  return {{"integrators", table_of(integrators())},
+          {"laws", table_of(laws())},
           {"transfer systems", table_of(transfer_systems())},
           {"effects", effects_markdown()},
           {"compensators", table_of(compensators())},
@@ -81,16 +84,18 @@ std::vector<GeneratedPart> generated_parts() {
           {"estimators", table_of(delay_estimators())}};
 }
 
+std::string with_generated_part(std::string page, const GeneratedPart& part) {
+  const std::string begin = "<!-- generated: " + part.name + " -->\n";
+  const std::string end = "<!-- end of " + part.name + " -->";
+  const std::size_t first = page.find(begin);
+  const std::size_t last = first == std::string::npos ? first : page.find(end, first);
+  if (last == std::string::npos) throw ConfigError{"the page has no place for the generated part " + part.name};
+  const std::size_t from = first + begin.size();
+  return page.replace(from, last - from, "\n" + part.text.substr(part.text.starts_with('\n') ? 1 : 0) + "\n");
+}
+
 std::string with_generated_parts(std::string page) {
-  for (const GeneratedPart& part : generated_parts()) {
-    const std::string begin = "<!-- generated: " + part.name + " -->\n";
-    const std::string end = "<!-- end of " + part.name + " -->";
-    const std::size_t first = page.find(begin);
-    const std::size_t last = first == std::string::npos ? first : page.find(end, first);
-    if (last == std::string::npos) throw ConfigError{"the page has no place for the generated part " + part.name};
-    const std::size_t from = first + begin.size();
-    page.replace(from, last - from, "\n" + part.text.substr(part.text.starts_with('\n') ? 1 : 0) + "\n");
-  }
+  for (const GeneratedPart& part : generated_parts()) page = with_generated_part(std::move(page), part);
   return page;
 }
 

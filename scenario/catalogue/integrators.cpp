@@ -1,22 +1,67 @@
 #include "scenario/catalogue/integrators.hpp"
 
-#include <vector>
-
-#include "coordinator/central_difference.hpp"
-#include "coordinator/explicit_newmark.hpp"
+#include "coordinator/integrators/alpha_operator_splitting.hpp"
+#include "coordinator/integrators/central_difference.hpp"
+#include "coordinator/integrators/explicit_newmark.hpp"
+#include "coordinator/integrators/kr_alpha.hpp"
+#include "coordinator/integrators/rosenbrock_w.hpp"
 
 namespace hybridtest {
+namespace {
 
-std::string read_integrator_type(config::Section section) {
-  const std::vector<std::string> names{"central_difference", "explicit_newmark"};
-  std::string type = names[section.choice("type", names)];
-  section.finish();
-  return type;
+using config::Section;
+
+template <class Method>
+PartType<IntegratorReading> plain(const std::string& type, const std::string& source) {
+  const IntegratorReading reading{type, type, source, Method::kNeeds,
+                                  [](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
+                                    return std::make_unique<Method>(structure, step_s, initial);
+                                  }};
+  return {type, [reading](Section&) { return reading; }};
 }
 
-std::unique_ptr<Integrator> make_integrator(std::string_view type, const LinearStructure& structure, double step_s) {
-  if (type == "explicit_newmark") return std::make_unique<ExplicitNewmark>(structure, step_s);
-  return std::make_unique<CentralDifference>(structure, step_s);
+template <class Method>
+IntegratorReading reading_with(const std::string& type, const std::string& source,
+                               typename Method::Parameters parameters) {
+  ParameterTable table;
+  parameters.serialize(table);
+  std::string text = type;
+  for (const ParameterTable::Row& row : table.rows()) text += " with " + row.key + " " + row.fallback;
+  return {type, text, source, Method::kNeeds,
+          [parameters](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
+            return std::make_unique<Method>(parameters, structure, step_s, initial);
+          }};
 }
+
+template <class Method>
+PartType<IntegratorReading> with_parameters(const std::string& type, const std::string& source) {
+  return {
+      type,
+      [type, source](Section& section) { return reading_with<Method>(type, source, read_parameters<Method>(section)); },
+      describe<Method>};
+}
+
+/// CR is KR-alpha without numerical damping.
+PartType<IntegratorReading> cr() {
+  IntegratorReading reading = reading_with<KrAlpha>("cr", "Chen and Ricles, 2008", {.rho_inf = 1.0});
+  reading.text = reading.type;
+  return {reading.type, [reading](Section&) { return reading; }};
+}
+
+}  // namespace
+
+const std::vector<PartType<IntegratorReading>>& integrators() {
+  static const std::vector<PartType<IntegratorReading>> table{
+      plain<CentralDifference>("central_difference", "Newmark, 1959, as differences"),
+      plain<ExplicitNewmark>("explicit_newmark", "Newmark, 1959, with beta = 0"),
+      cr(),
+      with_parameters<KrAlpha>("kr_alpha", "Kolay and Ricles, 2014"),
+      with_parameters<AlphaOperatorSplitting>("alpha_operator_splitting", "Combescure and Pegon, 1997"),
+      plain<RosenbrockW>("rosenbrock_w", "Bursi, Gonzalez-Buelga, Vulcan, Neild and Wagg, 2008"),
+  };
+  return table;
+}
+
+IntegratorReading read_integrator(Section section) { return read_type(section, integrators()); }
 
 }  // namespace hybridtest

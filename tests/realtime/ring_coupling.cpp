@@ -7,7 +7,7 @@
 #include "compensation/no_compensation.hpp"
 #include "compensation/no_force_compensation.hpp"
 #include "compensation/polynomial_displacement.hpp"
-#include "coordinator/central_difference.hpp"
+#include "coordinator/integrators/central_difference.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "numerical_substructure/springs.hpp"
 #include "plant/specimens/law_specimen.hpp"

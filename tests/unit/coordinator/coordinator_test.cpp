@@ -30,12 +30,14 @@ class CountingIntegrator final : public Integrator {
   void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override {
     completed_ = current_;
+    completed_.displacement_m.array() += correction_m;
     completed_.velocity_m_per_s = restoring_force_n;
     completed_.acceleration_m_per_s2 = applied_force_n;
     current_.displacement_m.array() += 0.001;
     if (++advances == diverges_after) current_.displacement_m[0] = std::numeric_limits<double>::infinity();
   }
 
+  double correction_m = 0.0;  // of the displacement once the force is known
   int advances = 0;
   int diverges_after = -1;
 
@@ -320,6 +322,26 @@ TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {
     EXPECT_EQ(point.velocity_m_per_s[0], i > 0 ? 30.0 : 0.0);
   }
   EXPECT_EQ(commands[0].point_count, 1);
+}
+
+TEST_F(CoordinatorTest, CorrectionIsRecordedAndNotCommanded) {
+  make();
+  integrator_->correction_m = 0.0004;
+  start();
+  for (Step step = 0; step < 5; ++step) {
+    answer(0, step, 10.0);
+    answer(1, step, 20.0);
+    advance(milliseconds{1});
+  }
+  const auto commands = take_commands();
+  ASSERT_EQ(commands.size(), 12U);
+  for (const DisplacementCommand& command : commands) {
+    for (int i = 0; i < command.point_count; ++i) {
+      const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
+      EXPECT_DOUBLE_EQ(point.displacement_m[0], 0.001 * static_cast<double>(point.step));
+    }
+  }
+  EXPECT_DOUBLE_EQ(steps_.at(3, steps_.column("displacement_floor_m")), 0.0034);
 }
 
 TEST_F(CoordinatorTest, RepeatsCommandToSilentSubstructures) {

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "coordinator/central_difference.hpp"
+#include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/preflight/loop_transfer.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "tests/support/structures.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "coordinator/central_difference.hpp"
+#include "coordinator/integrators/central_difference.hpp"
 
 namespace hybridtest {
 namespace {

@@ -125,6 +125,28 @@ TEST_F(TestStabilityTest, StepIsJudgedBySpecimen) {
   EXPECT_TRUE(stability.is_unstable(0.001));
 }
 
+TEST_F(TestStabilityTest, DelayCountsBesideModesBeyondTheStep) {
+  const std::vector<std::string> fast{"integrator={type: cr}",
+                                      "substructures[storey_2].model.stiffness_n_per_m=1.0e11"};
+  const TestStability compensated = stability_of(read(fast));
+  EXPECT_TRUE(compensated.has_modes_beyond_step);
+  EXPECT_FALSE(compensated.is_unstable(0.001));
+  const TestStability late = stability_of(read({fast[0], fast[1], kNoCompensator}));
+  EXPECT_TRUE(late.grows);
+  EXPECT_TRUE(late.is_unstable(0.001));
+  EXPECT_FALSE(stability_of(read({fast[0]})).has_modes_beyond_step);
+}
+
+TEST_F(TestStabilityTest, StifferSpecimenIsTriedWithTheIntegrator) {
+  // omega dt of the excess: 0.014 with 4 MN/m beside 2 MN/m, 4.5 with 4e11 N/m.
+  EXPECT_FALSE(
+      stability_of(read({"integrator={type: cr}", "substructures[storey_1].initial_stiffness_n_per_m=[[3e6]]"})).grows);
+  EXPECT_TRUE(
+      stability_of(read({"integrator={type: cr}", "substructures[storey_1].rig.specimen.stiffness_n_per_m=4.0e11",
+                         "substructures[storey_1].rig.specimen.yield_force_n=4.0e12"}))
+          .grows);
+}
+
 TEST_F(TestStabilityTest, InitialStiffnessMustNotBeNegative) {
   EXPECT_THAT(stiffness_errors("[[-2.0e6]]"), Contains(HasSubstr("initial_stiffness_n_per_m: is negative")));
   EXPECT_THAT(stiffness_errors("[[4.0e6]]"), IsEmpty());

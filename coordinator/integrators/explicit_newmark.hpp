@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "coordinator/integrator.hpp"
+#include "coordinator/integrators/integrator.hpp"
 #include "mechanics/structure/factorised_matrix.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 
@@ -24,6 +24,8 @@ namespace hybridtest {
 /// along the parabola that also gives its displacement: a is a_i kept, v is v_i + dt a_i.
 class ExplicitNewmark final : public Integrator {
  public:
+  static constexpr IntegratorNeeds kNeeds{};
+
   /// @throws ConfigError as require_consistent(); for a step that is not positive; for an initial
   ///         motion that does not fit; when M + dt/2 C is singular.
   ExplicitNewmark(const LinearStructure& structure, double step_s, const InitialMotion& initial = {});

@@ -1,24 +1,13 @@
-#include "coordinator/explicit_newmark.hpp"
+#include "coordinator/integrators/explicit_newmark.hpp"
 
 #include "core/assert.hpp"
 
 namespace hybridtest {
-namespace {
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
-
-SparseMatrix effective_mass(const LinearStructure& structure, double step_s) {
-  SparseMatrix result = structure.mass_kg + structure.damping_n_s_per_m * (0.5 * step_s);
-  result.makeCompressed();
-  return result;
-}
-
-}  // namespace
 
 ExplicitNewmark::ExplicitNewmark(const LinearStructure& structure, double step_s, const InitialMotion& initial)
     : step_s_{step_s},
       mass_{require_integrable(structure, step_s).mass_kg, "mass"},
-      effective_mass_{effective_mass(structure, step_s), "effective mass (M + dt/2 C)"},
+      effective_mass_{weighted_sum(structure, 1.0, 0.5 * step_s, 0.0), "effective mass (M + dt/2 C)"},
       damping_{structure.damping_n_s_per_m},
       acceleration_{Eigen::VectorXd::Zero(structure.size())},
       current_{starting_state(initial, structure.size())},

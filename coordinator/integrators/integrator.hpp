@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "mechanics/structure/linear_structure.hpp"
 
@@ -13,19 +14,31 @@ struct MotionState {
   Eigen::VectorXd acceleration_m_per_s2;
 };
 
-/// Explicit time integration of M a + C v + r(u) = f, one restoring force per step.
+/// What a method needs besides the mass, the damping and the measured forces.
+struct IntegratorNeeds {
+  /// The initial stiffness, in its matrices: the method is then stable with any step as long as no stiffness exceeds
+  /// the initial one. Without it the step is limited by the highest frequency.
+  bool initial_stiffness = false;
+  /// The displacement is corrected once the force is known: that of completed() is not the one commanded.
+  bool corrects_displacement = false;
+  /// Commands, each a step of the test apart, in one step of the method.
+  int commands_per_step = 1;
+};
+
+/// Time integration of M a + C v + r(u) = f, one restoring force per step.
 ///
-/// At step i the integrator knows u_i and waits for r_i. advance(r_i, f_i) completes
-/// step i and moves to step i + 1. Sizes are fixed at construction; advance() allocates nothing.
+/// At step i the integrator commands a displacement and waits for its force r_i. advance(r_i, f_i)
+/// completes step i and moves to step i + 1. Sizes are fixed at construction; advance() allocates nothing.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// The step that waits for its restoring force. The displacement is final; velocity and
+  /// The step that waits for its restoring force. The displacement is the command; velocity and
   /// acceleration are predictions. At step 0 the initial state.
   [[nodiscard]] virtual const MotionState& current() const noexcept = 0;
-  /// The step before, with velocity and acceleration in equilibrium. Not valid before the
-  /// first advance().
+  /// The step before, with velocity and acceleration in equilibrium, M a + C v + r = f. The
+  /// displacement is the one commanded, unless the method corrects it: then r is the measured force
+  /// plus the initial stiffness times the correction. Not valid before the first advance().
   [[nodiscard]] virtual const MotionState& completed() const noexcept = 0;
   /// @param restoring_force_n, applied_force_n   one entry per degree of freedom, of the current step.
   virtual void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
@@ -45,5 +58,9 @@ struct InitialMotion {
 /// Returns the structure, checked, for use in a member initialiser before the factorisations.
 /// @throws ConfigError unless `step_s` is a positive finite number; as require_consistent().
 const LinearStructure& require_integrable(const LinearStructure& structure, double step_s);
+
+/// mass M + damping_s C + stiffness_s2 K_I; a term with the weight zero leaves no entries behind.
+[[nodiscard]] Eigen::SparseMatrix<double> weighted_sum(const LinearStructure& structure, double mass, double damping_s,
+                                                       double stiffness_s2);
 
 }  // namespace hybridtest

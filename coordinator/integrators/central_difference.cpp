@@ -1,4 +1,4 @@
-#include "coordinator/central_difference.hpp"
+#include "coordinator/integrators/central_difference.hpp"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "coordinator/integrator.hpp"
+#include "coordinator/integrators/integrator.hpp"
 
 #include <cmath>
 #include <string>
@@ -32,6 +32,15 @@ const LinearStructure& require_integrable(const LinearStructure& structure, doub
   }
   require_consistent(structure);
   return structure;
+}
+
+Eigen::SparseMatrix<double> weighted_sum(const LinearStructure& structure, double mass, double damping_s,
+                                         double stiffness_s2) {
+  Eigen::SparseMatrix<double> sum = structure.mass_kg * mass;
+  if (damping_s != 0.0) sum += structure.damping_n_s_per_m * damping_s;
+  if (stiffness_s2 != 0.0) sum += structure.initial_stiffness_n_per_m * stiffness_s2;
+  sum.makeCompressed();
+  return sum;
 }
 
 }  // namespace hybridtest

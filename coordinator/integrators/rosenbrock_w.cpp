@@ -1,0 +1,76 @@
+#include "coordinator/integrators/rosenbrock_w.hpp"
+
+#include <numbers>
+
+#include "core/assert.hpp"
+
+namespace hybridtest {
+namespace {
+
+constexpr double kGamma = 1.0 - 0.5 * std::numbers::sqrt2;
+
+}  // namespace
+
+RosenbrockW::RosenbrockW(const LinearStructure& structure, double step_s, const InitialMotion& initial)
+    : step_s_{kNeeds.commands_per_step * step_s},
+      mass_factor_{require_integrable(structure, step_s).mass_kg, "mass"},
+      effective_mass_{weighted_sum(structure, 1.0, kGamma * step_s_, kGamma * step_s_ * kGamma * step_s_),
+                      "effective mass (M, dt C and dt^2 K)"},
+      damping_{structure.damping_n_s_per_m},
+      stiffness_{structure.initial_stiffness_n_per_m},
+      unbalance_n_{Eigen::VectorXd::Zero(structure.size())},
+      displacement_change_{unbalance_n_},
+      velocity_change_{unbalance_n_},
+      shift_{unbalance_n_},
+      current_{starting_state(initial, structure.size())},
+      completed_{current_} {
+  displacement_m_ = current_.displacement_m;
+  velocity_m_per_s_ = current_.velocity_m_per_s;
+}
+
+void RosenbrockW::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
+                          const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept {
+  HYBRIDTEST_ASSERT(restoring_force_n.size() == unbalance_n_.size() && applied_force_n.size() == unbalance_n_.size());
+  unbalance_n_ = applied_force_n - restoring_force_n;
+  unbalance_n_.noalias() -= damping_ * current_.velocity_m_per_s;
+  completed_.displacement_m = current_.displacement_m;
+  completed_.velocity_m_per_s = current_.velocity_m_per_s;
+  completed_.acceleration_m_per_s2 = unbalance_n_;
+  mass_factor_.solve_in_place(completed_.acceleration_m_per_s2);
+  if (is_second_) {
+    second_stage();
+  } else {
+    first_stage();
+  }
+  is_second_ = !is_second_;
+  current_.acceleration_m_per_s2 = completed_.acceleration_m_per_s2;
+}
+
+/// Of [I - g h J] (a, b) = h (v, M^-1 G): a = h v + g h b, [M + g h C + (g h)^2 K_I] b = h (G - g h K_I v).
+void RosenbrockW::first_stage() noexcept {
+  velocity_change_ = unbalance_n_;
+  shift_ = (kGamma * step_s_) * velocity_m_per_s_;
+  velocity_change_.noalias() -= stiffness_ * shift_;
+  velocity_change_ *= step_s_;
+  effective_mass_.solve_in_place(velocity_change_);
+  displacement_change_ = step_s_ * velocity_m_per_s_ + (kGamma * step_s_) * velocity_change_;
+  current_.displacement_m = displacement_m_ + 0.5 * displacement_change_;
+  current_.velocity_m_per_s = velocity_m_per_s_ + 0.5 * velocity_change_;
+}
+
+/// The same with the right-hand side (s, h M^-1 [G_s + g (K_I a_1 + C b_1)]), s = h v_s - g h b_1.
+void RosenbrockW::second_stage() noexcept {
+  shift_ = kGamma * velocity_change_;
+  unbalance_n_.noalias() += damping_ * shift_;
+  shift_ = step_s_ * current_.velocity_m_per_s - (kGamma * step_s_) * velocity_change_;
+  displacement_change_ = kGamma * (displacement_change_ - shift_);
+  unbalance_n_.noalias() += stiffness_ * displacement_change_;
+  velocity_change_ = step_s_ * unbalance_n_;
+  effective_mass_.solve_in_place(velocity_change_);
+  displacement_m_ += shift_ + (kGamma * step_s_) * velocity_change_;
+  velocity_m_per_s_ += velocity_change_;
+  current_.displacement_m = displacement_m_;
+  current_.velocity_m_per_s = velocity_m_per_s_;
+}
+
+}  // namespace hybridtest

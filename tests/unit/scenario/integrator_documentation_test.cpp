@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/config/section.hpp"
+#include "scenario/catalogue/documentation.hpp"
+#include "scenario/catalogue/integrators.hpp"
+#include "tests/support/amplification.hpp"
+
+/// The table of docs/integrators.md: every figure is measured on the integrator.
+namespace hybridtest {
+namespace {
+
+const std::filesystem::path kIntegratorPage = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "docs/integrators.md";
+
+std::string integrator_page() {
+  std::ifstream file{kIntegratorPage, std::ios::binary};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// One row per setting; every type stands there once with the defaults of its parameters at least.
+const std::vector<std::string> kSettings{
+    "type: central_difference",
+    "type: explicit_newmark",
+    "type: cr",
+    "type: kr_alpha, rho_inf: 0.8",
+    "type: kr_alpha, rho_inf: 0.5",
+    "type: kr_alpha, rho_inf: 0",
+    "type: alpha_operator_splitting, alpha: 0",
+    "type: alpha_operator_splitting, alpha: -0.1",
+    "type: alpha_operator_splitting, alpha: -0.3",
+    "type: rosenbrock_w",
+};
+
+IntegratorReading integrator_of(const std::string& setting) {
+  config::Document document = config::Document::parse("integrator: {" + setting + "}", "table");
+  IntegratorReading reading = read_integrator(document.root().section("integrator"));
+  document.throw_if_errors();
+  return reading;
+}
+
+/// Of one mode without damping, at omega times the step of the test.
+class ModeOf {
+ public:
+  ModeOf(const IntegratorReading& integrator, double omega_dt)
+      : omega_h_{omega_dt * integrator.needs.commands_per_step},
+        roots_{test::amplification_roots(integrator.make, integrator.needs.commands_per_step, {.omega_dt = omega_dt})},
+        exponent_{std::log(test::principal_root(roots_))} {}
+
+  [[nodiscard]] double radius() const { return std::abs(roots_[0]); }
+  [[nodiscard]] double error() const { return std::abs(exponent_ - std::complex<double>{0.0, omega_h_}) / omega_h_; }
+  [[nodiscard]] double period_error() const { return omega_h_ / exponent_.imag() - 1.0; }
+  [[nodiscard]] double damping_ratio() const { return -exponent_.real() / std::abs(exponent_); }
+
+ private:
+  double omega_h_;
+  Eigen::VectorXcd roots_;
+  std::complex<double> exponent_;
+};
+
+/// A percentage whose rounding has no sign.
+std::string percent(double share, int digits) {
+  const double value = 100.0 * share;
+  return fmt::format("{:.{}f}", std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0.0 : value, digits);
+}
+
+constexpr double kStable = 1.0 + 1e-6;
+
+std::string stable_up_to(const IntegratorReading& integrator) {
+  if (ModeOf{integrator, 300.0}.radius() < kStable) return "any";
+  double stable = 0.1;
+  double unstable = 300.0;
+  while (unstable - stable > 1e-4) {
+    const double middle = 0.5 * (stable + unstable);
+    (ModeOf{integrator, middle}.radius() < kStable ? stable : unstable) = middle;
+  }
+  return fmt::format("{:.2f}", stable);
+}
+
+double order(const IntegratorReading& integrator) {
+  return std::log2(ModeOf{integrator, 0.1}.error() / ModeOf{integrator, 0.05}.error());
+}
+
+/// Of a nearly infinitely fast mode. A predictor grows with the square of omega dt, and so does the rounding.
+double fast_mode_radius(const IntegratorReading& integrator) {
+  return ModeOf{integrator, integrator.needs.corrects_displacement ? 300.0 : 1e4}.radius();
+}
+
+std::string row(const std::string& setting) {
+  const IntegratorReading integrator = integrator_of(setting);
+  const std::string limit = stable_up_to(integrator);
+  const bool is_limited = limit != "any";
+  std::string text = fmt::format("| `{}` | {:.1f} | {} | {} |", setting.substr(6), order(integrator), limit,
+                                 is_limited ? "—" : fmt::format("{:.2f}", fast_mode_radius(integrator)));
+  for (const double omega_dt : {0.1, 1.0}) {
+    const ModeOf mode{integrator, omega_dt};
+    text += fmt::format(" {} | {} |", percent(mode.damping_ratio(), 3), percent(mode.period_error(), 2));
+  }
+  return text + fmt::format(" {} | {} | {} |\n", integrator.needs.commands_per_step,
+                            integrator.needs.initial_stiffness ? "initial stiffness" : "", integrator.source);
+}
+
+std::string integrator_rows() {
+  std::string text =
+      "| integrator | order | stable up to ω Δt | ρ∞ | damping at 0.1, % | period at 0.1, % | damping at 1, % | "
+      "period at 1, % | commands per step | needs | source |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const std::string& setting : kSettings) text += row(setting);
+  return text;
+}
+
+TEST(IntegratorDocumentation, HasTheMeasuredTable) {
+  const std::string expected = with_generated_part(integrator_page(), {"integrators", integrator_rows()});
+  if (std::getenv("HYBRIDTEST_WRITE_DOCS") != nullptr) std::ofstream{kIntegratorPage, std::ios::binary} << expected;
+  EXPECT_TRUE(integrator_page() == expected)
+      << "docs/integrators.md is not up to date; run this test with HYBRIDTEST_WRITE_DOCS=1 to write its table";
+}
+
+TEST(IntegratorDocumentation, HasEveryIntegrator) {
+  for (const PartType<IntegratorReading>& type : integrators()) {
+    EXPECT_THAT(kSettings, testing::Contains(testing::StartsWith("type: " + type.name)));
+  }
+}
+
+TEST(IntegratorDocumentation, EveryIntegratorIsOfSecondOrder) {
+  for (const std::string& setting : kSettings) EXPECT_NEAR(order(integrator_of(setting)), 2.0, 0.1) << setting;
+}
+
+TEST(IntegratorDocumentation, PeriodErrorsAreThoseOfTheTextbooks) {
+  // (omega dt)^2/12 for average acceleration, -(omega dt)^2/24 for central differences (Bathe; Chopra).
+  EXPECT_NEAR(ModeOf(integrator_of("type: cr"), 0.1).period_error(), 0.01 / 12.0, 1e-5);
+  EXPECT_NEAR(ModeOf(integrator_of("type: central_difference"), 0.1).period_error(), -0.01 / 24.0, 1e-5);
+}
+
+}  // namespace
+}  // namespace hybridtest
