@@ -43,7 +43,9 @@ class AlphaOperatorSplitting final : public Integrator {
                         "-1/3 to 0"});
     }
   };
-  static constexpr IntegratorNeeds kNeeds{.initial_stiffness = true, .corrects_displacement = true};
+  [[nodiscard]] static IntegratorNeeds needs(const Parameters& /*parameters*/) noexcept {
+    return {.initial_stiffness = true, .corrects_displacement = true};
+  }
 
   /// @throws ConfigError as require_consistent(); for a parameter out of range; for a step that is not positive; for an
   ///         initial motion that does not fit; when M + (1 + alpha) (gamma dt C + beta dt^2 K_I) is singular.

@@ -5,26 +5,14 @@
 
 namespace hybridtest {
 
-KrAlpha::Weights::Weights(double rho_inf) noexcept
-    : alpha_m{(2.0 * rho_inf - 1.0) / (1.0 + rho_inf)},
-      alpha_f{rho_inf / (1.0 + rho_inf)},
-      gamma{0.5 - alpha_m + alpha_f},
-      beta{0.25 * (0.5 + gamma) * (0.5 + gamma)} {}
-
 KrAlpha::KrAlpha(const Parameters& parameters, const LinearStructure& structure, double step_s,
                  const InitialMotion& initial)
-    : KrAlpha{Weights{checked(parameters).rho_inf}, require_integrable(structure, step_s), step_s, initial} {}
-
-KrAlpha::KrAlpha(const Weights& weights, const LinearStructure& structure, double step_s, const InitialMotion& initial)
-    : weights_{weights},
+    : weights_{checked(parameters).rho_inf},
       step_s_{step_s},
-      mass_{structure.mass_kg},
+      mass_{require_integrable(structure, step_s).mass_kg},
       mass_factor_{structure.mass_kg, "mass"},
-      effective_mass_{weighted_sum(structure, 1.0 - weights.alpha_m, (1.0 - weights.alpha_f) * weights.gamma * step_s,
-                                   (1.0 - weights.alpha_f) * weights.beta * step_s * step_s),
-                      "effective mass (M, dt C and dt^2 K)"},
-      old_weight_{weighted_sum(structure, weights.alpha_m, weights.alpha_f * weights.gamma * step_s,
-                               weights.alpha_f * weights.beta * step_s * step_s)},
+      effective_mass_{weights_.end_matrix(structure, step_s), "effective mass (M, dt C and dt^2 K)"},
+      old_weight_{weights_.begin_matrix(structure, step_s)},
       damping_{structure.damping_n_s_per_m},
       unbalance_n_{Eigen::VectorXd::Zero(structure.size())},
       memory_n_{unbalance_n_},
@@ -32,7 +20,7 @@ KrAlpha::KrAlpha(const Weights& weights, const LinearStructure& structure, doubl
       current_{starting_state(initial, structure.size())},
       completed_{current_} {
   late_velocity_m_per_s_ = current_.velocity_m_per_s;
-  start_force_n_ = weights.gamma * step_s * (structure.initial_stiffness_n_per_m * current_.velocity_m_per_s);
+  start_force_n_ = weights_.gamma * step_s * (structure.initial_stiffness_n_per_m * current_.velocity_m_per_s);
 }
 
 void KrAlpha::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,

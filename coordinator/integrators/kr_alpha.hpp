@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "coordinator/integrators/alpha_weights.hpp"
 #include "coordinator/integrators/integrator.hpp"
 #include "core/parameters/parameter_archive.hpp"
 #include "mechanics/structure/factorised_matrix.hpp"
@@ -16,11 +17,9 @@ namespace hybridtest {
 ///
 ///   V_{i+1} = V_i + dt alpha_1 a_i,   u_{i+1} = u_i + dt V_i + (1/2 + gamma) dt^2 alpha_1 a_i,
 ///   M [(1 - alpha_3) a_{i+1} + alpha_3 a_i] = (1 - alpha_f) g_{i+1} + alpha_f g_i,   g_i = f_i - r_i - C V_i,
-///   alpha_1 = A^-1 M,   alpha_3 = A^-1 (alpha_m M + alpha_f P),   A = M + P,   P = gamma dt C + beta dt^2 K_I,
-///   alpha_m = (2 rho - 1)/(1 + rho),   alpha_f = rho/(1 + rho),   gamma = 1/2 - alpha_m + alpha_f,
-///   beta = (1/2 + gamma)^2/4.
+///   alpha_1 = A^-1 M,   alpha_3 = A^-1 (alpha_m M + alpha_f P),   A = M + P,   P = gamma dt C + beta dt^2 K_I.
 ///
-/// M^-1 A and M^-1 P commute, so w_i = alpha_1 a_i needs one sparse solve and no dense product:
+/// Weights: AlphaWeights. M^-1 A and M^-1 P commute, so w_i = alpha_1 a_i needs one sparse solve and no dense product:
 ///
 ///   [(1 - alpha_m) M + (1 - alpha_f) P] w_{i+1} = (1 - alpha_f) g_{i+1} + alpha_f g_i - [alpha_m M + alpha_f P] w_i.
 ///
@@ -44,7 +43,9 @@ class KrAlpha final : public Integrator {
           {kZeroToOne, "spectral radius of infinitely fast modes: 1 damps none, 0 removes them in a step"});
     }
   };
-  static constexpr IntegratorNeeds kNeeds{.initial_stiffness = true};
+  [[nodiscard]] static IntegratorNeeds needs(const Parameters& /*parameters*/) noexcept {
+    return {.initial_stiffness = true};
+  }
 
   /// @throws ConfigError as require_consistent(); for a parameter out of range; for a step that is not positive; for an
   ///         initial motion that does not fit; when (1 - alpha_m) M + (1 - alpha_f) P is singular.
@@ -57,18 +58,10 @@ class KrAlpha final : public Integrator {
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override;
 
  private:
-  struct Weights {
-    explicit Weights(double rho_inf) noexcept;
-    double alpha_m;
-    double alpha_f;
-    double gamma;
-    double beta;
-  };
-  KrAlpha(const Weights& weights, const LinearStructure& structure, double step_s, const InitialMotion& initial);
   void start() noexcept;
   void take_step() noexcept;
 
-  Weights weights_;
+  AlphaWeights weights_;
   double step_s_;
   Eigen::SparseMatrix<double> mass_;
   FactorisedMatrix mass_factor_;

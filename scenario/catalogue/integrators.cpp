@@ -3,6 +3,7 @@
 #include "coordinator/integrators/alpha_operator_splitting.hpp"
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
+#include "coordinator/integrators/generalised_alpha.hpp"
 #include "coordinator/integrators/kr_alpha.hpp"
 #include "coordinator/integrators/rosenbrock_w.hpp"
 
@@ -26,8 +27,9 @@ IntegratorReading reading_with(const std::string& type, const std::string& sourc
   ParameterTable table;
   parameters.serialize(table);
   std::string text = type;
-  for (const ParameterTable::Row& row : table.rows()) text += " with " + row.key + " " + row.fallback;
-  return {type, text, source, Method::kNeeds,
+  for (const ParameterTable::Row& row : table.rows())
+    text += (text == type ? " with " : ", ") + row.key + " " + row.fallback;
+  return {type, text, source, Method::needs(parameters),
           [parameters](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
             return std::make_unique<Method>(parameters, structure, step_s, initial);
           }};
@@ -57,6 +59,7 @@ const std::vector<PartType<IntegratorReading>>& integrators() {
       cr(),
       with_parameters<KrAlpha>("kr_alpha", "Kolay and Ricles, 2014"),
       with_parameters<AlphaOperatorSplitting>("alpha_operator_splitting", "Combescure and Pegon, 1997"),
+      with_parameters<GeneralisedAlpha>("generalised_alpha", "Schellenberg, Mahin and Fenves, 2009"),
       plain<RosenbrockW>("rosenbrock_w", "Bursi, Gonzalez-Buelga, Vulcan, Neild and Wagg, 2008"),
   };
   return table;

@@ -183,7 +183,8 @@ TEST_F(DiagnosisLoop, RunsWithTwoCompensatorsNeedOneInTheModel) {
 }
 
 TEST_F(DiagnosisLoop, RecomputedCommandsAreBitIdentical) {
-  for (const std::string integrator : {"central_difference", "kr_alpha", "alpha_operator_splitting", "rosenbrock_w"}) {
+  for (const std::string integrator :
+       {"central_difference", "kr_alpha", "alpha_operator_splitting", "generalised_alpha", "rosenbrock_w"}) {
     simulate(integrator, {in_rig(kModel + kNoise), "integrator={type: " + integrator + "}"});
     const Scenario scenario = read_scenario(directory_ / integrator / "scenario.yaml", {});
     const StructureRecord record = structure_record(directory_ / integrator, scenario);

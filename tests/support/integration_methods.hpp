@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <ostream>
@@ -9,6 +10,7 @@
 #include "coordinator/integrators/alpha_operator_splitting.hpp"
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
+#include "coordinator/integrators/generalised_alpha.hpp"
 #include "coordinator/integrators/kr_alpha.hpp"
 #include "coordinator/integrators/rosenbrock_w.hpp"
 
@@ -34,7 +36,7 @@ IntegrationMethod method(const std::string& name) {
 
 template <typename Method>
 IntegrationMethod method(const std::string& name, const typename Method::Parameters& parameters) {
-  return {name, Method::kNeeds,
+  return {name, Method::needs(parameters),
           [parameters](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
             return std::make_unique<Method>(parameters, structure, step_s, initial);
           }};
@@ -47,6 +49,11 @@ inline IntegrationMethod kr_alpha(double rho_inf) {
 inline IntegrationMethod operator_splitting(double alpha) {
   return method<AlphaOperatorSplitting>("operator_splitting_" + std::to_string(std::lround(-100.0 * alpha)),
                                         {.alpha = alpha});
+}
+inline IntegrationMethod generalised_alpha(double rho_inf, int iterations) {
+  return method<GeneralisedAlpha>(
+      "generalised_alpha_" + std::to_string(std::lround(100.0 * rho_inf)) + "_" + std::to_string(iterations),
+      {.rho_inf = rho_inf, .iterations = iterations});
 }
 inline IntegrationMethod rosenbrock_w() { return method<RosenbrockW>("rosenbrock_w"); }
 
@@ -61,6 +68,8 @@ inline std::vector<IntegrationMethod> methods_with_initial_stiffness() {
           operator_splitting(0.0),
           operator_splitting(-0.1),
           operator_splitting(-1.0 / 3.0),
+          generalised_alpha(0.8, 2),
+          generalised_alpha(0.5, 3),
           rosenbrock_w()};
 }
 inline std::vector<IntegrationMethod> all_methods() {

@@ -123,6 +123,7 @@ const Column kBilinear{40.0e3, 0.05};
 /// commands in a step several times as much.
 double largest_share(const test::IntegrationMethod& method) {
   if (!method.needs.initial_stiffness) return 0.0002;
+  if (method.needs.commands_per_step > 2) return 0.02;
   return method.needs.commands_per_step > 1 || method.name == "kr_alpha_0" ? 0.004 : 0.001;
 }
 

@@ -1,0 +1,105 @@
+#include "coordinator/integrators/generalised_alpha.hpp"
+
+#include "core/assert.hpp"
+#include "core/parameters/parameter_checker.hpp"
+
+namespace hybridtest {
+
+GeneralisedAlpha::GeneralisedAlpha(const Parameters& parameters, const LinearStructure& structure, double step_s,
+                                   const InitialMotion& initial)
+    : weights_{checked(parameters).rho_inf},
+      iterations_{parameters.iterations},
+      step_s_{iterations_ * step_s},
+      mass_factor_{require_integrable(structure, step_s).mass_kg, "mass"},
+      effective_mass_{weights_.end_matrix(structure, step_s_), "effective mass (M, dt C and dt^2 K)"},
+      mass_{structure.mass_kg},
+      damping_{structure.damping_n_s_per_m},
+      stiffness_{structure.initial_stiffness_n_per_m},
+      begin_{starting_state(initial, structure.size())},
+      end_{begin_},
+      balanced_{begin_.acceleration_m_per_s2},
+      displacement_before_m_{balanced_},
+      unbalance_n_{balanced_},
+      buffer_{balanced_},
+      current_{begin_},
+      completed_{begin_} {}
+
+void GeneralisedAlpha::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
+                               const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept {
+  HYBRIDTEST_ASSERT(restoring_force_n.size() == balanced_.size() && applied_force_n.size() == balanced_.size());
+  unbalance_n_ = applied_force_n - restoring_force_n;
+  if (iteration_ == 0) {
+    start();
+  } else {
+    find_end();
+    if (iteration_ < iterations_) {
+      complete(current_.displacement_m, current_.velocity_m_per_s);
+    } else {
+      end_step();
+    }
+  }
+  if (iteration_ == 0) find_end();
+  ++iteration_;
+  place_command();
+}
+
+void GeneralisedAlpha::start() noexcept {
+  complete(current_.displacement_m, current_.velocity_m_per_s);
+  begin_ = completed_;
+  balanced_ = begin_.acceleration_m_per_s2;
+  displacement_before_m_ =
+      begin_.displacement_m - step_s_ * begin_.velocity_m_per_s + (0.5 * step_s_ * step_s_) * balanced_;
+}
+
+/// With the acceleration that the newest force leaves.
+void GeneralisedAlpha::complete(const Eigen::VectorXd& displacement_m,
+                                const Eigen::VectorXd& velocity_m_per_s) noexcept {
+  completed_.displacement_m = displacement_m;
+  completed_.velocity_m_per_s = velocity_m_per_s;
+  completed_.acceleration_m_per_s2 = unbalance_n_;
+  completed_.acceleration_m_per_s2.noalias() -= damping_ * completed_.velocity_m_per_s;
+  mass_factor_.solve_in_place(completed_.acceleration_m_per_s2);
+}
+
+/// With a' = 0 first, then with the a' of equilibrium.
+void GeneralisedAlpha::find_end() noexcept {
+  const double h = step_s_;
+  end_.displacement_m = begin_.displacement_m + h * begin_.velocity_m_per_s +
+                        ((0.5 - weights_.beta) * h * h) * begin_.acceleration_m_per_s2;
+  end_.velocity_m_per_s = begin_.velocity_m_per_s + ((1.0 - weights_.gamma) * h) * begin_.acceleration_m_per_s2;
+  Eigen::VectorXd& solved = end_.acceleration_m_per_s2;
+  solved = unbalance_n_;
+  buffer_ = current_.displacement_m - end_.displacement_m;
+  solved.noalias() += stiffness_ * buffer_;
+  solved.noalias() -= damping_ * end_.velocity_m_per_s;
+  solved *= 1.0 - weights_.alpha_f;
+  buffer_ = weights_.alpha_f * balanced_ - weights_.alpha_m * begin_.acceleration_m_per_s2;
+  solved.noalias() += mass_ * buffer_;
+  effective_mass_.solve_in_place(solved);
+  end_.displacement_m += (weights_.beta * h * h) * solved;
+  end_.velocity_m_per_s += (weights_.gamma * h) * solved;
+}
+
+void GeneralisedAlpha::end_step() noexcept {
+  balanced_ = ((1.0 - weights_.alpha_m) * end_.acceleration_m_per_s2 + weights_.alpha_m * begin_.acceleration_m_per_s2 -
+               weights_.alpha_f * balanced_) /
+              (1.0 - weights_.alpha_f);
+  displacement_before_m_ = begin_.displacement_m;
+  begin_ = end_;
+  completed_ = end_;
+  completed_.acceleration_m_per_s2 = balanced_;
+  iteration_ = 0;
+}
+
+/// On the parabola through the displacements at -1, 0 and 1, at x of the step.
+void GeneralisedAlpha::place_command() noexcept {
+  const double x = static_cast<double>(iteration_) / iterations_;
+  current_.displacement_m = (0.5 * x * (x - 1.0)) * displacement_before_m_ + (1.0 - x * x) * begin_.displacement_m +
+                            (0.5 * x * (x + 1.0)) * end_.displacement_m;
+  current_.velocity_m_per_s = ((x - 0.5) / step_s_) * displacement_before_m_ -
+                              (2.0 * x / step_s_) * begin_.displacement_m + ((x + 0.5) / step_s_) * end_.displacement_m;
+  current_.acceleration_m_per_s2 =
+      (displacement_before_m_ - 2.0 * begin_.displacement_m + end_.displacement_m) / (step_s_ * step_s_);
+}
+
+}  // namespace hybridtest
