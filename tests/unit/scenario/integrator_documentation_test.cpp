@@ -88,10 +88,11 @@ double order(const IntegratorReading& integrator) {
   return std::log2(ModeOf{integrator, 0.1}.error() / ModeOf{integrator, 0.05}.error());
 }
 
-/// Of a nearly infinitely fast mode. The predictor of operator splitting grows with the square of omega dt, and so does
-/// its rounding.
+/// Of a nearly infinitely fast mode. The predictor of a corrected displacement grows with omega dt, and so does its
+/// rounding.
 double fast_mode_radius(const IntegratorReading& integrator) {
-  return ModeOf{integrator, integrator.type == "alpha_operator_splitting" ? 300.0 : 1e4}.radius();
+  return ModeOf{integrator, integrator.needs.corrects_displacement ? 300.0 / integrator.needs.commands_per_step : 1e4}
+      .radius();
 }
 
 std::string row(const std::string& setting) {
@@ -99,7 +100,7 @@ std::string row(const std::string& setting) {
   const std::string limit = stable_up_to(integrator);
   const bool is_limited = limit != "any";
   std::string text = fmt::format("| `{}` | {:.1f} | {} | {} |", setting.substr(6), order(integrator), limit,
-                                 is_limited ? "—" : fmt::format("{:.2f}", fast_mode_radius(integrator)));
+                                 is_limited ? "—" : fmt::format("{:.1f}", fast_mode_radius(integrator)));
   for (const double omega_dt : {0.1, 1.0}) {
     const ModeOf mode{integrator, omega_dt};
     text += fmt::format(" {} | {} |", percent(mode.damping_ratio(), 3), percent(mode.period_error(), 2));
