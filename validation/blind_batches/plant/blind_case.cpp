@@ -212,6 +212,11 @@ class RealSiteDraw {
     const double severity = kSeverities[random_.index(std::size(kSeverities))];
     const bool is_beyond = random_.chance(0.08) && !setting_.loop;
     const Residual residual = residual_of(effect.interface, setting_.columns);
+    // A number that is wrong twice would have another size than the key says.
+    const auto is_same = [&](const PlantEffect& beside) {
+      return beside.interface == effect.interface && beside.name == effect.name;
+    };
+    if (std::erase_if(real_.besides, is_same) > 0) measure();
     History whole = signatures_->of(effect);
     if (rms(signatures_->beyond_besides(residual, whole)) < kLeftByBesides * rms(whole)) {
       // The wrong numbers would hide it: they are right where it acts.

@@ -158,6 +158,14 @@ TEST(BlindCase, WrongNumbersTakeUpWhatTheyCanGive) {
   EXPECT_THAT(none.truth.tolerated, Not(Contains(Cause{"specimen", "coulomb_friction"})));
 }
 
+TEST(BlindCase, NoNumberIsWrongTwice) {
+  // Here the stiffness of a law that yields was wrong beside the model and once more as the effect.
+  const BlindCase drawn = draw_case(607632768, 28);
+  ASSERT_EQ(drawn.truth.effects.size(), 1U);
+  EXPECT_EQ(drawn.truth.effects.front().name, "stiffness_error");
+  for (const PlantEffect& beside : drawn.truth.besides) EXPECT_NE(beside.name, "stiffness_error");
+}
+
 TEST(BlindCase, EveryClassAndEveryNoiseIsDrawn) {
   std::set<TruthClass> classes;
   std::set<bool> loops;
