@@ -292,34 +292,44 @@ class ProjectedResidual final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override try {
-    const Eigen::Index searched = parameter_block_sizes()[0];
-    const Eigen::VectorXd places = Eigen::Map<const Eigen::VectorXd>{parameters[0], searched};
-    const Eigen::VectorXd residual = projection_.solve(places).residual;
-    if (!residual.allFinite()) return false;
-    Eigen::Map<Eigen::VectorXd>{residuals, residual.size()} = residual;
+    const Eigen::Map<const Eigen::VectorXd> places{parameters[0], parameter_block_sizes()[0]};
+    move_to(places);
+    if (!residual_.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd>{residuals, residual_.size()} = residual_;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian{
-        jacobians[0], residual.size(), searched};
-    if (searched == 1) {
-      jacobian.col(0) = slope(places, 0, residual);
-    } else {
-      for (Eigen::Index i = 0; i < searched; ++i) jacobian.col(i) = slope(places, i, residual);
-    }
-    return jacobian.allFinite();
+    if (slopes_.cols() == 0) find_slopes();
+    std::copy_n(slopes_.data(), slopes_.size(), jacobians[0]);
+    return slopes_.allFinite();
   } catch (const ConfigError&) {
     return false;
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& places, Eigen::Index i,
-                                      const Eigen::VectorXd& residual) const {
-    Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? tuning::kDifferenceStep : -tuning::kDifferenceStep;
-    moved[i] += step;
-    return (projection_.solve(moved).residual - residual) / step;
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // as the solver has them
+
+  void move_to(const Eigen::VectorXd& places) const {
+    if (places_.size() == places.size() && places_ == places) return;
+    places_.resize(0);
+    residual_ = projection_.solve(places).residual;
+    slopes_.resize(0, 0);
+    places_ = places;
+  }
+  void find_slopes() const {
+    Slopes slopes(residual_.size(), places_.size());
+    for (Eigen::Index i = 0; i < places_.size(); ++i) {
+      Eigen::VectorXd moved = places_;
+      const double step = places_[i] < 0.5 ? tuning::kDifferenceStep : -tuning::kDifferenceStep;
+      moved[i] += step;
+      slopes.col(i) = (projection_.solve(moved).residual - residual_) / step;
+    }
+    slopes_ = std::move(slopes);
   }
 
   const VariableProjection& projection_;
+  // Of the last point: the solver asks for a point's cost, and again with its slopes once it steps there.
+  mutable Eigen::VectorXd places_;
+  mutable Eigen::VectorXd residual_;
+  mutable Slopes slopes_;
 };
 
 struct Start {
@@ -363,6 +373,9 @@ Start refine(const VariableProjection& projection, const Start& start) {
   options.max_num_iterations = tuning::kSearchIterations;
   options.function_tolerance = tuning::kSearchTolerance;
   options.num_threads = 1;
+  // A step is cut off at the bounds, and the trust region judges it. A line search before would ask for the slopes of
+  // every point that it tries: half of all predictions, and more where a clearance or a friction makes the cost uneven.
+  options.max_num_line_search_step_size_iterations = 0;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

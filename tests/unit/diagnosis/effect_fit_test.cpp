@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "diagnosis/tuning.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -159,6 +162,30 @@ TEST(FitEffects, RandomStretchesAreNotDetected) {
               0.995 * nothing.segments.back().held_out_mean_square(segment))
         << name;
   }
+}
+
+/// A step of the search needs the prediction where it goes, and one more per searched parameter for the slopes there.
+TEST(FitEffects, PredictsOncePerPointAndSlope) {
+  // Neither effect is the other's: the cost is uneven and the search makes all of its steps.
+  double follows_m = 0.0;
+  const Recording recording = made_recording(
+      [&](double t) { return follows_m = std::clamp(follows_m, made_motion_m(t) - 0.002, made_motion_m(t) + 0.002); },
+      spring_n);
+  std::size_t predictions = 0;
+  SiteModel model = made_model();
+  model.make_transfer_system = [&](double, double) {
+    ++predictions;
+    return std::make_unique<Ideal>();
+  };
+  const auto problem = make_problem(model, segments_of(recording, 0, 0));
+  predictions = 0;
+  const FitOutcome fit = fit_effects(problem, {find_effect(transfer_system, "stiction")}, false);
+  constexpr std::size_t kSearched = 2;
+  // The last terms: the start and the end of each refinement; the solution, and its slopes for the intervals.
+  EXPECT_LE(predictions, tuning::kStarts[kSearched] +
+                             tuning::kRefinedStarts * ((tuning::kSearchIterations + 1) * (1 + kSearched) + 2) +
+                             kSearched + 2);
+  EXPECT_GT(fit.effects[0].values[0], 0.0);
 }
 
 }  // namespace
