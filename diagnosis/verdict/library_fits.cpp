@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -220,6 +221,17 @@ bool is_searched(const IdentificationProblem& problem, const EffectType& effect)
                              [&](const EffectParameter& parameter) { return !is_fixed(problem, effect, parameter); });
 }
 
+/// Positions of effects, those with the most searched parameters first: the longest fits begin first, so that no thread
+/// works on one alone at the end.
+std::vector<std::size_t> longest_first(const IdentificationProblem& problem,
+                                       const std::vector<const EffectType*>& effects) {
+  std::vector<std::size_t> order(effects.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{},
+                           [&](std::size_t i) { return plan_search(problem, {effects[i]}).searched.size(); });
+  return order;
+}
+
 }  // namespace
 
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
@@ -303,8 +315,10 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
   const std::vector<const EffectType*> effects = judged_effects(problem);
   const double nuisance_score = held_out_score(coarse, fit_nothing(coarse, true));
   std::vector<std::optional<Candidate>> fitted(effects.size());
+  const std::vector<std::size_t> order = longest_first(coarse, effects);
   for_each_in_parallel(
-      effects.size(), threads, [&](std::size_t i) { fitted[i] = fit_one(coarse, *effects[i], nuisance_score); },
+      effects.size(), threads,
+      [&](std::size_t i) { fitted[order[i]] = fit_one(coarse, *effects[order[i]], nuisance_score); },
       counted(progress.part(0.0, tuning::kLibrarySearched), "effects fitted one by one"));
   std::vector<Candidate> candidates = best_first(std::move(fitted));
   if (candidates.empty()) return candidates;
