@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t kTableBytesMax = std::size_t{64} << 20U;
 constexpr std::size_t kTableIssuesMax = 20;
-/// A recording has four columns with the name, and they must fit the head of a table.
-constexpr std::size_t kDofNameLongest = 64;
 constexpr const char* kHeader = "expected the header node,direction or node,direction,name";
 
 std::string_view without_blanks(std::string_view text) {

@@ -15,6 +15,9 @@ namespace hybridtest {
 /// Directions of a node, in the order of their numbers 1 to 6: displacements along the axes, rotations about them.
 inline constexpr std::array<std::string_view, 6> kDirections{"x", "y", "z", "rx", "ry", "rz"};
 
+/// A column of a recording has at most 63 letters, and 22 of `acceleration_…_m_per_s2` are not the name's.
+inline constexpr std::size_t kDofNameLongest = 41;
+
 /// The degrees of freedom of a structure, in the order of the rows of its matrices, and how a text addresses one.
 ///
 /// Without a file each has a name. Those of a file have a node and a direction as well, and answer to their name

@@ -34,6 +34,8 @@ using config::Section;
 
 constexpr double kStepsAtMost = 1e9;
 constexpr std::size_t kTestNameLongest = 64;
+/// A column of a recording has at most 63 letters, and 15 of `displacement_…_m` are not the name's.
+constexpr std::size_t kInterfaceNameLongest = 48;
 
 std::string plain_name(Section& section, std::string_view key, std::size_t longest) {
   std::string name = section.text(key);
@@ -109,6 +111,12 @@ void read_interface(Section& section, const DofTable& table, SubstructureScenari
     entry.finish();
     if (std::ranges::find(substructure.interface_names, name) != substructure.interface_names.end()) {
       entry.error("dof", "this interface degree of freedom is listed twice");
+    }
+    if (substructure.role == Role::numerical_substructure && name.size() > kInterfaceNameLongest) {
+      entry.error("dof", "'" + name +
+                             "' is the name of this interface degree of freedom in the recording; expected at "
+                             "most " +
+                             std::to_string(kInterfaceNameLongest) + " letters: shorten the names");
     }
     interface_dofs.push_back(interface);
     substructure.interface_names.push_back(std::move(name));

@@ -121,6 +121,27 @@ std::string no_such_dof(const std::string& address, const DofTable& dofs) {
   return what + "; expected its name, node.direction such as '" + dofs.names().front() + "', or such as 'node 1 dof 1'";
 }
 
+/// HDF5 keeps the description of a table's columns in 64 KiB: of each its name, and some 24 bytes.
+void check_recordable(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& recorded) {
+  constexpr std::size_t kDescriptionMax_bytes = 64'000;
+  constexpr std::size_t kBesideNames_bytes = 72 + 4 * 24;  // displacement_…_m and the other three columns
+  if (dofs.size() == 0) return;                            // reported
+  std::size_t description_bytes = 0;
+  for (const Eigen::Index row : recorded) {
+    const std::string& name = dofs.names()[static_cast<std::size_t>(row)];
+    description_bytes += 4 * name.size() + kBesideNames_bytes;
+    if (name.size() <= kDofNameLongest) continue;
+    root.error("structure", "the degree of freedom '" + name + "' has a name of " + std::to_string(name.size()) +
+                                " letters; expected at most " + std::to_string(kDofNameLongest) + " in a recording");
+  }
+  if (description_bytes <= kDescriptionMax_bytes) return;
+  const std::size_t fit = recorded.size() * kDescriptionMax_bytes / description_bytes;
+  root.error("output", std::to_string(recorded.size()) +
+                           " degrees of freedom to record, those at interfaces among them; with names as long as these "
+                           "a table of a recording holds " +
+                           std::to_string(fit) + ": list fewer");
+}
+
 /// The list `constraints`, one for each degree of freedom that others carry along.
 std::vector<RigidConstraint> read_constraints(Section& section, const DofTable& dofs) {
   std::vector<RigidConstraint> constraints;
@@ -239,14 +260,9 @@ std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const
       rows.insert(static_cast<Eigen::Index>(i * (dofs.size() - 1) / (kEvenlyRecorded - 1)));
     }
   }
-  if (rows.size() > kRecordedDofsMax) {
-    root.error("output", std::to_string(rows.size()) +
-                             " degrees of freedom to record, those at interfaces among them; "
-                             "expected at most " +
-                             std::to_string(kRecordedDofsMax) +
-                             ", the most that a table of a recording holds: list fewer");
-  }
-  return {rows.begin(), rows.end()};
+  const std::vector<Eigen::Index> recorded{rows.begin(), rows.end()};
+  check_recordable(root, dofs, recorded);
+  return recorded;
 }
 
 int dof_position(Section& section, std::string_view key, const DofTable& dofs) {

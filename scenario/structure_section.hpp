@@ -38,11 +38,9 @@ struct StructureReading {
 /// Without a table of degrees of freedom and without the mapping, all by 1.
 [[nodiscard]] Eigen::VectorXd read_influence(config::Section& excitation, const DofTable& dofs);
 
-/// Most degrees of freedom in the table of steps: HDF5 keeps the names of its columns in 64 KiB.
-inline constexpr std::size_t kRecordedDofsMax = 128;
-
 /// Rows of the degrees of freedom that the coordinator records, in order: those of `output`, or without that section
 /// all of a structure of up to 100, of a larger one 20 evenly over the table; and the ones in `always`.
+/// Reports more of them than the columns of a table hold, and names that are too long for a column.
 [[nodiscard]] std::vector<Eigen::Index> read_output(config::Section& root, const DofTable& dofs,
                                                     const std::vector<Eigen::Index>& always);
 

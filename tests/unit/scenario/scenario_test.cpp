@@ -120,6 +120,19 @@ TEST_F(ScenarioTest, RejectsDuplicateAndSelfRelativeInterfaces) {
               Contains(HasSubstr("relative to itself, expected another one")));
 }
 
+TEST_F(ScenarioTest, RejectsNamesTooLongForARecording) {
+  const auto renamed = [](const std::string& name) {
+    std::string text = kScenarioText;
+    for (std::size_t at = text.find("floor_2"); at != std::string::npos; at = text.find("floor_2", at + name.size())) {
+      text.replace(at, 7, name);
+    }
+    return text;
+  };
+  EXPECT_THAT(file_.errors(renamed(std::string(28, 'f'))), IsEmpty());  // f..f_relative_to_floor_1 has 48
+  EXPECT_THAT(file_.errors(renamed(std::string(29, 'f'))), Contains(HasSubstr("expected at most 48 letters")));
+  EXPECT_THAT(file_.errors(renamed(std::string(42, 'f'))), Contains(HasSubstr("expected at most 41 in a recording")));
+}
+
 TEST_F(ScenarioTest, RejectsMatricesOfWrongSize) {
   EXPECT_THAT(file_.errors(with("[[4.0e6]]", "[[4.0e6, 0.0], [0.0, 4.0e6]]")),
               Contains(AllOf(StartsWith("14:"), HasSubstr("expected"))));

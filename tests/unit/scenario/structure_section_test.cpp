@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+#include "coordinator/coordinator.hpp"
+#include "recording/run_file_writer.hpp"
 #include "runtime/run_directory.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
@@ -137,6 +139,27 @@ TEST_F(StructureSection, RunDirectoryHoldsTheFiles) {
   EXPECT_EQ(read_scenario(run / "scenario.yaml", {}).digest, scenario.digest);
 }
 
+/// What the scenario accepts, the file takes: as many names of this length as are accepted.
+TEST_F(StructureSection, RecordingHoldsTheDofsThatAreAccepted) {
+  for (const std::size_t length : {std::size_t{3}, std::size_t{12}, kDofNameLongest}) {
+    std::size_t accepted = 0;
+    std::vector<std::string> names;
+    for (const std::size_t count : {100U, 150U, 170U, 190U, 250U, 300U, 350U, 400U}) {
+      names.clear();
+      for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::format("{:0{}}", i, length));
+      config::Document tried = config::Document::parse("output: {degrees_of_freedom: [all]}", "limits");
+      config::Section root = tried.root();
+      static_cast<void>(read_output(root, DofTable{names}, {}));
+      if (tried.has_errors()) break;
+      accepted = count;
+      const TemporaryDirectory directory;
+      EXPECT_NO_THROW((RunFileWriter{directory / "file.h5", {}, {Coordinator::steps_layout(names)}})) << count;
+    }
+    EXPECT_GE(accepted, 170U) << length;
+    EXPECT_LT(accepted, 400U) << length;
+  }
+}
+
 TEST_F(StructureSection, OutputChoosesRecordedDofs) {
   EXPECT_THAT(file_.read(text()).recorded_names(), ElementsAre("1.x", "1.y", "roof_x", "roof_y"));
   EXPECT_THAT(file_.read(text(), {"output={degrees_of_freedom: [interfaces]}"}).recorded_names(),
@@ -207,7 +230,8 @@ TEST_F(StructureSection, LargeStructureRecordsInterfacesAndTwentyMore) {
   EXPECT_THAT(names, AllOf(Contains("1.x"), Contains("500.x"), Contains("1000.x")));
   std::vector<std::string> all = overrides;
   all.emplace_back("output={degrees_of_freedom: [all]}");
-  EXPECT_THAT(file_.errors(text(), all), Contains(HasSubstr("1000 degrees of freedom to record")));
+  EXPECT_THAT(file_.errors(text(), all), Contains(AllOf(HasSubstr("1000 degrees of freedom to record"),
+                                                        HasSubstr("a table of a recording holds 341:"))));
   std::vector<std::string> modal = overrides;
   modal.emplace_back("structure.damping.modes=[1, 201]");
   EXPECT_THAT(file_.errors(text(), modal), Contains(HasSubstr("the lowest 200")));
