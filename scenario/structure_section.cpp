@@ -260,7 +260,7 @@ std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const
       rows.insert(static_cast<Eigen::Index>(i * (dofs.size() - 1) / (kEvenlyRecorded - 1)));
     }
   }
-  const std::vector<Eigen::Index> recorded{rows.begin(), rows.end()};
+  std::vector<Eigen::Index> recorded{rows.begin(), rows.end()};
   check_recordable(root, dofs, recorded);
   return recorded;
 }
