@@ -10,8 +10,8 @@
 #include <limits>
 #include <string>
 
-#include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/integrators/central_difference.hpp"
 #include "core/config_error.hpp"
 #include "validation/design_motion/baseline.hpp"
 #include "validation/design_motion/oscillator.hpp"
