@@ -221,6 +221,16 @@ void Coordinator::run(Instant now) noexcept {
 }
 
 void Coordinator::watch_participants(Instant now) noexcept {
+  // Whoever obeyed an emergency stop has left perhaps, and the others after it: the stop is the cause, and not the
+  // loss.
+  const bool is_emergency = std::ranges::any_of(settings_.substructures, [&](const CoupledSubstructure& substructure) {
+    const Peer* peer = presence_.find(substructure.id);
+    return peer != nullptr && any(peer->status.faults & FaultFlags::emergency_stop);
+  });
+  if (is_emergency) {
+    begin_stop(now, StopReason::emergency_stop, kOperatorId);
+    return;
+  }
   const CoupledSubstructure* lost = nullptr;
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
@@ -245,10 +255,6 @@ void Coordinator::watch_participants(Instant now) noexcept {
     const bool has_other_fault = (peer->status.faults & kRecording) != peer->status.faults;
     const bool is_leaving =
         peer->status.state == LifecycleState::stopping || peer->status.state == LifecycleState::finished;
-    if (any(peer->status.faults & FaultFlags::emergency_stop)) {
-      begin_stop(now, StopReason::emergency_stop, kOperatorId);
-      return;
-    }
     // A site whose command is overdue is not the cause while another participant keeps the test waiting.
     const CoupledSubstructure* slow = owes_answer(substructure);
     if ((peer->status.faults | kRecording) == (FaultFlags::command_age | kRecording) && slow != nullptr) {

@@ -45,6 +45,12 @@ const RecordedEvent* find_stop(const std::vector<RecordedEvent>& events) {
   return stop == events.end() ? nullptr : &*stop;
 }
 
+/// Of a site.
+bool is_emergency_stop(const RecordedEvent& recorded) {
+  return recorded.event.code == EventCode::interlock_tripped &&
+         recorded.event.subject == ParticipantId{name(FaultFlags::emergency_stop)};
+}
+
 /// Whether the end of a process may explain a test that ended for this reason. What the coordinator and the sites
 /// decided themselves stays.
 bool may_explain(const ProcessEnd& process, StopReason reason) {
@@ -97,6 +103,15 @@ void find_end(RunSummary& summary, const std::vector<ProcessEnd>& processes, con
       std::ranges::any_of(events, [](const auto& one) { return one.event.code == EventCode::coordinator_lost; })) {
     summary.stop_reason = StopReason::coordinator_lost;
     end.who = kCoordinatorId;
+  }
+  // Sites that obeyed an emergency stop leave. A coordinator that did not hear it has only lost them.
+  const bool is_lost =
+      summary.stop_reason == StopReason::participant_lost || summary.stop_reason == StopReason::coordinator_lost;
+  const auto emergency = std::ranges::find_if(events, is_emergency_stop);
+  if (is_lost && emergency != events.end()) {
+    summary.stop_reason = StopReason::emergency_stop;
+    end.who = kOperatorId;
+    end.why = emergency->text;
   }
   for (const EventCode code : causes_of(summary.stop_reason)) {
     const RecordedEvent* cause = find(events, code, end.who);

@@ -14,10 +14,10 @@ using config::Section;
 
 template <class Method>
 PartType<IntegratorReading> plain(const std::string& type, const std::string& source) {
-  const IntegratorReading reading{type, type, source, Method::kNeeds,
-                                  [](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
-                                    return std::make_unique<Method>(structure, step_s, initial);
-                                  }};
+  IntegratorReading reading{type, type, source, Method::kNeeds,
+                            [](const LinearStructure& structure, double step_s, const InitialMotion& initial) {
+                              return std::make_unique<Method>(structure, step_s, initial);
+                            }};
   return {type, [reading](Section&) { return reading; }};
 }
 

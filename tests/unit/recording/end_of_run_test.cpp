@@ -74,6 +74,20 @@ TEST(EndOfRun, KilledParticipantIsNamedWithItsSignal) {
   EXPECT_THAT(summary.end.why, HasSubstr("killed by signal 9"));
 }
 
+TEST(EndOfRun, EmergencyStopThatTheCoordinatorMissedIsTheReason) {
+  const auto ended = [](const char* fault) {
+    RunSummary summary = running(StopReason::participant_lost);
+    find_end(summary, {},
+             {event("storey_1", EventCode::interlock_tripped, fault, "interlock"),
+              event("coordinator", EventCode::participant_lost, "storey_1", "'storey_1' is lost"),
+              stopped(StopReason::participant_lost, "storey_1")});
+    return summary;
+  };
+  EXPECT_EQ(ended("emergency_stop").stop_reason, StopReason::emergency_stop);
+  EXPECT_EQ(ended("emergency_stop").end.who, "operator");
+  EXPECT_EQ(ended("force_limit").stop_reason, StopReason::participant_lost);
+}
+
 TEST(EndOfRun, KilledCoordinatorIsToldByItsParent) {
   RunSummary summary = running(StopReason::none);
   find_end(summary, {killed("coordinator")}, {});
