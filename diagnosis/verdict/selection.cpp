@@ -362,7 +362,8 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   if (selection.library.empty()) return selection;
   // Under a large gap the noise is not known: it is that of the best candidate, and the others are judged by it.
   const Candidate& best = selection.library.front();
-  settle_noise(problem, best.fit);
+  // The best may be a fit at the lower rate: one that came nowhere near, until the others were fitted again.
+  settle_noise(problem, refit_effects(problem, best.fit.effects, best.fit.with_nuisance));
   settle_noise(coarse, refit_effects(coarse, best.fit.effects, best.fit.with_nuisance));
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);

@@ -1,6 +1,7 @@
 #include "mechanics/structure/linear_structure.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -49,7 +50,12 @@ void check_finite(const LinearStructure& structure, const SparseMatrix& matrix, 
 void check_symmetric(const LinearStructure& structure, const SparseMatrix& matrix, const std::string& name,
                      Findings& findings) {
   const SparseMatrix transposed = matrix.transpose();
-  const double largest = matrix.nonZeros() == 0 ? 0.0 : matrix.coeffs().abs().maxCoeff();
+  double largest = 0.0;
+  for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry{matrix, column}; entry; ++entry) {
+      largest = std::max(largest, std::abs(entry.value()));
+    }
+  }
   const SparseMatrix difference = matrix - transposed;
   for (Eigen::Index column = 0; column < difference.outerSize(); ++column) {
     for (SparseMatrix::InnerIterator entry{difference, column}; entry; ++entry) {
