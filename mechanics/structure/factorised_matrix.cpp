@@ -26,9 +26,10 @@ bool is_diagonal(const SparseMatrix& matrix) {
 
 /// The factorisation reads one triangle, so rounding differences between both are harmless.
 bool is_symmetric(const SparseMatrix& matrix) {
-  const SparseMatrix difference = matrix - SparseMatrix{matrix.transpose()};
+  const SparseMatrix transposed = matrix.transpose();  // compressed, which the matrix itself need not be
+  const SparseMatrix difference = matrix - transposed;
   if (difference.nonZeros() == 0) return true;
-  return difference.coeffs().abs().maxCoeff() <= 1e-12 * matrix.coeffs().abs().maxCoeff();
+  return difference.coeffs().abs().maxCoeff() <= 1e-12 * transposed.coeffs().abs().maxCoeff();
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what) {

@@ -1,7 +1,6 @@
 #include "mechanics/structure/linear_structure.hpp"
 
 #include <Eigen/SparseCholesky>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -50,12 +49,8 @@ void check_finite(const LinearStructure& structure, const SparseMatrix& matrix, 
 void check_symmetric(const LinearStructure& structure, const SparseMatrix& matrix, const std::string& name,
                      Findings& findings) {
   const SparseMatrix transposed = matrix.transpose();
-  double largest = 0.0;
-  for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry{matrix, column}; entry; ++entry) {
-      largest = std::max(largest, std::abs(entry.value()));
-    }
-  }
+  // The transposed one is compressed, which the matrix itself need not be.
+  const double largest = transposed.nonZeros() == 0 ? 0.0 : transposed.coeffs().abs().maxCoeff();
   const SparseMatrix difference = matrix - transposed;
   for (Eigen::Index column = 0; column < difference.outerSize(); ++column) {
     for (SparseMatrix::InnerIterator entry{difference, column}; entry; ++entry) {

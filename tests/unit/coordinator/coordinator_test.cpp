@@ -113,6 +113,14 @@ class CoordinatorTest : public testing::Test {
     measurement.force_n = InterfaceVector::Constant(1, force_n);
     measurements_.send(measurement);
   }
+  /// The steps 0 to 4, a millisecond apart.
+  void answer_five_steps() {
+    for (Step step = 0; step < 5; ++step) {
+      answer(0, step, 10.0);
+      answer(1, step, 20.0);
+      advance(milliseconds{1});
+    }
+  }
   /// Settled, everyone ready and armed; step 0 has gone out.
   void start() {
     advance();
@@ -304,11 +312,7 @@ TEST_F(CoordinatorTest, AddsTheForceOfTheElasticPart) {
 TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {
   make();
   start();
-  for (Step step = 0; step < 5; ++step) {
-    answer(0, step, 10.0);
-    answer(1, step, 20.0);
-    advance(milliseconds{1});
-  }
+  answer_five_steps();
   const auto commands = take_commands();
   ASSERT_EQ(commands.size(), 12U);
   const DisplacementCommand& newest = commands.back();
@@ -328,11 +332,7 @@ TEST_F(CoordinatorTest, CorrectionIsRecordedAndNotCommanded) {
   make();
   integrator_->correction_m = 0.0004;
   start();
-  for (Step step = 0; step < 5; ++step) {
-    answer(0, step, 10.0);
-    answer(1, step, 20.0);
-    advance(milliseconds{1});
-  }
+  answer_five_steps();
   const auto commands = take_commands();
   ASSERT_EQ(commands.size(), 12U);
   for (const DisplacementCommand& command : commands) {
