@@ -131,6 +131,23 @@ void read_interface(Section& section, const DofTable& table, SubstructureScenari
   substructure.interface = InterfaceMap{structure_size, std::move(interface_dofs)};
 }
 
+/// Named as in the recording or, against the ground, as in the table of the structure.
+NamedInterface named_interface(const SubstructureScenario& substructure, const DofTable& table) {
+  const std::vector<std::string>& names = substructure.interface_names;
+  const std::vector<InterfaceDof>& dofs = substructure.interface.dofs();
+  return {.names = names, .find = [&](const std::string& address) -> std::optional<int> {
+            if (const auto named = std::ranges::find(names, address); named != names.end()) {
+              return static_cast<int>(named - names.begin());
+            }
+            const std::optional<int> row = table.find(address);
+            const auto grounded = std::ranges::find_if(dofs, [&](const InterfaceDof& dof) {
+              return row && dof.dof == *row && dof.relative_to == InterfaceDof::kGround;
+            });
+            if (grounded == dofs.end()) return std::nullopt;
+            return static_cast<int>(grounded - dofs.begin());
+          }};
+}
+
 /// One compensator for all interface degrees of freedom, or one for each; none when the key is absent.
 template <class Reading>
 std::vector<Reading> read_each(Section& section, std::string_view key, std::size_t dofs, Reading (*read)(Section)) {
@@ -244,9 +261,8 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
   read_interface(section, table, substructure);
-  const auto dofs = static_cast<int>(substructure.interface.size());
   if (is_numerical) {
-    substructure.make_model = read_model(section.section("model"), dofs, directory);
+    substructure.make_model = read_model(section.section("model"), named_interface(substructure, table), directory);
   } else {
     read_site(section, scenario, directory, substructure);
   }

@@ -5,7 +5,8 @@
 
 namespace hybridtest {
 
-/// Fluid damper: F = c sign(v) |v|^n (Constantinou and Symans, NCEER-92-0032, 1992); linear for n = 1.
+/// Fluid damper: F = c sign(v) |v|^n (Constantinou and Symans, NCEER-92-0032, 1992; energy per cycle: Seleemah and
+/// Constantinou, NCEER-97-0004, 1997); linear for n = 1.
 class Viscous final : public Law {
  public:
   struct Parameters {

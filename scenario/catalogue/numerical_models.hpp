@@ -1,15 +1,26 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/catalogue/part.hpp"
 
 namespace hybridtest {
 
-/// The model of a numerical substructure with `dofs` interface degrees of freedom.
+/// The degrees of freedom of an interface, as springs of a model name them.
+struct NamedInterface {
+  std::vector<std::string> names;  // in order
+  /// The position of the one with this name or address; nothing for another one.
+  std::function<std::optional<int>(const std::string& address)> find;
+};
+
+/// The model of a numerical substructure.
 /// @param directory   where files that it names are looked for.
-[[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, int dofs,
+[[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, const NamedInterface& interface,
                                                   const std::filesystem::path& directory);
 
 }  // namespace hybridtest

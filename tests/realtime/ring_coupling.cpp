@@ -9,7 +9,7 @@
 #include "compensation/polynomial_displacement.hpp"
 #include "coordinator/integrators/central_difference.hpp"
 #include "mechanics/laws/bilinear.hpp"
-#include "numerical_substructure/springs.hpp"
+#include "numerical_substructure/spring_network.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/second_order.hpp"
 
@@ -120,10 +120,10 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
       link_{std::make_unique<SiteLink>(
           SubstructureIndex{0}, 1, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
           SiteLinkPorts{site_commands_, measurements_, signal_blocks_, requests_, reports_, signals_}, site_record_)},
-      numerical_{std::make_unique<NumericalNode>(SubstructureIndex{1}, std::make_unique<Springs>(one_storey()),
-                                                 numerical_presence_,
-                                                 MembershipPorts{numerical_announcements_, numerical_control_, kLease},
-                                                 numerical_commands_, measurements_, numerical_record_)},
+      numerical_{std::make_unique<NumericalNode>(
+          SubstructureIndex{1}, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
+          MembershipPorts{numerical_announcements_, numerical_control_, kLease}, numerical_commands_, measurements_,
+          numerical_record_)},
       coordinator_{std::make_unique<Coordinator>(
           settings(mode, last_step), std::make_unique<CentralDifference>(two_storeys(), kStep_s), coordinator_presence_,
           CoordinatorPorts{announcements_, coordinator_control_, control_, measurements_, commands_},

@@ -9,7 +9,8 @@ set standard_gravity_m_per_s2 9.80665
 set duration_s 31.0
 set sample_s 0.01
 
-# Per building: masses [kg], materials of the storeys from below, the two modes with 2 % of critical damping.
+# Per building: masses [kg], materials of the storeys from below, the two modes with 2 % of critical damping; where it has
+# one, the material of a damper beside the first storey.
 set ratio 0.02
 set two_masses_kg {20.0e3 20.0e3}
 set upper_storey {Elastic 3.0e6}
@@ -21,10 +22,13 @@ set buildings [dict create \
     $upper_storey] {1 2}] \
   three_storey_base_isolated [list {20.0e3 15.0e3 15.0e3 15.0e3} \
     [list {BoucWen 0.1 6.4e6 1.0 90.0 90.0 1.0 0.0 0.0 0.0 1.0e-14 100} {Elastic 2.0e7} {Elastic 2.0e7} \
-      {Elastic 2.0e7}] {2 3}]]
+      {Elastic 2.0e7}] {2 3}] \
+  isolated_with_dampers [list {20.0e3 15.0e3 15.0e3 15.0e3} \
+    [list [list Steel01 [expr {4.44e6 * 0.01}] 4.44e6 [expr {0.64e6 / 4.44e6}]] {Elastic 2.0e7} {Elastic 2.0e7} \
+      {Elastic 2.0e7}] {2 3} {Viscous 40.0e3 0.5}]]
 
 lassign $argv building step_s directory
-lassign [dict get $buildings $building] masses_kg materials modes
+lassign [dict get $buildings $building] masses_kg materials modes damper
 
 # A PEER AT2 file: three lines of text, one with NPTS and DT, then the values in g.
 proc read_at2 {path} {
@@ -48,6 +52,11 @@ foreach mass_kg $masses_kg material $materials {
   element zeroLength $floor [expr {$floor - 1}] $floor -mat $floor -dir 1 -doRayleigh 1
 }
 set floors $floor
+if {$damper ne ""} {
+  set tag [expr {$floors + 1}]
+  uniaxialMaterial [lindex $damper 0] $tag {*}[lrange $damper 1 end]
+  element zeroLength $tag 0 1 -mat $tag -dir 1 -doRayleigh 0
+}
 
 # Rayleigh damping of mass and initial stiffness from the frequencies of this very model.
 set frequencies {}

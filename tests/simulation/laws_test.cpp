@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/config_error.hpp"
 #include "scenario/catalogue/laws.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 
@@ -84,6 +85,33 @@ TEST_P(LawInATest, IsTheSpecimenOfASimulatedRig) {
 TEST_P(LawInATest, IsANumericalSubstructure) {
   EXPECT_GT(largest_force_n("substructures[storey_2].model=" + GetParam().text(), "steps", "restoring_force_floor_2_n"),
             1.0e3);
+}
+
+constexpr const char* kNearlyRigidFriction =
+    "substructures[storey_2].model={type: springs, springs: ["
+    "{at: floor_2_relative_to_floor_1, law: {type: elastic, stiffness_n_per_m: 3.0e6}}, "
+    "{at: floor_2_relative_to_floor_1, law: {type: friction, friction_force_n: 1.0e4, "
+    "presliding_displacement_m: 1.0e-8}}]}";
+
+TEST(NearlyRigidLaw, IsRefusedByAnExplicitIntegrator) {
+  EXPECT_THAT([] { static_cast<void>(shipped_scenario("two_storey_one_site", {kNearlyRigidFriction})); },
+              testing::ThrowsMessage<ConfigError>(testing::HasSubstr("too long for an explicit integrator")));
+}
+
+TEST(NearlyRigidLaw, SticksAndSlidesWithoutAStepLimit) {
+  const KeptSimulation run = keep_simulation(
+      shipped_scenario("two_storey_one_site", {kNearlyRigidFriction, "integrator={type: cr}", "time.duration_s=10"}),
+      {});
+  ASSERT_EQ(run.result.coordinator.reason, StopReason::completed);
+  const KeptRows& steps = run.table("storey_2", "steps");
+  const std::vector<double> drift_m = steps.column_values("displacement_floor_2_relative_to_floor_1_m");
+  const std::vector<double> force_n = steps.column_values("force_floor_2_relative_to_floor_1_n");
+  double largest_drift_m = 0.0;
+  for (std::size_t i = 0; i < drift_m.size(); ++i) {
+    ASSERT_LE(std::abs(force_n[i] - 3.0e6 * drift_m[i]), 1.0e4 * (1.0 + 1e-9)) << "step " << i;
+    largest_drift_m = std::max(largest_drift_m, std::abs(drift_m[i]));
+  }
+  EXPECT_GT(largest_drift_m, 1e-4) << "it slides";
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, LawInATest, testing::ValuesIn(laws_of_a_storey()),

@@ -81,6 +81,20 @@ TEST_F(SameBits, FrameOfTenThousandRunsAsItIsSimulated) {
   for (const char* site : {"first", "second"}) expect_same_table(site, "control");
 }
 
+/// The site without dynamics of its own. That the motion is right, tests/simulation/reference_test.cpp shows.
+TEST_F(SameBits, ThreeSubstructuresMoveAsOneInProcess) {
+  StartedProgram run = start_run(
+      shipped_scenario("isolated_with_dampers"), "run",
+      {"--set", "substructures[isolators].rig.transfer_system={type: ideal}", "--set",
+       "substructures[isolators].rig.sensors={}", "--set", "substructures[isolators].compensator={type: none}", "--set",
+       "substructures[isolators].control_rate_hz=1000"});
+  StartedProgram simulated = start_simulate(system_scenario("isolated_in_one"), "simulated", {});
+  ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
+  ASSERT_THAT(simulated.wait(), ::testing::Optional(kExitCompleted)) << simulated.standard_error();
+  EXPECT_EQ(recorded("run").last_step("coordinator"), 31000.0);
+  expect_same_table("coordinator", "steps", {"wall_time_s"});
+}
+
 TEST_P(Determinism, ControlSensorSeedChangesTheRecords) {
   // Shows that the comparison can fail: noise is part of what is compared.
   const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);
@@ -99,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
     Shipped, Determinism,
     ::testing::Values(Shipped{"two_storey_one_site", {"storey_1"}, {"storey_2"}},
                       Shipped{"two_storey_two_sites", {"first_storey_columns", "second_storey_columns"}, {}},
-                      Shipped{"three_storey_base_isolated", {"isolators"}, {"superstructure"}}),
+                      Shipped{"three_storey_base_isolated", {"isolators"}, {"superstructure"}},
+                      Shipped{"isolated_with_dampers", {"isolators"}, {"superstructure", "dampers"}}),
     [](const auto& instance) { return instance.param.scenario; });
 
 /// `simulate_digest` prints how it was compiled and a SHA-256 of every record of a simulated test.

@@ -36,7 +36,8 @@ class New : public SystemTest {
 };
 
 TEST_F(New, FolderOfEveryShippedScenarioRuns) {
-  std::vector<std::string> names{"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated"};
+  std::vector<std::string> names{"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated",
+                                 "isolated_with_dampers"};
   for (const auto& entry :
        std::filesystem::directory_iterator{shipped_scenario("two_storey_one_site").parent_path() / "founding_study"}) {
     names.push_back("founding_study/" + entry.path().stem().string());

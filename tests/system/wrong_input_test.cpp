@@ -176,7 +176,8 @@ TEST_F(WrongInput, KeepsExistingRunDirectory) {
 }
 
 TEST_F(WrongInput, ShippedScenariosAreValid) {
-  for (const char* name : {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated"}) {
+  for (const char* name :
+       {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated", "isolated_with_dampers"}) {
     StartedProgram check = start_hybridtest({"check", shipped_scenario(name)}, "check");
     EXPECT_THAT(check.wait(), Optional(kExitCompleted)) << check.standard_error();
     EXPECT_THAT(check.standard_output(), AllOf(HasSubstr("critical delay"), HasSubstr("delay margin")));

@@ -14,10 +14,11 @@
 #include "mechanics/laws/pinched_reloading.hpp"
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
+#include "mechanics/laws/viscous.hpp"
 #include "tests/unit/mechanics/material_path.hpp"
 
 /// Each law along a path of displacements, compared with the force that a material of OpenSees gives on it
-/// (tests/reference/laws.tcl).
+/// (tests/reference/laws.tcl and others).
 namespace hybridtest {
 namespace {
 
@@ -110,7 +111,8 @@ INSTANTIATE_TEST_SUITE_P(
                     material<Takeda>("takeda", kTakeda, kDigitsTolerance),
                     material<SelfCentring>("self_centring", kSelfCentring, kStepTolerance),
                     material<GiuffreMenegottoPinto>("giuffre_menegotto_pinto", kIsotropic, kDigitsTolerance),
-                    material<FrictionPendulum>("friction_pendulum", kPendulum, kDishTolerance)),
+                    material<FrictionPendulum>("friction_pendulum", kPendulum, kDishTolerance),
+                    material<Viscous>("viscous", {.damping_n_s_per_m = 2.0e5, .exponent = 0.5}, kDigitsTolerance)),
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace

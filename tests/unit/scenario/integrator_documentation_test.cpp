@@ -7,13 +7,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "core/config/section.hpp"
 #include "scenario/catalogue/documentation.hpp"
 #include "scenario/catalogue/integrators.hpp"
 #include "tests/support/amplification.hpp"
 
-/// The table of docs/integrators.md: every figure is measured on the integrator.
+/// The tables of docs/integrators.md: every figure is measured on the integrator.
 namespace hybridtest {
 namespace {
 
@@ -118,11 +119,67 @@ std::string integrator_rows() {
   return text;
 }
 
-TEST(IntegratorDocumentation, HasTheMeasuredTable) {
-  const std::string expected = with_generated_part(integrator_page(), {"integrators", integrator_rows()});
+/// A mode with omega = 1 rad/s and m = 1 kg beside a damper whose force is measured, at omega dt = 0.1.
+class ModeWithDamper {
+ public:
+  ModeWithDamper(const IntegratorReading& integrator, double damper_dt)
+      : integrator_{integrator.make(test::oscillator(1.0, 0.0, 1.0), kStep_s,
+                                    {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Zero(1)})},
+        damping_n_s_per_m_{damper_dt / kStep_s} {
+    for (int step = 0; step < kSteps && largest_m_ < kGrown_m; ++step) {
+      const MotionState command = integrator_->current();
+      integrator_->advance(command.displacement_m + damping_n_s_per_m_ * command.velocity_m_per_s,
+                           Eigen::VectorXd::Zero(1));
+      const MotionState& completed = integrator_->completed();
+      largest_m_ = std::max(largest_m_, std::abs(completed.displacement_m[0]));
+      velocity_error_ =
+          std::max(velocity_error_, std::abs(command.velocity_m_per_s[0] - completed.velocity_m_per_s[0]));
+    }
+  }
+
+  [[nodiscard]] bool grows() const { return !(largest_m_ < kGrown_m); }
+  /// Of the velocity that comes with a command against the one in equilibrium, over the amplitude of the velocity.
+  [[nodiscard]] double velocity_error() const { return velocity_error_; }
+
+ private:
+  static constexpr double kStep_s = 0.1;
+  static constexpr int kSteps = 4000;
+  static constexpr double kGrown_m = 10.0;
+
+  std::unique_ptr<Integrator> integrator_;
+  double damping_n_s_per_m_;
+  double largest_m_ = 0.0;
+  double velocity_error_ = 0.0;
+};
+
+double damper_limit(const IntegratorReading& integrator) {
+  double stable = 0.01;
+  double unstable = 100.0;
+  while (unstable - stable > 1e-4) {
+    const double middle = 0.5 * (stable + unstable);
+    (ModeWithDamper{integrator, middle}.grows() ? unstable : stable) = middle;
+  }
+  return stable;
+}
+
+std::string damper_rows() {
+  std::string text =
+      "| integrator | error of the velocity at ω Δt = 0.1, % | damper up to c Δt / m |\n"
+      "| --- | --- | --- |\n";
+  for (const std::string& setting : kSettings) {
+    const IntegratorReading integrator = integrator_of(setting);
+    text += fmt::format("| `{}` | {} | {:.2f} |\n", setting.substr(6),
+                        percent(ModeWithDamper{integrator, 0.0}.velocity_error(), 3), damper_limit(integrator));
+  }
+  return text;
+}
+
+TEST(IntegratorDocumentation, HasTheMeasuredTables) {
+  const std::string expected = with_generated_part(
+      with_generated_part(integrator_page(), {"integrators", integrator_rows()}), {"dampers", damper_rows()});
   if (std::getenv("HYBRIDTEST_WRITE_DOCS") != nullptr) std::ofstream{kIntegratorPage, std::ios::binary} << expected;
   EXPECT_TRUE(integrator_page() == expected)
-      << "docs/integrators.md is not up to date; run this test with HYBRIDTEST_WRITE_DOCS=1 to write its table";
+      << "docs/integrators.md is not up to date; run this test with HYBRIDTEST_WRITE_DOCS=1 to write its tables";
 }
 
 TEST(IntegratorDocumentation, HasEveryIntegrator) {
@@ -133,6 +190,18 @@ TEST(IntegratorDocumentation, HasEveryIntegrator) {
 
 TEST(IntegratorDocumentation, EveryIntegratorIsOfSecondOrder) {
   for (const std::string& setting : kSettings) EXPECT_NEAR(order(integrator_of(setting)), 2.0, 0.1) << setting;
+}
+
+TEST(IntegratorDocumentation, PredictedVelocityIsWithinHalfOmegaDtSquared) {
+  // v + dt a leaves dt^2/2 of the change of a: (omega dt)^2/2 of the amplitude of the velocity.
+  for (const char* setting : {"type: central_difference", "type: explicit_newmark", "type: cr"}) {
+    EXPECT_NEAR(ModeWithDamper(integrator_of(setting), 0.0).velocity_error(), 0.5 * 0.01, 0.3e-3) << setting;
+  }
+}
+
+TEST(IntegratorDocumentation, DamperOfAnExplicitMethodIsLimitedByTheMass) {
+  // With v + dt a the roots of a mass with a damper alone leave the unit circle at c dt = m.
+  EXPECT_NEAR(damper_limit(integrator_of("type: explicit_newmark")), 1.0, 0.02);
 }
 
 TEST(IntegratorDocumentation, PeriodErrorsAreThoseOfTheTextbooks) {

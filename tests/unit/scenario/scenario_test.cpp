@@ -191,7 +191,8 @@ TEST_F(ScenarioTest, ShippedScenariosKeepTheirDigest) {
   const std::filesystem::path directory = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios";
   const std::vector<std::string> motion{"excitation.ground_motion=" + (file_.directory() / "motion.txt").string(),
                                         "time.duration_s=0.1"};
-  for (const char* name : {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated"}) {
+  for (const char* name :
+       {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated", "isolated_with_dampers"}) {
     const Scenario shipped = read_scenario(directory / (std::string{name} + ".yaml"), motion);
     EXPECT_EQ(file_.read(shipped.effective).digest, shipped.digest) << name;
   }
