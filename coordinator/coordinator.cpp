@@ -136,7 +136,7 @@ void Coordinator::settle(Instant now) noexcept {
   for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
     const auto& substructure = settings_.substructures[i];
     announcement.substructures[i] = {substructure.id, substructure.role,
-                                     static_cast<std::uint8_t>(substructure.interface.size())};
+                                     static_cast<std::uint16_t>(substructure.interface.size())};
   }
   ports_.announcements.send(announcement);
   presence_.set_state(LifecycleState::ready);
@@ -197,7 +197,6 @@ void Coordinator::start(Instant now) noexcept {
 
 void Coordinator::run(Instant now) noexcept {
   watch_participants(now);
-  ForceMeasurement measurement;
   while (phase_ == Phase::running) {
     if (!step_is_sent_) {
       if (is_paused_ || now < step_due_) return;
@@ -209,8 +208,8 @@ void Coordinator::run(Instant now) noexcept {
       // The previous step is recorded now, while the substructures work on this one.
       if (completed_steps_ > 0) record_step(now);
     }
-    while (!ledger_.is_complete() && ports_.measurements.take(measurement)) {
-      if (ledger_.enter(measurement, now) == LedgerEntry::accepted) last_to_answer_ = measurement.substructure;
+    while (!ledger_.is_complete() && ports_.measurements.take(measurement_)) {
+      if (ledger_.enter(measurement_, now) == LedgerEntry::accepted) last_to_answer_ = measurement_.substructure;
     }
     if (!ledger_.is_complete()) {
       repeat_unanswered(now);
@@ -302,9 +301,11 @@ void Coordinator::open_step(Instant now) noexcept {
     const InterfaceMap& interface = settings_.substructures[i].interface;
     // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
     if (step > 0) fill_rates(interface, integrator_->completed(), command.points[0]);
-    std::move_backward(command.points.begin(), command.points.end() - 1, command.points.end());
+    std::ranges::rotate(command.points, command.points.end() - 1);
     fill_point(interface, step, current, command.points[0]);
-    command.point_count = static_cast<std::uint8_t>(std::min<Step>(step + 1, kCommandPoints));
+    // The history is for sites; of a wide interface it would make each command four times as large.
+    const Step points = interface.size() <= kMaxSiteDofs ? kCommandPoints : 1;
+    command.point_count = static_cast<std::uint8_t>(std::min(step + 1, points));
     command.substructure = static_cast<SubstructureIndex>(i);
     command.coordinator = presence_.identity().incarnation;
     command.attempt = 0;

@@ -135,6 +135,7 @@ class Coordinator final : public Node {
   bool began_ = false;
   StepLedger ledger_;
   std::vector<DisplacementCommand> commands_;  // newest one per substructure, with its history
+  ForceMeasurement measurement_;               // the one being taken
   Instant repeat_due_ = kNever;
   Instant step_due_{};  // paced: earliest time to send the commands of the open step
   bool step_is_sent_ = false;

@@ -59,7 +59,7 @@ enum class LifecycleState : std::uint8_t {
 struct SubstructureAnnouncement {
   ParticipantId id;
   Role role = Role::numerical_substructure;
-  std::uint8_t interface_dofs = 0;
+  std::uint16_t interface_dofs = 0;
   bool operator==(const SubstructureAnnouncement&) const = default;
 };
 
@@ -91,27 +91,38 @@ struct ParticipantStatus {
 };
 
 /// Whether two vectors have the same size and entries; Eigen's own comparison wants equal sizes.
-[[nodiscard]] inline bool same(const InterfaceVector& a, const InterfaceVector& b) noexcept {
+[[nodiscard]] inline bool same(const Eigen::Ref<const Eigen::VectorXd>& a,
+                               const Eigen::Ref<const Eigen::VectorXd>& b) noexcept {
   return a.size() == b.size() && a == b;
 }
 
 /// The structure's motion at one step, in interface coordinates.
-struct CommandPoint {
+template <class Vector>
+struct MotionPoint {
   Step step = kNoStep;
-  double model_time_s = 0.0;              // [s]
-  InterfaceVector displacement_m;         // [m]
-  InterfaceVector velocity_m_per_s;       // [m/s] integrator's own; predicted on the newest point
-  InterfaceVector acceleration_m_per_s2;  // [m/s2] likewise
-  bool operator==(const CommandPoint& other) const noexcept {
+  double model_time_s = 0.0;     // [s]
+  Vector displacement_m;         // [m]
+  Vector velocity_m_per_s;       // [m/s] integrator's own; predicted on the newest point
+  Vector acceleration_m_per_s2;  // [m/s2] likewise
+  bool operator==(const MotionPoint& other) const noexcept {
     return step == other.step && model_time_s == other.model_time_s && same(displacement_m, other.displacement_m) &&
            same(velocity_m_per_s, other.velocity_m_per_s) && same(acceleration_m_per_s2, other.acceleration_m_per_s2);
   }
 };
 
+using CommandPoint = MotionPoint<InterfaceVector>;
+/// The same on the control path of a site, which never allocates.
+using TargetPoint = MotionPoint<SiteVector>;
+
 /// Coordinator to one substructure, keyed by its index.
 struct DisplacementCommand {
   SubstructureIndex substructure = 0;
   Incarnation coordinator = 0;
+  /// Within the newest step, from 0; integrators that do not iterate have one. A later one takes the place of those
+  /// before.
+  std::uint16_t iteration = 0;
+  /// The substructure answers the force and keeps the state of the step before. Otherwise the step ends here.
+  bool is_trial = false;
   std::uint8_t point_count = 0;                       // 1 to kCommandPoints
   std::array<CommandPoint, kCommandPoints> points{};  // newest first; consecutive steps
   std::uint16_t attempt = 0;                          // 0 when first sent, counts repeats
@@ -140,6 +151,7 @@ struct ForceMeasurement {
   SubstructureIndex substructure = 0;
   Incarnation sender = 0;
   Step step = kNoStep;
+  std::uint16_t iteration = 0;              // of the command answered
   double model_time_s = 0.0;                // [s] of the step answered
   InterfaceVector imposed_displacement_m;   // [m] commanded to the actuators or the model
   InterfaceVector measured_displacement_m;  // [m]
@@ -150,7 +162,8 @@ struct ForceMeasurement {
   Duration command_send_time{};  // [ns] echo of the command's send_time, coordinator's clock
   bool operator==(const ForceMeasurement& other) const noexcept {
     return substructure == other.substructure && sender == other.sender && step == other.step &&
-           model_time_s == other.model_time_s && same(imposed_displacement_m, other.imposed_displacement_m) &&
+           iteration == other.iteration && model_time_s == other.model_time_s &&
+           same(imposed_displacement_m, other.imposed_displacement_m) &&
            same(measured_displacement_m, other.measured_displacement_m) && same(force_n, other.force_n) &&
            flags == other.flags && receive_time == other.receive_time && send_time == other.send_time &&
            command_send_time == other.command_send_time;

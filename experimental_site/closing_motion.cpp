@@ -7,13 +7,9 @@
 namespace hybridtest {
 
 ClosingMotion::ClosingMotion(const ClosingMotionSettings& settings, int dofs) noexcept
-    : settings_{settings},
-      begin_m_{InterfaceVector::Zero(dofs)},
-      velocity_m_per_s_{begin_m_},
-      displacement_m_{begin_m_} {}
+    : settings_{settings}, begin_m_{SiteVector::Zero(dofs)}, velocity_m_per_s_{begin_m_}, displacement_m_{begin_m_} {}
 
-void ClosingMotion::begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
-                          bool returns) noexcept {
+void ClosingMotion::begin(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s, bool returns) noexcept {
   returns_ = returns;
   begin_m_ = displacement_m;
   displacement_m_ = displacement_m;

@@ -22,12 +22,12 @@ class ClosingMotion {
   ClosingMotion(const ClosingMotionSettings& settings, int dofs) noexcept;
 
   /// @param velocity_m_per_s   zero: the return starts at once, as after an interlock.
-  void begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s, bool returns) noexcept;
+  void begin(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s, bool returns) noexcept;
 
   /// Moves on by one control period.
   void advance() noexcept;
 
-  [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }
+  [[nodiscard]] const SiteVector& displacement_m() const noexcept { return displacement_m_; }
   [[nodiscard]] bool is_over() const noexcept { return period_ >= halt_periods_ + return_periods_; }
 
  private:
@@ -36,9 +36,9 @@ class ClosingMotion {
 
   ClosingMotionSettings settings_;
   bool returns_ = true;
-  InterfaceVector begin_m_;
-  InterfaceVector velocity_m_per_s_;
-  InterfaceVector displacement_m_;
+  SiteVector begin_m_;
+  SiteVector velocity_m_per_s_;
+  SiteVector displacement_m_;
   std::int64_t halt_periods_ = 0;
   std::int64_t return_periods_ = 0;
   std::int64_t period_ = 0;

@@ -52,7 +52,7 @@ ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteComp
       zero_offsets_{settings.dofs, period_s_} {
   HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.commands.size(), settings.dofs));
   HYBRIDTEST_ASSERT(std::cmp_equal(compensation_.forces.size(), settings.dofs));
-  const InterfaceVector zero = InterfaceVector::Zero(settings.dofs);
+  const SiteVector zero = SiteVector::Zero(settings.dofs);
   command_.displacement_m = zero;
   command_before_m_ = zero;
   wanted_command_m_ = zero;
@@ -136,7 +136,7 @@ void ControlLoop::resume(Instant now) noexcept {
   if (reset_by_operator(settings_.rules, interlocks_)) report_cleared();
 }
 
-void ControlLoop::take_target(const CommandPoint& target, Instant now) noexcept {
+void ControlLoop::take_target(const TargetPoint& target, Instant now) noexcept {
   if (!follows_targets()) return;
   if (!trajectory_.is_running()) {
     start_offset_.begin(no_motion_ - target.displacement_m, -target.velocity_m_per_s / settings_.time_scale,
@@ -399,7 +399,7 @@ std::pair<double, double> ControlLoop::values_of(const InterlockTrip& trip) cons
 /// A SiteSignal, and its interface degree of freedom from 1.
 std::pair<double, double> ControlLoop::first_not_finite() const noexcept {
   const InterlockInput input = interlock_input(false);
-  const std::array<std::pair<SiteSignal, const InterfaceVector*>, 4> signals{
+  const std::array<std::pair<SiteSignal, const SiteVector*>, 4> signals{
       {{SiteSignal::measured_force, &input.force_n},
        {SiteSignal::measured_displacement, &input.measured_displacement_m},
        {SiteSignal::target, &input.target_displacement_m},
@@ -416,7 +416,7 @@ void ControlLoop::report_cleared() noexcept { ports_.reports.send(loop_report::C
 
 void ControlLoop::report_measurement() noexcept {
   is_reached_ = false;
-  const auto at_target = [&](const InterfaceVector& before, const InterfaceVector& after) -> InterfaceVector {
+  const auto at_target = [&](const SiteVector& before, const SiteVector& after) -> SiteVector {
     if (reached_.fraction >= 1.0) return after;
     return before + reached_.fraction * (after - before);
   };

@@ -76,7 +76,7 @@ class ControlLoop final : public Node {
   void arm(Instant now) noexcept;
   void start(Instant now) noexcept;
   void resume(Instant now) noexcept;
-  void take_target(const CommandPoint& target, Instant now) noexcept;
+  void take_target(const TargetPoint& target, Instant now) noexcept;
   void stop() noexcept;
   void come_to_rest() noexcept;
   void begin_return() noexcept;
@@ -134,19 +134,19 @@ class ControlLoop final : public Node {
   bool emergency_stop_ = false;
 
   ActuatorCommand command_;
-  InterfaceVector command_before_m_;
+  SiteVector command_before_m_;
   MeasurementFlags motion_flags_ = MeasurementFlags::none;
-  InterfaceVector compensated_command_m_;
-  InterfaceVector wanted_command_m_;  // with the offset after a hold
-  ReachedTarget reached_;             // not measured yet
-  bool is_reached_ = false;           // there is one
-  TrajectoryPoint target_;            // with the offset at the start
-  InterfaceVector no_motion_;
+  SiteVector compensated_command_m_;
+  SiteVector wanted_command_m_;  // with the offset after a hold
+  ReachedTarget reached_;        // not measured yet
+  bool is_reached_ = false;      // there is one
+  TrajectoryPoint target_;       // with the offset at the start
+  SiteVector no_motion_;
   RigFeedback reading_;   // of the rig; unchanged where the rig reports a fault
   RigFeedback feedback_;  // minus the zero offsets
   RigFeedback feedback_before_;
-  InterfaceVector compensated_force_n_;
-  InterfaceVector compensated_force_before_n_;
+  SiteVector compensated_force_n_;
+  SiteVector compensated_force_before_n_;
 };
 
 }  // namespace hybridtest

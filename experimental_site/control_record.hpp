@@ -14,11 +14,11 @@ struct ControlSample {
   std::int64_t sample = 0;
   double time_s = 0.0;        // since arming
   double model_time_s = 0.0;  // along the path
-  const InterfaceVector& target_displacement_m;
-  const InterfaceVector& command_displacement_m;
-  const InterfaceVector& measured_displacement_m;
-  const InterfaceVector& measured_force_n;
-  const InterfaceVector& compensated_force_n;
+  const SiteVector& target_displacement_m;
+  const SiteVector& command_displacement_m;
+  const SiteVector& measured_displacement_m;
+  const SiteVector& measured_force_n;
+  const SiteVector& compensated_force_n;
   double energy_error_j = 0.0;
   double tracking_lag_sine = 0.0;  // see TrackingIndicator
   FaultFlags faults = FaultFlags::none;

@@ -6,9 +6,9 @@
 
 namespace hybridtest {
 
-EnergyErrorMonitor::EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double displacement_m_min)
+EnergyErrorMonitor::EnergyErrorMonitor(SiteMatrix initial_stiffness_n_per_m, double displacement_m_min)
     : initial_stiffness_n_per_m_{std::move(initial_stiffness_n_per_m)} {
-  const InterfaceVector smallest_m = InterfaceVector::Constant(initial_stiffness_n_per_m_.rows(), displacement_m_min);
+  const SiteVector smallest_m = SiteVector::Constant(initial_stiffness_n_per_m_.rows(), displacement_m_min);
   strain_energy_j_min_ = 0.5 * smallest_m.cwiseAbs2().dot(initial_stiffness_n_per_m_.diagonal().cwiseAbs());
   if (!(strain_energy_j_min_ > 0.0)) {
     throw ConfigError("initial_stiffness_n_per_m: the diagonal must not be all zero; it scales the energy error");
@@ -22,9 +22,9 @@ void EnergyErrorMonitor::reset() noexcept {
   has_sample_ = false;
 }
 
-void EnergyErrorMonitor::sample(const InterfaceVector& target_m, const InterfaceVector& measured_m,
-                                const InterfaceVector& force_n) noexcept {
-  const InterfaceVector error_m = target_m - measured_m;
+void EnergyErrorMonitor::sample(const SiteVector& target_m, const SiteVector& measured_m,
+                                const SiteVector& force_n) noexcept {
+  const SiteVector error_m = target_m - measured_m;
   if (has_sample_) energy_error_j_ += 0.5 * (force_n + force_n_).dot(error_m - error_m_);
   has_sample_ = true;
   error_m_ = error_m;

@@ -15,23 +15,22 @@ namespace hybridtest {
 /// count as an error.
 class EnergyErrorMonitor {
  public:
-  EnergyErrorMonitor(InterfaceMatrix initial_stiffness_n_per_m, double displacement_m_min);
+  EnergyErrorMonitor(SiteMatrix initial_stiffness_n_per_m, double displacement_m_min);
 
   void reset() noexcept;
-  void sample(const InterfaceVector& target_m, const InterfaceVector& measured_m,
-              const InterfaceVector& force_n) noexcept;
+  void sample(const SiteVector& target_m, const SiteVector& measured_m, const SiteVector& force_n) noexcept;
 
   [[nodiscard]] double energy_error_j() const noexcept { return energy_error_j_; }
   [[nodiscard]] double ratio() const noexcept { return energy_error_j_ / strain_energy_j_; }
 
  private:
-  InterfaceMatrix initial_stiffness_n_per_m_;
+  SiteMatrix initial_stiffness_n_per_m_;
   double strain_energy_j_min_;
   double strain_energy_j_;
   double energy_error_j_ = 0.0;
   bool has_sample_ = false;
-  InterfaceVector error_m_;
-  InterfaceVector force_n_;
+  SiteVector error_m_;
+  SiteVector force_n_;
 };
 
 }  // namespace hybridtest

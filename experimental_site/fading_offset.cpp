@@ -9,12 +9,12 @@ constexpr double kRounding = 1e-9;
 }  // namespace
 
 FadingOffset::FadingOffset(int dofs) noexcept
-    : begin_displacement_m_{InterfaceVector::Zero(dofs)},
+    : begin_displacement_m_{SiteVector::Zero(dofs)},
       begin_velocity_m_per_s_{begin_displacement_m_},
       displacement_m_{begin_displacement_m_},
       velocity_m_per_s_{begin_displacement_m_} {}
 
-void FadingOffset::begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
+void FadingOffset::begin(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s,
                          double duration_s) noexcept {
   begin_displacement_m_ = displacement_m;
   begin_velocity_m_per_s_ = velocity_m_per_s;

@@ -12,14 +12,13 @@ class FadingOffset {
   explicit FadingOffset(int dofs) noexcept;
 
   /// @param duration_s   above 0.
-  void begin(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
-             double duration_s) noexcept;
+  void begin(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s, double duration_s) noexcept;
   void end() noexcept;
   void advance(double interval_s) noexcept;
 
   /// Exactly zero after the duration.
-  [[nodiscard]] const InterfaceVector& displacement_m() const noexcept { return displacement_m_; }
-  [[nodiscard]] const InterfaceVector& velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
+  [[nodiscard]] const SiteVector& displacement_m() const noexcept { return displacement_m_; }
+  [[nodiscard]] const SiteVector& velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
  private:
@@ -28,10 +27,10 @@ class FadingOffset {
   double duration_s_ = 1.0;
   double since_s_ = 0.0;
   bool is_over_ = true;
-  InterfaceVector begin_displacement_m_;
-  InterfaceVector begin_velocity_m_per_s_;
-  InterfaceVector displacement_m_;
-  InterfaceVector velocity_m_per_s_;
+  SiteVector begin_displacement_m_;
+  SiteVector begin_velocity_m_per_s_;
+  SiteVector displacement_m_;
+  SiteVector velocity_m_per_s_;
 };
 
 }  // namespace hybridtest

@@ -19,7 +19,7 @@ struct Finding {
 };
 
 /// NaN counts as zero here, so that it hides no other value; the interlock `not_finite` acts on it.
-[[nodiscard]] double largest(const InterfaceVector& values) noexcept {
+[[nodiscard]] double largest(const SiteVector& values) noexcept {
   double largest = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     if (std::isfinite(values[k])) largest = std::max(largest, std::fabs(values[k]));
@@ -54,7 +54,7 @@ void count_stuck(bool is_same, double command_m, double while_moving_m, Interloc
 void remember(const SiteLimits& limits, const InterlockInput& input, InterlockState& state) noexcept {
   const Eigen::Index dofs = input.measured_displacement_m.size();
   if (!std::exchange(state.has_sample, true)) {
-    state.measured_displacement_m = InterfaceVector::Constant(dofs, kNotANumber);  // equal to no reading
+    state.measured_displacement_m = SiteVector::Constant(dofs, kNotANumber);  // equal to no reading
     state.measured_force_n = state.measured_displacement_m;
   }
   for (Eigen::Index k = 0; k < dofs; ++k) {
@@ -71,7 +71,7 @@ void remember(const SiteLimits& limits, const InterlockInput& input, InterlockSt
   state.measured_force_n = input.force_n;
 }
 
-[[nodiscard]] Finding find_step(const InterfaceVector& value, const InterfaceVector& before, bool is_new,
+[[nodiscard]] Finding find_step(const SiteVector& value, const SiteVector& before, bool is_new,
                                 const std::optional<double>& limit) noexcept {
   if (!is_new || before.size() != value.size()) return {};
   return against(largest(value - before), limit);
@@ -97,8 +97,8 @@ void remember(const SiteLimits& limits, const InterlockInput& input, InterlockSt
 
 /// The value measured one control sample earlier.
 struct Before {
-  InterfaceVector displacement_m;
-  InterfaceVector force_n;
+  SiteVector displacement_m;
+  SiteVector force_n;
 };
 
 [[nodiscard]] Finding find(InterlockKind kind, const SiteLimits& limits, const InterlockInput& input,

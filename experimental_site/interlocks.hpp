@@ -80,11 +80,11 @@ enum class SitePhase : std::uint8_t {
 /// Input of the interlocks, once per control sample.
 struct InterlockInput {
   SitePhase phase = SitePhase::running;
-  const InterfaceVector& target_displacement_m;  // before it is limited
-  const InterfaceVector& target_velocity_m_per_s;
-  const InterfaceVector& command_displacement_m;  // of the compensator, before it is limited; at rest as sent
-  const InterfaceVector& measured_displacement_m;
-  const InterfaceVector& force_n;
+  const SiteVector& target_displacement_m;  // before it is limited
+  const SiteVector& target_velocity_m_per_s;
+  const SiteVector& command_displacement_m;  // of the compensator, before it is limited; at rest as sent
+  const SiteVector& measured_displacement_m;
+  const SiteVector& force_n;
   double energy_error_ratio = 0.0;
   double tracking_lag_sine = 0.0;
   double command_age_s = 0.0;
@@ -104,16 +104,16 @@ struct InterlockState {
   std::array<Latch, kInterlockCount> latches{};
 
   bool has_sample = false;
-  InterfaceVector measured_displacement_m;  // of the sample before
-  InterfaceVector measured_force_n;
+  SiteVector measured_displacement_m;  // of the sample before
+  SiteVector measured_force_n;
   /// Of a sensor that has the same reading again.
   struct Stuck {
     double command_then_m = 0.0;   // when it changed last
     double command_moved_m = 0.0;  // furthest that the command was from there since
     int samples = 0;               // since that was further than the limits' `stuck_while_moving_m`
   };
-  std::array<Stuck, kMaxInterfaceDofs> displacement_stuck{};
-  std::array<Stuck, kMaxInterfaceDofs> force_stuck{};
+  std::array<Stuck, kMaxSiteDofs> displacement_stuck{};
+  std::array<Stuck, kMaxSiteDofs> force_stuck{};
 };
 
 /// An interlock that tripped with this sample.

@@ -18,7 +18,7 @@ struct Arm {};
 struct Start {};
 /// The point of the next step.
 struct Target {
-  CommandPoint point;
+  TargetPoint point;
 };
 struct Pause {};
 struct Resume {};
@@ -35,10 +35,10 @@ using LoopRequest = std::variant<loop_request::Arm, loop_request::Start, loop_re
 struct StepMeasurement {
   Step step = kNoStep;
   double model_time_s = 0.0;
-  InterfaceVector target_displacement_m;    // [m]
-  InterfaceVector imposed_displacement_m;   // [m] command to the actuators
-  InterfaceVector measured_displacement_m;  // [m]
-  InterfaceVector force_n;                  // [N] compensated
+  SiteVector target_displacement_m;    // [m]
+  SiteVector imposed_displacement_m;   // [m] command to the actuators
+  SiteVector measured_displacement_m;  // [m]
+  SiteVector force_n;                  // [N] compensated
   MeasurementFlags flags = MeasurementFlags::none;
 };
 

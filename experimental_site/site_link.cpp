@@ -5,6 +5,17 @@
 #include <utility>
 
 namespace hybridtest {
+namespace {
+
+TargetPoint target_of(const CommandPoint& point) {
+  return {.step = point.step,
+          .model_time_s = point.model_time_s,
+          .displacement_m = point.displacement_m,
+          .velocity_m_per_s = point.velocity_m_per_s,
+          .acceleration_m_per_s2 = point.acceleration_m_per_s2};
+}
+
+}  // namespace
 
 SiteLink::SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership,
                    SiteLinkPorts ports, RowSink& steps)
@@ -30,8 +41,7 @@ void SiteLink::take_messages(Instant now) noexcept {
        request = membership_.next_request(now)) {
     follow(request);
   }
-  DisplacementCommand command;
-  while (ports_.commands.take(command)) pass_on(command, now);
+  while (ports_.commands.take(command_)) pass_on(command_, now);
 }
 
 Instant SiteLink::pass_reports_on(Instant now) noexcept {
@@ -79,7 +89,8 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   if (presence_.state() == LifecycleState::armed) follow(Request::start);
   if (presence_.state() != LifecycleState::running) return;
   const Step newest = command.newest().step;
-  if (newest < passed_on_ || !command.fits(dofs_)) return;
+  // A specimen has no state to go back to.
+  if (newest < passed_on_ || command.is_trial || !command.fits(dofs_)) return;
   command_send_time_ = command.send_time;
   receive_time_ = now.time_since_epoch();
   if (newest == passed_on_) {
@@ -89,7 +100,7 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   for (int i = command.point_count - 1; i >= 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
     if (point.step != passed_on_ + 1) continue;
-    if (!ports_.requests.send(loop_request::Target{point})) return;
+    if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
     passed_on_ = point.step;
   }
 }
@@ -136,19 +147,18 @@ void SiteLink::take_measurement(const StepMeasurement& measurement, Instant now)
 }
 
 void SiteLink::answer(Instant now, MeasurementFlags flags) noexcept {
-  ForceMeasurement measurement;
-  measurement.substructure = index_;
-  measurement.sender = presence_.identity().incarnation;
-  measurement.step = measured_.step;
-  measurement.model_time_s = measured_.model_time_s;
-  measurement.imposed_displacement_m = measured_.imposed_displacement_m;
-  measurement.measured_displacement_m = measured_.measured_displacement_m;
-  measurement.force_n = measured_.force_n;
-  measurement.flags = measured_.flags | flags;
-  measurement.receive_time = receive_time_;
-  measurement.send_time = now.time_since_epoch();
-  measurement.command_send_time = command_send_time_;
-  ports_.measurements.send(measurement);
+  answer_.substructure = index_;
+  answer_.sender = presence_.identity().incarnation;
+  answer_.step = measured_.step;
+  answer_.model_time_s = measured_.model_time_s;
+  answer_.imposed_displacement_m = measured_.imposed_displacement_m;
+  answer_.measured_displacement_m = measured_.measured_displacement_m;
+  answer_.force_n = measured_.force_n;
+  answer_.flags = measured_.flags | flags;
+  answer_.receive_time = receive_time_;
+  answer_.send_time = now.time_since_epoch();
+  answer_.command_send_time = command_send_time_;
+  ports_.measurements.send(answer_);
 }
 
 void SiteLink::record_step() noexcept {

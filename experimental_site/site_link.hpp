@@ -65,7 +65,9 @@ class SiteLink final : public Node {
   Step passed_on_ = kNoStep;      // newest target given to the loop
   Duration command_send_time_{};  // of the newest command, coordinator's clock
   Duration receive_time_{};
-  StepMeasurement measured_;  // newest answer
+  StepMeasurement measured_;     // newest answer
+  DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
+  ForceMeasurement answer_;
   SignalBlock block_;
   std::vector<double> row_;
 };

@@ -8,15 +8,15 @@ TrackingIndicator::TrackingIndicator(int dofs, double period_s, double window_s,
     : kept_{std::exp(-period_s / window_s)},
       square_m2_min_{displacement_m_min * displacement_m_min},
       change_square_m2_min_{square_m2_min_ * (period_s / window_s) * (period_s / window_s)},
-      wanted_m_{InterfaceVector::Zero(dofs)},
+      wanted_m_{SiteVector::Zero(dofs)},
       measured_m_{wanted_m_},
       mean_growth_m2_{wanted_m_},
       mean_square_m2_{wanted_m_},
       mean_change_square_m2_{wanted_m_} {}
 
-void TrackingIndicator::sample(const InterfaceVector& wanted_m, const InterfaceVector& measured_m) noexcept {
+void TrackingIndicator::sample(const SiteVector& wanted_m, const SiteVector& measured_m) noexcept {
   if (has_sample_) {
-    const auto into = [this](InterfaceVector& mean, Eigen::Index k, double value) {
+    const auto into = [this](SiteVector& mean, Eigen::Index k, double value) {
       mean[k] = kept_ * mean[k] + (1.0 - kept_) * value;
     };
     for (Eigen::Index k = 0; k < wanted_m.size(); ++k) {

@@ -25,7 +25,7 @@ class TrackingIndicator {
   TrackingIndicator(int dofs, double period_s, double window_s, double displacement_m_min) noexcept;
 
   /// The values must be finite: another one would stay in the means.
-  void sample(const InterfaceVector& wanted_m, const InterfaceVector& measured_m) noexcept;
+  void sample(const SiteVector& wanted_m, const SiteVector& measured_m) noexcept;
 
   /// Of the degree of freedom where it is largest in magnitude, with its sign [-].
   [[nodiscard]] double lag_sine() const noexcept;
@@ -35,11 +35,11 @@ class TrackingIndicator {
   double square_m2_min_ = 0.0;         // added to mean(c^2)
   double change_square_m2_min_ = 0.0;  // added to mean(dc^2)
   bool has_sample_ = false;
-  InterfaceVector wanted_m_;
-  InterfaceVector measured_m_;
-  InterfaceVector mean_growth_m2_;
-  InterfaceVector mean_square_m2_;
-  InterfaceVector mean_change_square_m2_;
+  SiteVector wanted_m_;
+  SiteVector measured_m_;
+  SiteVector mean_growth_m2_;
+  SiteVector mean_square_m2_;
+  SiteVector mean_change_square_m2_;
 };
 
 }  // namespace hybridtest

@@ -19,11 +19,11 @@ constexpr double kHeldBelow = 0.05;
 
 Trajectory::Trajectory(int dofs, double step_s, double time_scale, const TrajectorySettings& settings) noexcept
     : settings_{settings}, step_s_{step_s}, time_scale_{time_scale} {
-  reset(InterfaceVector::Zero(dofs));
+  reset(SiteVector::Zero(dofs));
 }
 
-void Trajectory::reset(const InterfaceVector& displacement_m) noexcept {
-  const InterfaceVector zero = InterfaceVector::Zero(displacement_m.size());
+void Trajectory::reset(const SiteVector& displacement_m) noexcept {
+  const SiteVector zero = SiteVector::Zero(displacement_m.size());
   is_running_ = false;
   has_target_ = false;
   path_time_s_ = 0.0;
@@ -42,7 +42,7 @@ void Trajectory::reset(const InterfaceVector& displacement_m) noexcept {
   point_ = {displacement_m, zero, zero, 0.0, false};
 }
 
-void Trajectory::set_target(const CommandPoint& target) noexcept {
+void Trajectory::set_target(const TargetPoint& target) noexcept {
   is_first_target_ = !is_running_;
   if (is_first_target_) {
     is_running_ = true;
@@ -172,7 +172,7 @@ void Trajectory::ramp(double since_s) noexcept {
     return;
   }
   const double frequency_per_s = std::numbers::pi / length_s;
-  const InterfaceVector half_way_m = 0.5 * (target_.displacement_m - begin_displacement_m_);
+  const SiteVector half_way_m = 0.5 * (target_.displacement_m - begin_displacement_m_);
   point_.displacement_m = begin_displacement_m_ + (1.0 - std::cos(pi_x)) * half_way_m;
   slope_m_per_s_ = (frequency_per_s * std::sin(pi_x)) * half_way_m;
   point_.acceleration_m_per_s2 = (frequency_per_s * frequency_per_s * std::cos(pi_x)) * half_way_m;

@@ -9,16 +9,16 @@ namespace hybridtest {
 
 /// Wanted motion of the actuators at one control sample.
 struct TrajectoryPoint {
-  InterfaceVector displacement_m;         // [m]
-  InterfaceVector velocity_m_per_s;       // [m/s] in site time
-  InterfaceVector acceleration_m_per_s2;  // [m/s2] in site time
-  double path_time_s = 0.0;               // [s] site time along the path
-  bool is_held = false;                   // waits for it, almost at rest
+  SiteVector displacement_m;         // [m]
+  SiteVector velocity_m_per_s;       // [m/s] in site time
+  SiteVector acceleration_m_per_s2;  // [m/s2] in site time
+  double path_time_s = 0.0;          // [s] site time along the path
+  bool is_held = false;              // waits for it, almost at rest
 };
 
 /// A target passed in the last sampling interval, for the measurement that belongs to it.
 struct ReachedTarget {
-  CommandPoint target;
+  TargetPoint target;
   /// Share of the last sampling interval at which the target was passed, in (0, 1]; 1 when the
   /// sample falls on it.
   double fraction = 1.0;
@@ -64,11 +64,11 @@ class Trajectory {
   Trajectory(int dofs, double step_s, double time_scale, const TrajectorySettings& settings = {}) noexcept;
 
   /// At rest at `displacement_m`, before step 0.
-  void reset(const InterfaceVector& displacement_m) noexcept;
+  void reset(const SiteVector& displacement_m) noexcept;
 
   /// The next target; steps in order, one at a time. The first one starts path time and must
   /// be the present position of the path.
-  void set_target(const CommandPoint& target) noexcept;
+  void set_target(const TargetPoint& target) noexcept;
 
   /// Moves on by `interval_s` of site time.
   /// @param reached   filled when the result is true.
@@ -98,20 +98,20 @@ class Trajectory {
   bool is_running_ = false;
   bool has_target_ = false;
   bool is_first_target_ = false;
-  CommandPoint target_;
+  TargetPoint target_;
   double path_time_s_ = 0.0;
   double rate_ = 0.0;
   double interval_begin_s_ = 0.0;  // path time of the last target reached
-  InterfaceVector slope_m_per_s_;  // of the path in path time
+  SiteVector slope_m_per_s_;       // of the path in path time
   // Start of the current piece of path; its end is the target, if there is one.
   double segment_begin_s_ = 0.0;
-  InterfaceVector begin_displacement_m_;
-  InterfaceVector begin_velocity_m_per_s_;
-  InterfaceVector begin_acceleration_m_per_s2_;
-  InterfaceVector begin_jerk_m_per_s3_;
+  SiteVector begin_displacement_m_;
+  SiteVector begin_velocity_m_per_s_;
+  SiteVector begin_acceleration_m_per_s2_;
+  SiteVector begin_jerk_m_per_s3_;
   bool has_left_target_ = false;
-  InterfaceVector end_velocity_m_per_s_;
-  InterfaceVector end_acceleration_m_per_s2_;
+  SiteVector end_velocity_m_per_s_;
+  SiteVector end_acceleration_m_per_s2_;
   MeasurementFlags flags_ = MeasurementFlags::none;
   TrajectoryPoint point_;
 };

@@ -18,7 +18,7 @@ class ZeroOffsets {
 
   ZeroOffsets(int dofs, double period_s) noexcept
       : wanted_samples_{std::max<std::int64_t>(1, std::llround(kAveraged_s / period_s))},
-        mean_{InterfaceVector::Zero(dofs), InterfaceVector::Zero(dofs)},
+        mean_{SiteVector::Zero(dofs), SiteVector::Zero(dofs)},
         offset_{mean_} {}
 
   void reset() noexcept {

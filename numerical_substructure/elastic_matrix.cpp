@@ -12,8 +12,9 @@ void ElasticMatrix::trial(const InterfaceVector& displacement_m, const Interface
                           InterfaceVector& force_n) noexcept {
   HYBRIDTEST_ASSERT(displacement_m.size() == interface_dofs());
   HYBRIDTEST_ASSERT(force_n.size() == interface_dofs());
-  // lazyProduct() allocates no buffer.
-  force_n.noalias() = stiffness_n_per_m_.lazyProduct(displacement_m);
+  // Column by column: no buffer, and contiguous memory.
+  force_n.setZero();
+  for (Eigen::Index k = 0; k < displacement_m.size(); ++k) force_n += displacement_m[k] * stiffness_n_per_m_.col(k);
 }
 
 }  // namespace hybridtest

@@ -6,7 +6,7 @@ namespace hybridtest {
 
 NumericalNode::NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
                              MembershipPorts membership, Inbox<DisplacementCommand>& commands,
-                             Outbox<ForceMeasurement>& measurements, RowSink& steps)
+                             Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded)
     : index_{index},
       model_{std::move(model)},
       presence_{presence},
@@ -15,7 +15,8 @@ NumericalNode::NumericalNode(SubstructureIndex index, std::unique_ptr<Substructu
       measurements_{measurements},
       steps_{steps},
       force_n_{InterfaceVector::Zero(model_->interface_dofs())},
-      row_(2 + 2 * static_cast<std::size_t>(model_->interface_dofs())) {}
+      recorded_{std::move(recorded)},
+      row_(2 + 2 * recorded_.size()) {}
 
 Instant NumericalNode::advance(Instant now) noexcept {
   const Instant wake = presence_.advance(now);
@@ -25,8 +26,7 @@ Instant NumericalNode::advance(Instant now) noexcept {
     obey(request);
     if (is_done()) break;
   }
-  DisplacementCommand command;
-  while (commands_.take(command)) serve(command, now);
+  while (commands_.take(command_)) serve(command_, now);
   if (!is_done()) return wake;
   static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
@@ -80,7 +80,7 @@ void NumericalNode::take_step(const CommandPoint& point) noexcept {
   std::size_t next = 0;
   row_[next++] = static_cast<double>(point.step);
   row_[next++] = point.model_time_s;
-  for (Eigen::Index k = 0; k < force_n_.size(); ++k) {
+  for (const Eigen::Index k : recorded_) {
     row_[next++] = point.displacement_m[k];
     row_[next++] = force_n_[k];
   }
@@ -88,19 +88,18 @@ void NumericalNode::take_step(const CommandPoint& point) noexcept {
 }
 
 void NumericalNode::answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept {
-  ForceMeasurement measurement;
-  measurement.substructure = index_;
-  measurement.sender = presence_.identity().incarnation;
-  measurement.step = last_point_.step;
-  measurement.model_time_s = last_point_.model_time_s;
-  measurement.imposed_displacement_m = last_point_.displacement_m;
-  measurement.measured_displacement_m = last_point_.displacement_m;
-  measurement.force_n = force_n_;
-  measurement.flags = flags;
-  measurement.receive_time = now.time_since_epoch();
-  measurement.send_time = now.time_since_epoch();
-  measurement.command_send_time = command.send_time;
-  measurements_.send(measurement);
+  answer_.substructure = index_;
+  answer_.sender = presence_.identity().incarnation;
+  answer_.step = last_point_.step;
+  answer_.model_time_s = last_point_.model_time_s;
+  answer_.imposed_displacement_m = last_point_.displacement_m;
+  answer_.measured_displacement_m = last_point_.displacement_m;
+  answer_.force_n = force_n_;
+  answer_.flags = flags;
+  answer_.receive_time = now.time_since_epoch();
+  answer_.send_time = now.time_since_epoch();
+  answer_.command_send_time = command.send_time;
+  measurements_.send(answer_);
 }
 
 TableLayout NumericalNode::steps_layout(const std::vector<std::string>& dofs) {

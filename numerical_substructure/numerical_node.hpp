@@ -18,10 +18,11 @@ namespace hybridtest {
 /// the model once, also when its command arrives several times.
 class NumericalNode final : public Node {
  public:
-  /// @param index   position of this substructure in the scenario.
+  /// @param index      position of this substructure in the scenario.
+  /// @param recorded   positions of interface degrees of freedom, for the rows of `steps`.
   NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
                 MembershipPorts membership, Inbox<DisplacementCommand>& commands,
-                Outbox<ForceMeasurement>& measurements, RowSink& steps);
+                Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded);
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
@@ -35,7 +36,7 @@ class NumericalNode final : public Node {
     return requested_stop_ != StopReason::none ? requested_stop_ : membership_.stop_reason();
   }
 
-  /// @param dofs   names of the interface degrees of freedom.
+  /// @param dofs   names of the recorded interface degrees of freedom.
   [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);
 
  private:
@@ -53,7 +54,10 @@ class NumericalNode final : public Node {
   RowSink& steps_;
   StopReason requested_stop_ = StopReason::none;
   CommandPoint last_point_;
+  DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
+  ForceMeasurement answer_;
   InterfaceVector force_n_;
+  std::vector<Eigen::Index> recorded_;
   std::vector<double> row_;
 };
 

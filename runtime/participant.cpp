@@ -85,11 +85,11 @@ NumericalParticipant::NumericalParticipant(const Scenario& scenario, const Subst
   numerical_ =
       std::make_unique<NumericalNode>(scenario.index_of(substructure), substructure.make_model(), presence_,
                                       MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
-                                      *commands_, *measurements_, surroundings.sink("steps"));
+                                      *commands_, *measurements_, surroundings.sink("steps"), substructure.recorded);
 }
 
 std::vector<TableLayout> NumericalParticipant::tables(const SubstructureScenario& substructure) {
-  return {NumericalNode::steps_layout(substructure.interface_names)};
+  return {NumericalNode::steps_layout(substructure.recorded_names())};
 }
 
 SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,

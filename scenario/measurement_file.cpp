@@ -95,7 +95,7 @@ RecordedMeasurement read_measurement(const std::filesystem::path& file, int actu
     forces.push_back(lines.column("measured_force_n" + suffix));
   }
   const auto values_of = [&](const std::vector<std::size_t>& columns) {
-    InterfaceVector values{actuators};
+    SiteVector values{actuators};
     for (Eigen::Index i = 0; i < actuators; ++i) values[i] = lines.value(columns[static_cast<std::size_t>(i)]);
     return values;
   };

@@ -94,35 +94,60 @@ void read_excitation(Section& section, const std::filesystem::path& directory, S
   }
 }
 
+/// `{dof: …}`, with `relative_to` or without.
+std::vector<InterfaceDof> one_dof(Section& entry, const DofTable& table) {
+  InterfaceDof interface { .dof = dof_position(entry, "dof", table) };
+  if (entry.has("relative_to")) {
+    interface.relative_to = dof_position(entry, "relative_to", table);
+    if (interface.relative_to == interface.dof) {
+      entry.error("relative_to", "a degree of freedom relative to itself, expected another one");
+      interface.relative_to = InterfaceDof::kGround;
+    }
+    if (table.size() == 0) interface.relative_to = InterfaceDof::kGround;  // reported
+  }
+  return {interface};
+}
+
+/// `{dofs: PATTERN}`: each of them against the ground.
+std::vector<InterfaceDof> matching_dofs(Section& entry, const DofTable& table) {
+  const std::string pattern = entry.text("dofs");
+  std::vector<InterfaceDof> matching;
+  for (const int row : table.matching(pattern)) matching.push_back({.dof = row});
+  if (matching.empty()) entry.error("dofs", "no degree of freedom matches '" + pattern + "'");
+  return matching;
+}
+
 void read_interface(Section& section, const DofTable& table, SubstructureScenario& substructure) {
   const std::vector<std::string>& dofs = table.names();
   std::vector<InterfaceDof> interface_dofs;
+  std::set<std::string> names;
   for (Section& entry : section.sections("interface")) {
-    InterfaceDof interface { .dof = dof_position(entry, "dof", table) };
-    std::string name = dofs.empty() ? "" : dofs[static_cast<std::size_t>(interface.dof)];
-    if (entry.has("relative_to")) {
-      interface.relative_to = dof_position(entry, "relative_to", table);
-      if (!dofs.empty()) name += "_relative_to_" + dofs[static_cast<std::size_t>(interface.relative_to)];
-      if (interface.relative_to == interface.dof) {
-        entry.error("relative_to", "a degree of freedom relative to itself, expected another one");
-        interface.relative_to = InterfaceDof::kGround;
+    const bool is_pattern = entry.has("dofs");
+    for (InterfaceDof interface : is_pattern ? matching_dofs(entry, table) : one_dof(entry, table)) {
+      std::string name = dofs.empty() ? "" : dofs[static_cast<std::size_t>(interface.dof)];
+      if (interface.relative_to != InterfaceDof::kGround) {
+        name += "_relative_to_" + dofs[static_cast<std::size_t>(interface.relative_to)];
       }
-    }
-    entry.finish();
-    if (std::ranges::find(substructure.interface_names, name) != substructure.interface_names.end()) {
-      entry.error("dof", "this interface degree of freedom is listed twice");
-    }
-    if (substructure.role == Role::numerical_substructure && name.size() > kInterfaceNameLongest) {
-      entry.error("dof", "'" + name +
+      const std::string_view key = is_pattern ? "dofs" : "dof";
+      if (!names.insert(name).second)
+        entry.error(key, "the interface degree of freedom '" + name + "' is listed twice");
+      if (substructure.role == Role::numerical_substructure && name.size() > kInterfaceNameLongest) {
+        entry.error(key, "'" + name +
                              "' is the name of this interface degree of freedom in the recording; expected at "
                              "most " +
                              std::to_string(kInterfaceNameLongest) + " letters: shorten the names");
+      }
+      interface_dofs.push_back(interface);
+      substructure.interface_names.push_back(std::move(name));
     }
-    interface_dofs.push_back(interface);
-    substructure.interface_names.push_back(std::move(name));
+    entry.finish();
   }
-  if (interface_dofs.empty() || interface_dofs.size() > kMaxInterfaceDofs) {
-    section.error("interface", "expected 1 to " + std::to_string(kMaxInterfaceDofs) + " degrees of freedom");
+  const bool is_numerical = substructure.role == Role::numerical_substructure;
+  const auto most = static_cast<std::size_t>(is_numerical ? kMaxInterfaceDofs : kMaxSiteDofs);
+  if (interface_dofs.empty() || interface_dofs.size() > most) {
+    section.error("interface", std::to_string(interface_dofs.size()) + " degrees of freedom; expected 1 to " +
+                                   std::to_string(most) +
+                                   (is_numerical ? "" : ", which the control loop of a site has room for"));
     interface_dofs.resize(1);
     substructure.interface_names.resize(1);
   }
@@ -281,16 +306,29 @@ Eigen::SparseMatrix<double> assembled_stiffness(const Scenario& scenario) {
   return stiffness;
 }
 
-/// Those at an interface, each once, in order.
-std::vector<Eigen::Index> interface_dofs(const Scenario& scenario) {
+/// Those at an interface of at most so many, each once, in order.
+std::vector<Eigen::Index> interface_dofs(const Scenario& scenario, std::size_t widest = kMaxInterfaceDofs) {
   std::set<Eigen::Index> dofs;
   for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.interface_names.size() > widest) continue;
     for (const InterfaceDof& interface : substructure.interface.dofs()) {
       dofs.insert(interface.dof);
       if (interface.relative_to != InterfaceDof::kGround) dofs.insert(interface.relative_to);
     }
   }
   return {dofs.begin(), dofs.end()};
+}
+
+/// Positions of all, or of a wide interface those whose degree of freedom the coordinator records.
+std::vector<Eigen::Index> recorded_interface(const SubstructureScenario& substructure,
+                                             const std::vector<Eigen::Index>& recorded_dofs) {
+  const std::vector<InterfaceDof>& dofs = substructure.interface.dofs();
+  std::vector<Eigen::Index> recorded;
+  for (std::size_t k = 0; k < dofs.size(); ++k) {
+    if (dofs.size() <= kAllRecordedUpTo || std::ranges::binary_search(recorded_dofs, dofs[k].dof))
+      recorded.push_back(static_cast<Eigen::Index>(k));
+  }
+  return recorded;
 }
 
 /// Of the elastic part: some force resists a displacement there.
@@ -375,6 +413,12 @@ const SubstructureScenario* Scenario::find(std::string_view id) const noexcept {
   return found == substructures.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> SubstructureScenario::recorded_names() const {
+  std::vector<std::string> names;
+  for (const Eigen::Index k : recorded) names.push_back(interface_names[static_cast<std::size_t>(k)]);
+  return names;
+}
+
 std::vector<std::string> Scenario::recorded_names() const {
   std::vector<std::string> names;
   for (const Eigen::Index dof : recorded_dofs) names.push_back(dofs[static_cast<std::size_t>(dof)]);
@@ -415,7 +459,10 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     scenario.substructures.push_back(read_substructure(section, scenario, reading.dofs, document.directory()));
   }
   const NumericalErrors errors = read_numerical_errors(root);
-  scenario.recorded_dofs = read_output(root, reading.dofs, interface_dofs(scenario));
+  scenario.recorded_dofs = read_output(root, reading.dofs, interface_dofs(scenario, kAllRecordedUpTo));
+  for (SubstructureScenario& substructure : scenario.substructures) {
+    substructure.recorded = recorded_interface(substructure, scenario.recorded_dofs);
+  }
   read_timeouts(root, scenario.timeouts);
   Section recording = root.section_or_empty("recording");
   scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;

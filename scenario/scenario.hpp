@@ -68,7 +68,11 @@ struct SubstructureScenario {
   Role role = Role::numerical_substructure;
   InterfaceMap interface;
   std::vector<std::string> interface_names;  // `floor_2_floor_1` for relative ones
+  /// Positions in the interface that a numerical substructure records: all, or of a wide interface those of `output`.
+  std::vector<Eigen::Index> recorded;
   Eigen::MatrixXd initial_stiffness_n_per_m;
+  /// Names of `recorded`.
+  [[nodiscard]] std::vector<std::string> recorded_names() const;
   // Makers of the parts, called in the process that needs them.
   std::function<std::unique_ptr<SubstructureModel>()> make_model;  // numerical
   SiteScenario site;                                               // experimental, and below

@@ -21,7 +21,6 @@ using config::Section;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using DampingRule = std::function<SparseMatrix(const LinearStructure&)>;
 
-constexpr std::size_t kAllRecordedUpTo = 100;
 constexpr std::size_t kEvenlyRecorded = 20;
 
 SparseMatrix sparse_diagonal(const Eigen::VectorXd& values) {

@@ -38,8 +38,11 @@ struct StructureReading {
 /// Without a table of degrees of freedom and without the mapping, all by 1.
 [[nodiscard]] Eigen::VectorXd read_influence(config::Section& excitation, const DofTable& dofs);
 
+/// Without the section `output`, as many degrees of freedom of a structure or of an interface are all recorded.
+inline constexpr std::size_t kAllRecordedUpTo = 100;
+
 /// Rows of the degrees of freedom that the coordinator records, in order: those of `output`, or without that section
-/// all of a structure of up to 100, of a larger one 20 evenly over the table; and the ones in `always`.
+/// all of a structure of up to kAllRecordedUpTo, of a larger one 20 evenly over the table; and the ones in `always`.
 /// Reports more of them than the columns of a table hold, and names that are too long for a column.
 [[nodiscard]] std::vector<Eigen::Index> read_output(config::Section& root, const DofTable& dofs,
                                                     const std::vector<Eigen::Index>& always);

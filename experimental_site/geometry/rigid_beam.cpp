@@ -21,8 +21,8 @@ RigidBeam::RigidBeam(const std::array<Actuator, 2>& actuators) : actuators_{actu
                         " of the rigid beam has no length: its anchor and its attachment are the same point"};
     }
   }
-  InterfaceMatrix jacobian{2, 2};
-  derivative(InterfaceVector::Zero(2), jacobian);
+  SiteMatrix jacobian{2, 2};
+  derivative(SiteVector::Zero(2), jacobian);
   const double determinant_m = jacobian(0, 0) * jacobian(1, 1) - jacobian(0, 1) * jacobian(1, 0);
   if (!(std::abs(determinant_m) > kArm_m_min)) {
     throw ConfigError{
@@ -31,13 +31,13 @@ RigidBeam::RigidBeam(const std::array<Actuator, 2>& actuators) : actuators_{actu
   }
 }
 
-void RigidBeam::strokes(const InterfaceVector& pose, InterfaceVector& stroke_m) const noexcept {
+void RigidBeam::strokes(const SiteVector& pose, SiteVector& stroke_m) const noexcept {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     stroke_m[static_cast<Eigen::Index>(i)] = chord(actuators_[i], pose).norm() - length_at_rest_m_[i];
   }
 }
 
-void RigidBeam::derivative(const InterfaceVector& pose, InterfaceMatrix& jacobian) const noexcept {
+void RigidBeam::derivative(const SiteVector& pose, SiteMatrix& jacobian) const noexcept {
   const double cosine = std::cos(pose[1]);
   const double sine = std::sin(pose[1]);
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
@@ -50,7 +50,7 @@ void RigidBeam::derivative(const InterfaceVector& pose, InterfaceMatrix& jacobia
   }
 }
 
-Eigen::Vector2d RigidBeam::chord(const Actuator& actuator, const InterfaceVector& pose) noexcept {
+Eigen::Vector2d RigidBeam::chord(const Actuator& actuator, const SiteVector& pose) noexcept {
   const double cosine = std::cos(pose[1]);
   const double sine = std::sin(pose[1]);
   const Eigen::Vector2d& a = actuator.attachment_m;

@@ -30,12 +30,12 @@ class RigidBeam final : public SetupGeometry {
 
   [[nodiscard]] int dofs() const noexcept override { return 2; }
   [[nodiscard]] int actuators() const noexcept override { return 2; }
-  void strokes(const InterfaceVector& pose, InterfaceVector& stroke_m) const noexcept override;
-  void derivative(const InterfaceVector& pose, InterfaceMatrix& jacobian) const noexcept override;
+  void strokes(const SiteVector& pose, SiteVector& stroke_m) const noexcept override;
+  void derivative(const SiteVector& pose, SiteMatrix& jacobian) const noexcept override;
 
  private:
   /// From anchor to attachment.
-  [[nodiscard]] static Eigen::Vector2d chord(const Actuator& actuator, const InterfaceVector& pose) noexcept;
+  [[nodiscard]] static Eigen::Vector2d chord(const Actuator& actuator, const SiteVector& pose) noexcept;
 
   std::array<Actuator, 2> actuators_;
   std::array<double, 2> length_at_rest_m_{};

@@ -16,10 +16,10 @@ class SetupGeometry {
   [[nodiscard]] virtual int dofs() const noexcept = 0;
   [[nodiscard]] virtual int actuators() const noexcept = 0;
   /// @param stroke_m   sized actuators() by the caller.
-  virtual void strokes(const InterfaceVector& pose, InterfaceVector& stroke_m) const noexcept = 0;
+  virtual void strokes(const SiteVector& pose, SiteVector& stroke_m) const noexcept = 0;
   /// Derivative of the strokes by the pose.
   /// @param jacobian   sized actuators() by dofs() by the caller; [-] and [m] for rotations.
-  virtual void derivative(const InterfaceVector& pose, InterfaceMatrix& jacobian) const noexcept = 0;
+  virtual void derivative(const SiteVector& pose, SiteMatrix& jacobian) const noexcept = 0;
 };
 
 /// The pose that belongs to measured strokes: Gauss-Newton iteration from a nearby pose, at most 20 steps.
@@ -28,13 +28,12 @@ class SetupGeometry {
 ///               unchanged when not found.
 /// @return false when not found: no pose has these strokes, a number is not finite, or the actuators do not
 ///         hold the degrees of freedom in that pose.
-[[nodiscard]] bool find_pose(const SetupGeometry& geometry, const InterfaceVector& stroke_m,
-                             InterfaceVector& pose) noexcept;
+[[nodiscard]] bool find_pose(const SetupGeometry& geometry, const SiteVector& stroke_m, SiteVector& pose) noexcept;
 
 /// Forces [N] and moments [N m] at the degrees of freedom, by virtual work: the transposed derivative at the
 /// pose times the actuator forces.
 /// @param dof_force   sized dofs() by the caller.
-void transfer_forces(const SetupGeometry& geometry, const InterfaceVector& pose, const InterfaceVector& force_n,
-                     InterfaceVector& dof_force) noexcept;
+void transfer_forces(const SetupGeometry& geometry, const SiteVector& pose, const SiteVector& force_n,
+                     SiteVector& dof_force) noexcept;
 
 }  // namespace hybridtest

@@ -11,10 +11,10 @@ namespace hybridtest {
 TransformedRig::TransformedRig(std::unique_ptr<Rig> rig, std::unique_ptr<SetupGeometry> geometry, double stroke_limit_m)
     : rig_{std::move(rig)}, geometry_{std::move(geometry)}, stroke_limit_m_{stroke_limit_m} {
   HYBRIDTEST_ASSERT(rig_ != nullptr && geometry_ != nullptr && stroke_limit_m_ > 0.0);
-  const InterfaceVector at_rest = InterfaceVector::Zero(geometry_->actuators());
+  const SiteVector at_rest = SiteVector::Zero(geometry_->actuators());
   command_.displacement_m = at_rest;
   feedback_ = {at_rest, at_rest};
-  pose_ = InterfaceVector::Zero(geometry_->dofs());
+  pose_ = SiteVector::Zero(geometry_->dofs());
   row_.resize(actuators_layout(geometry_->actuators()).columns.size());
 }
 
@@ -40,7 +40,7 @@ void TransformedRig::connect() {
 }
 
 RigStatus TransformedRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {
-  const auto fits = [this](const InterfaceVector& vector) { return vector.size() == geometry_->dofs(); };
+  const auto fits = [this](const SiteVector& vector) { return vector.size() == geometry_->dofs(); };
   if (!fits(command.displacement_m) || !command.displacement_m.allFinite() || !fits(feedback.displacement_m) ||
       !fits(feedback.force_n)) {
     fault_ = RigFault::invalid_command;

@@ -44,7 +44,7 @@ class TransformedRig final : public Rig {
   std::vector<double> row_;
   ActuatorCommand command_;        // in actuators
   RigFeedback feedback_;           // in actuators
-  InterfaceVector pose_;           // measured
+  SiteVector pose_;                // measured
   std::optional<RigFault> fault_;  // of the geometry; otherwise the inner rig has it
 };
 

@@ -22,8 +22,8 @@ RecordedMeasurement checked_record(RecordedMeasurement record) {
   const auto width = record.displacement_m.front().size();
   for (std::size_t row = 0; row < rows; ++row) {
     const std::string where = "row " + std::to_string(row + 1) + " of the record: ";
-    const InterfaceVector& displacement_m = record.displacement_m[row];
-    const InterfaceVector& force_n = record.force_n[row];
+    const SiteVector& displacement_m = record.displacement_m[row];
+    const SiteVector& force_n = record.force_n[row];
     if (width < 1 || displacement_m.size() != width || force_n.size() != width) {
       throw ConfigError{where + "the number of actuators differs from that of row 1"};
     }
@@ -61,7 +61,7 @@ void ReplayRig::arm() {
 
 RigStatus ReplayRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {
   const Phase phase = phase_;
-  const auto fits = [this](const InterfaceVector& vector) { return vector.size() == present_.force_n.size(); };
+  const auto fits = [this](const SiteVector& vector) { return vector.size() == present_.force_n.size(); };
   if (phase == Phase::disconnected || !fits(command.displacement_m) || !command.displacement_m.allFinite() ||
       !fits(feedback.displacement_m) || !fits(feedback.force_n)) {
     fault_ = phase == Phase::disconnected ? RigFault::not_connected : RigFault::invalid_command;

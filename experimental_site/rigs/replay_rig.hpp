@@ -11,9 +11,9 @@ namespace hybridtest {
 
 /// A recorded measurement.
 struct RecordedMeasurement {
-  std::vector<double> time_s;                   // [s] strictly increasing, at least one
-  std::vector<InterfaceVector> displacement_m;  // [m] one for each time
-  std::vector<InterfaceVector> force_n;         // [N] one for each time
+  std::vector<double> time_s;              // [s] strictly increasing, at least one
+  std::vector<SiteVector> displacement_m;  // [m] one for each time
+  std::vector<SiteVector> force_n;         // [N] one for each time
 };
 
 /// Returns a recorded measurement as the feedback, independent of the command. For the analysis after

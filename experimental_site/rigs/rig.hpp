@@ -12,15 +12,15 @@ namespace hybridtest {
 
 /// Command to the actuators at one control sample.
 struct ActuatorCommand {
-  std::int64_t sample = 0;         // counts control periods since arming
-  double time_s = 0.0;             // [s] since arming
-  InterfaceVector displacement_m;  // [m] one per actuator
+  std::int64_t sample = 0;    // counts control periods since arming
+  double time_s = 0.0;        // [s] since arming
+  SiteVector displacement_m;  // [m] one per actuator
 };
 
 /// Measured values at the same control sample.
 struct RigFeedback {
-  InterfaceVector displacement_m;  // [m] as the transducers read
-  InterfaceVector force_n;         // [N] as the load cells read
+  SiteVector displacement_m;  // [m] as the transducers read
+  SiteVector force_n;         // [N] as the load cells read
 };
 
 enum class RigStatus : std::uint8_t { healthy, fault };

@@ -50,7 +50,7 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
                           .displacement_sensor = NoisySensor{displacement_noise_m, Random{noise.seed, stream}},
                           .force_sensor = NoisySensor{force_noise_n, Random{noise.seed, stream + 1}}});
   }
-  displacement_m_ = velocity_m_per_s_ = force_n_ = InterfaceVector::Zero(dofs);
+  displacement_m_ = velocity_m_per_s_ = force_n_ = SiteVector::Zero(dofs);
 }
 
 void SimulatedRig::connect() {
@@ -105,7 +105,7 @@ RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& fe
 
 void SimulatedRig::stop_motion() noexcept { phase_ = Phase::stopped; }
 
-bool SimulatedRig::is_usable(const InterfaceVector& command_m) const noexcept {
+bool SimulatedRig::is_usable(const SiteVector& command_m) const noexcept {
   return command_m.size() == specimen_->dofs() && command_m.allFinite();
 }
 
@@ -134,7 +134,7 @@ void SimulatedRig::load_specimen(double time_s) noexcept {
     displacement_m_[dof] = actuators_[i].given.displacement_m;
     velocity_m_per_s_[dof] = actuators_[i].given.velocity_m_per_s;
   }
-  InterfaceVector before_n = force_n_;
+  SiteVector before_n = force_n_;
   specimen_->impose(displacement_m_, velocity_m_per_s_, force_n_);
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     const auto dof = static_cast<Eigen::Index>(i);

@@ -73,7 +73,7 @@ class SimulatedRig final : public Rig {
     double read_m = 0.0;
   };
 
-  [[nodiscard]] bool is_usable(const InterfaceVector& command_m) const noexcept;
+  [[nodiscard]] bool is_usable(const SiteVector& command_m) const noexcept;
   void move(Actuator& actuator, const StageSample& command, bool is_armed) noexcept;
   void load_specimen(double time_s) noexcept;
   [[nodiscard]] double read_force(Actuator& actuator, double time_s, double force_n) noexcept;
@@ -83,9 +83,9 @@ class SimulatedRig final : public Rig {
   double control_period_s_;
   RigFault fault_ = RigFault::unknown;
   std::atomic<Phase> phase_{Phase::disconnected};  // the only member that stop_motion() uses
-  InterfaceVector displacement_m_;                 // this and the following: input of the specimen
-  InterfaceVector velocity_m_per_s_;
-  InterfaceVector force_n_;
+  SiteVector displacement_m_;                      // this and the following: input of the specimen
+  SiteVector velocity_m_per_s_;
+  SiteVector force_n_;
 };
 
 }  // namespace hybridtest

@@ -11,7 +11,7 @@ std::int32_t distance(std::uint32_t earlier, std::uint32_t later) noexcept {
 }  // namespace
 
 UdpAnswers::UdpAnswers(int actuators) : actuators_{actuators} {
-  newest_.displacement_m = newest_.force_n = InterfaceVector::Zero(actuators);
+  newest_.displacement_m = newest_.force_n = SiteVector::Zero(actuators);
 }
 
 void UdpAnswers::begin(std::uint32_t next_command) noexcept {

@@ -28,11 +28,11 @@ constexpr std::size_t kControlPeriodAt = 20;
 constexpr std::size_t kCommandSequenceAt = 12;
 constexpr std::size_t kStatusAt = 18;
 constexpr std::size_t kDiscardedAt = 20;
-constexpr std::size_t kForceAt = kDisplacementAt + sizeof(double) * kMaxInterfaceDofs;
+constexpr std::size_t kForceAt = kDisplacementAt + sizeof(double) * kMaxSiteDofs;
 
 constexpr std::size_t kChecksumBytes = 4;
 static_assert(kForceAt + kChecksumBytes == kCommandBytes);
-static_assert(kForceAt + sizeof(double) * kMaxInterfaceDofs + kChecksumBytes == kMeasurementBytes);
+static_assert(kForceAt + sizeof(double) * kMaxSiteDofs + kChecksumBytes == kMeasurementBytes);
 
 template <std::unsigned_integral Value>
 void put(std::span<std::byte> bytes, std::size_t at, Value value) noexcept {
@@ -46,13 +46,13 @@ template <std::unsigned_integral Value>
   return static_cast<Value>(value);
 }
 
-void put(std::span<std::byte> bytes, std::size_t at, const InterfaceVector& values) noexcept {
+void put(std::span<std::byte> bytes, std::size_t at, const SiteVector& values) noexcept {
   for (Eigen::Index i = 0; i < values.size(); ++i, at += sizeof(double)) {
     put(bytes, at, std::bit_cast<std::uint64_t>(values[i]));
   }
 }
 
-void get(std::span<const std::byte> bytes, std::size_t at, InterfaceVector& values) noexcept {
+void get(std::span<const std::byte> bytes, std::size_t at, SiteVector& values) noexcept {
   values.resize(get<std::uint8_t>(bytes, kActuatorsAt));
   for (Eigen::Index i = 0; i < values.size(); ++i, at += sizeof(double)) {
     values[i] = std::bit_cast<double>(get<std::uint64_t>(bytes, at));
@@ -60,7 +60,7 @@ void get(std::span<const std::byte> bytes, std::size_t at, InterfaceVector& valu
 }
 
 void begin(std::span<std::byte> bytes, std::string_view magic, Eigen::Index actuators) noexcept {
-  HYBRIDTEST_ASSERT(actuators >= 1 && actuators <= kMaxInterfaceDofs);
+  HYBRIDTEST_ASSERT(actuators >= 1 && actuators <= kMaxSiteDofs);
   std::ranges::fill(bytes, std::byte{0});
   for (std::size_t i = 0; i < magic.size(); ++i) bytes[i] = static_cast<std::byte>(magic[i]);
   put(bytes, kVersionAt, kUdpProtocolVersion);
@@ -85,7 +85,7 @@ DatagramDefect defect_of(std::span<const std::byte> bytes, std::string_view magi
   const std::size_t end = size - kChecksumBytes;
   if (get<std::uint32_t>(bytes, end) != crc32(bytes.first(end))) return DatagramDefect::checksum;
   const auto actuators = get<std::uint8_t>(bytes, kActuatorsAt);
-  if (actuators < 1 || actuators > kMaxInterfaceDofs) return DatagramDefect::actuators;
+  if (actuators < 1 || actuators > kMaxSiteDofs) return DatagramDefect::actuators;
   return get<std::uint8_t>(bytes, kStateAt) > highest_state ? DatagramDefect::state : DatagramDefect::none;
 }
 

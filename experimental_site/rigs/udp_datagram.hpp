@@ -37,7 +37,7 @@ struct CommandDatagram {
   ControllerRequest request = ControllerRequest::inactive;
   std::uint32_t control_period_ns = 0;  // [ns] between two loop counts
   std::int64_t time_ns = 0;             // [ns] of the command, since arming
-  InterfaceVector displacement_m;       // [m] one per actuator; followed only with `active`
+  SiteVector displacement_m;            // [m] one per actuator; followed only with `active`
   bool operator==(const CommandDatagram&) const = default;
 };
 
@@ -47,10 +47,10 @@ struct MeasurementDatagram {
   std::uint32_t command_sequence = 0;  // of the newest command accepted; 0 before the first
   ControllerState state = ControllerState::inactive;
   std::uint16_t status = 0;
-  std::uint32_t discarded = 0;     // commands not accepted: damaged, or older than the newest
-  std::int64_t time_ns = 0;        // [ns] of the measurement, by the controller's clock
-  InterfaceVector displacement_m;  // [m] one per actuator
-  InterfaceVector force_n;         // [N] one per actuator
+  std::uint32_t discarded = 0;  // commands not accepted: damaged, or older than the newest
+  std::int64_t time_ns = 0;     // [ns] of the measurement, by the controller's clock
+  SiteVector displacement_m;    // [m] one per actuator
+  SiteVector force_n;           // [N] one per actuator
   bool operator==(const MeasurementDatagram&) const = default;
 };
 
@@ -64,7 +64,7 @@ enum class DatagramDefect : std::uint8_t { none, size, magic, version, checksum,
 /// Text for messages, such as "another protocol version".
 [[nodiscard]] std::string_view describe(DatagramDefect defect) noexcept;
 
-/// @param datagram   with 1 to kMaxInterfaceDofs actuators.
+/// @param datagram   with 1 to kMaxSiteDofs actuators.
 void encode(const CommandDatagram& datagram, CommandBytes& bytes) noexcept;
 void encode(const MeasurementDatagram& datagram, MeasurementBytes& bytes) noexcept;
 

@@ -34,7 +34,7 @@ UdpRig::UdpRig(const Settings& settings, std::unique_ptr<DatagramPort> port)
       row_(link_layout().columns.size(), 0.0),
       answers_{settings.actuators} {
   HYBRIDTEST_ASSERT(port_ != nullptr);
-  HYBRIDTEST_ASSERT(settings.actuators >= 1 && settings.actuators <= kMaxInterfaceDofs);
+  HYBRIDTEST_ASSERT(settings.actuators >= 1 && settings.actuators <= kMaxSiteDofs);
   const double period_s = to_seconds(settings.control_period);
   static_cast<void>(checked("control_period_s", period_s, {.low = 0.0, .high = 4.29, .low_open = true}));
   static_cast<void>(checked("watchdog_s", to_seconds(settings.watchdog), {.low = 2.0 * period_s}));
@@ -43,7 +43,7 @@ UdpRig::UdpRig(const Settings& settings, std::unique_ptr<DatagramPort> port)
   static_cast<void>(checked("reply_wait_s", to_seconds(settings.reply_wait), waits));
   static_cast<void>(checked("connect_timeout_s", to_seconds(settings.connect_timeout), kPositive));
   watchdog_samples_ = whole_samples(settings.watchdog, settings.control_period);
-  rest_.displacement_m = InterfaceVector::Zero(settings.actuators);
+  rest_.displacement_m = SiteVector::Zero(settings.actuators);
 }
 
 TableLayout UdpRig::link_layout() {
@@ -115,7 +115,7 @@ void UdpRig::arm() {
 
 RigStatus UdpRig::exchange(const ActuatorCommand& command, RigFeedback& feedback) noexcept {
   const Phase phase = phase_;
-  const auto fits = [this](const InterfaceVector& vector) { return vector.size() == settings_.actuators; };
+  const auto fits = [this](const SiteVector& vector) { return vector.size() == settings_.actuators; };
   if (phase == Phase::disconnected || !fits(command.displacement_m) || !command.displacement_m.allFinite() ||
       !fits(feedback.displacement_m) || !fits(feedback.force_n)) {
     return RigStatus::fault;

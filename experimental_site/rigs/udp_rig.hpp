@@ -26,7 +26,7 @@ class UdpRig final : public Rig {
  public:
   struct Settings {
     std::string name;                // of the controller, for messages
-    int actuators = 1;               // 1 to kMaxInterfaceDofs
+    int actuators = 1;               // 1 to kMaxSiteDofs
     Duration control_period{};       // from one exchange() to the next; positive, below 4.29 s
     Duration watchdog{};             // at least two control periods
     Duration reply_wait{};           // longest wait of exchange() for the answer to its own command

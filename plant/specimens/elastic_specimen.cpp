@@ -7,8 +7,8 @@ namespace hybridtest {
 ElasticSpecimen::ElasticSpecimen(const Eigen::MatrixXd& stiffness_n_per_m)
     : stiffness_n_per_m_{checked_stiffness(stiffness_n_per_m)} {}
 
-void ElasticSpecimen::impose(const InterfaceVector& displacement_m, const InterfaceVector& /*velocity_m_per_s*/,
-                             InterfaceVector& force_n) noexcept {
+void ElasticSpecimen::impose(const SiteVector& displacement_m, const SiteVector& /*velocity_m_per_s*/,
+                             SiteVector& force_n) noexcept {
   // lazyProduct: coefficient by coefficient, with no buffer to allocate.
   force_n.noalias() = stiffness_n_per_m_.lazyProduct(displacement_m);
 }

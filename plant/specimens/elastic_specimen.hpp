@@ -13,12 +13,12 @@ class ElasticSpecimen final : public Specimen {
   explicit ElasticSpecimen(const Eigen::MatrixXd& stiffness_n_per_m);
 
   [[nodiscard]] int dofs() const noexcept override { return static_cast<int>(stiffness_n_per_m_.rows()); }
-  void impose(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
-              InterfaceVector& force_n) noexcept override;
+  void impose(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s,
+              SiteVector& force_n) noexcept override;
   void reset() noexcept override {}
 
  private:
-  InterfaceMatrix stiffness_n_per_m_;
+  SiteMatrix stiffness_n_per_m_;
 };
 
 }  // namespace hybridtest

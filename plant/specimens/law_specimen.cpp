@@ -8,14 +8,14 @@
 namespace hybridtest {
 
 LawSpecimen::LawSpecimen(std::vector<std::unique_ptr<Law>> laws) : laws_{std::move(laws)} {
-  if (laws_.empty() || laws_.size() > kMaxInterfaceDofs) {
+  if (laws_.empty() || laws_.size() > kMaxSiteDofs) {
     throw ConfigError{"a specimen of " + std::to_string(laws_.size()) + " laws; expected 1 to " +
-                      std::to_string(kMaxInterfaceDofs) + ", one per actuator"};
+                      std::to_string(kMaxSiteDofs) + ", one per actuator"};
   }
 }
 
-void LawSpecimen::impose(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
-                         InterfaceVector& force_n) noexcept {
+void LawSpecimen::impose(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s,
+                         SiteVector& force_n) noexcept {
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     const auto dof = static_cast<Eigen::Index>(i);
     force_n[dof] = 0.0;

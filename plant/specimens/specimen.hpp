@@ -16,8 +16,8 @@ class Specimen {
   /// @param displacement_m, velocity_m_per_s   dofs() entries, at the end of the sample.
   /// @param force_n                            sized dofs() by the caller; positive when it
   ///                                           resists a positive displacement.
-  virtual void impose(const InterfaceVector& displacement_m, const InterfaceVector& velocity_m_per_s,
-                      InterfaceVector& force_n) noexcept = 0;
+  virtual void impose(const SiteVector& displacement_m, const SiteVector& velocity_m_per_s,
+                      SiteVector& force_n) noexcept = 0;
   /// As new.
   virtual void reset() noexcept = 0;
 };

@@ -103,8 +103,8 @@ GeometryReading read_geometry(Section section, int dofs) {
 
 /// Of the degrees of freedom at rest, by virtual work: J^T K J.
 Eigen::MatrixXd stiffness_behind(const SetupGeometry& geometry, const Eigen::MatrixXd& stiffness_n_per_m) {
-  InterfaceMatrix jacobian{geometry.actuators(), geometry.dofs()};
-  geometry.derivative(InterfaceVector::Zero(geometry.dofs()), jacobian);
+  SiteMatrix jacobian{geometry.actuators(), geometry.dofs()};
+  geometry.derivative(SiteVector::Zero(geometry.dofs()), jacobian);
   return jacobian.transpose() * stiffness_n_per_m * jacobian;
 }
 
@@ -128,7 +128,7 @@ RigReading behind(const GeometryReading& geometry, int dofs, RigReading rig) {
 }  // namespace
 
 RigReading read_rig(Section section, int dofs, const std::filesystem::path& directory, int site) {
-  const auto first_noise_stream = static_cast<std::uint64_t>(site) * 2 * kMaxInterfaceDofs;
+  const auto first_noise_stream = static_cast<std::uint64_t>(site) * 2 * kMaxSiteDofs;
   struct RigType {
     std::string name;
     std::function<RigReading(int actuators)> read;

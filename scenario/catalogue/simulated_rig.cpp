@@ -110,9 +110,9 @@ bool has_whole_specimen(const SimulatedSiteReading& site) {
 
 Eigen::MatrixXd secant_stiffness(Specimen& specimen, double displacement_m) {
   const int dofs = specimen.dofs();
-  const InterfaceVector no_velocity = InterfaceVector::Zero(dofs);
-  InterfaceVector pushed_m = InterfaceVector::Zero(dofs);
-  InterfaceVector force_n = InterfaceVector::Zero(dofs);
+  const SiteVector no_velocity = SiteVector::Zero(dofs);
+  SiteVector pushed_m = SiteVector::Zero(dofs);
+  SiteVector force_n = SiteVector::Zero(dofs);
   Eigen::MatrixXd stiffness_n_per_m{dofs, dofs};
   for (int k = 0; k < dofs; ++k) {
     pushed_m.setZero();

@@ -49,6 +49,8 @@ inline ParticipantStatus sample_status(ParticipantId id, LifecycleState state = 
 inline DisplacementCommand sample_command(SubstructureIndex substructure, Step step) {
   DisplacementCommand message{.substructure = substructure,
                               .coordinator = 42,
+                              .iteration = 3,
+                              .is_trial = true,
                               .point_count = 3,
                               .attempt = 9,
                               .send_time = Duration{987654321}};
@@ -66,6 +68,7 @@ inline ForceMeasurement sample_measurement(SubstructureIndex substructure, Step 
   return {.substructure = substructure,
           .sender = 4711,
           .step = step,
+          .iteration = 6,
           .model_time_s = 2.5,
           .imposed_displacement_m = counting_from(0.5, 12),
           .measured_displacement_m = counting_from(50.5, 2),

@@ -56,9 +56,9 @@ std::unique_ptr<SimulatedRig> rig_with(std::vector<EffectSetting> effects) {
 ForbiddenCalls calls_of(SimulatedRig& rig) {
   rig.connect();
   rig.arm();
-  RigFeedback feedback{.displacement_m = InterfaceVector::Zero(1), .force_n = InterfaceVector::Zero(1)};
+  RigFeedback feedback{.displacement_m = SiteVector::Zero(1), .force_n = SiteVector::Zero(1)};
   ActuatorCommand command;
-  command.displacement_m = InterfaceVector::Zero(1);
+  command.displacement_m = SiteVector::Zero(1);
   int faults = 0;
   ForbiddenCalls calls;
   {

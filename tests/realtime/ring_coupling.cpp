@@ -115,7 +115,7 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
       rig_{noisy_rig(kControlPeriod)},
       loop_{std::make_unique<ControlLoop>(wide_limits(mode, command_age_s), *rig_,
                                           compensation(compensates, kControlPeriod),
-                                          EnergyErrorMonitor{InterfaceMatrix::Constant(1, 1, 4.0e6), 0.01},
+                                          EnergyErrorMonitor{SiteMatrix::Constant(1, 1, 4.0e6), 0.01},
                                           ControlLoopPorts{requests_, reports_, signals_}, control_record_)},
       link_{std::make_unique<SiteLink>(
           SubstructureIndex{0}, 1, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
@@ -123,7 +123,7 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
       numerical_{std::make_unique<NumericalNode>(
           SubstructureIndex{1}, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
           MembershipPorts{numerical_announcements_, numerical_control_, kLease}, numerical_commands_, measurements_,
-          numerical_record_)},
+          numerical_record_, std::vector<Eigen::Index>{0})},
       coordinator_{std::make_unique<Coordinator>(
           settings(mode, last_step), std::make_unique<CentralDifference>(two_storeys(), kStep_s), coordinator_presence_,
           CoordinatorPorts{announcements_, coordinator_control_, control_, measurements_, commands_},

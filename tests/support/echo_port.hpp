@@ -24,7 +24,7 @@ class EchoPort final : public DatagramPort {
     answer.sequence = ++sequence_;
     answer.command_sequence = command.sequence;
     answer.state = static_cast<ControllerState>(command.request);
-    if (displacement_m_.size() == 0) displacement_m_ = InterfaceVector::Zero(command.displacement_m.size());
+    if (displacement_m_.size() == 0) displacement_m_ = SiteVector::Zero(command.displacement_m.size());
     if (command.request == ControllerRequest::active) displacement_m_ = command.displacement_m;
     answer.displacement_m = displacement_m_;
     answer.force_n = stiffness_n_per_m_ * displacement_m_;
@@ -46,7 +46,7 @@ class EchoPort final : public DatagramPort {
   std::mutex mutex_;
   double stiffness_n_per_m_;
   std::uint32_t sequence_ = 0;
-  InterfaceVector displacement_m_;
+  SiteVector displacement_m_;
   MeasurementBytes bytes_{};
   bool has_answer_ = false;
 };

@@ -38,7 +38,7 @@ class ScriptedController {
   ControllerState state = ControllerState::inactive;
   bool refuses_to_move = false;  // stays inactive when it is asked to be active
   std::uint16_t status = 0;
-  InterfaceVector displacement_m;
+  SiteVector displacement_m;
   std::vector<CommandDatagram> commands;  // every one that came
   /// How an answer is delivered: at once and complete by default.
   std::function<void(ScriptedPort::Datagram answer, std::deque<ScriptedPort::Datagram>& arriving)> deliver =
@@ -48,7 +48,7 @@ class ScriptedController {
 
  private:
   bool take(const CommandDatagram& command) {
-    if (displacement_m.size() == 0) displacement_m = InterfaceVector::Zero(command.displacement_m.size());
+    if (displacement_m.size() == 0) displacement_m = SiteVector::Zero(command.displacement_m.size());
     const bool counts_anew = state != ControllerState::active && command.request == ControllerRequest::inactive;
     if (!counts_anew && command.sequence <= newest_command_) {
       ++discarded_;

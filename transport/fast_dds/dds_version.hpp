@@ -44,6 +44,8 @@ using DiscoveryInfo = eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 
 inline const ReturnCode kReturnOk = ReturnCode::RETCODE_OK;
 inline constexpr auto kPreallocated = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+/// Memory of the size of each message, used again for later ones.
+inline constexpr auto kReused = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
 
 [[nodiscard]] inline bool participant_left(const DiscoveryInfo& info) {
   return info.status == DiscoveryInfo::REMOVED_PARTICIPANT || info.status == DiscoveryInfo::DROPPED_PARTICIPANT;

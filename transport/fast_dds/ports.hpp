@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -85,19 +86,20 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   struct Nothing {};
 
   void on_data_available(dds::DataReader* reader) override {
-    typename Topic<Message>::Sample sample;
     dds::SampleInfo info;
     bool any = false;
-    while (reader->take_next_sample(&sample, &info) == kReturnOk) {
-      if (!info.valid_data || prefix_of(info.publication_handle) == own_prefix_) continue;
-      Message message;
-      if (!decode(sample, message)) {
-        participant_.malformed.fetch_add(1, std::memory_order_relaxed);
-        continue;
+    {
+      const std::lock_guard lock{received_mutex_};
+      while (reader->take_next_sample(&sample_, &info) == kReturnOk) {
+        if (!info.valid_data || prefix_of(info.publication_handle) == own_prefix_) continue;
+        if (!decode(sample_, message_)) {
+          participant_.malformed.fetch_add(1, std::memory_order_relaxed);
+          continue;
+        }
+        if constexpr (kWatchesPeers) peers_.heard(prefix_of(info.publication_handle), info.instance_handle, message_);
+        if (!queue_.push(message_)) participant_.overflowed.fetch_add(1, std::memory_order_relaxed);
+        any = true;
       }
-      if constexpr (kWatchesPeers) peers_.heard(prefix_of(info.publication_handle), info.instance_handle, message);
-      if (!queue_.push(message)) participant_.overflowed.fetch_add(1, std::memory_order_relaxed);
-      any = true;
     }
     if (any) participant_.waker.signal();
   }
@@ -144,6 +146,9 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   const GuidPrefix own_prefix_;
   std::shared_ptr<Matches> matches_;
   BoundedQueue<Message> queue_{kInboxCapacity<Message>};
+  std::mutex received_mutex_;  // several threads of Fast DDS may receive
+  typename Topic<Message>::Sample sample_;
+  Message message_;
   [[no_unique_address]] std::conditional_t<kWatchesPeers, Peers, Nothing> peers_;
   std::size_t departures_ = 0;  // what on_departure() returned
   dds::DataReader* reader_ = nullptr;

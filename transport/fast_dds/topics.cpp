@@ -19,7 +19,7 @@ void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSet
   qos.resource_limits().max_instances = delivery.instances;
   qos.resource_limits().max_samples = depth * delivery.instances;
   qos.resource_limits().allocated_samples = std::min(qos.resource_limits().max_samples, 64);
-  qos.endpoint().history_memory_policy = kPreallocated;
+  qos.endpoint().history_memory_policy = delivery.has_many_sizes ? kReused : kPreallocated;
   // Data sharing uses files shared by processes; files of a killed process block the others.
   qos.data_sharing().off();
   if (delivery.heartbeat) {

@@ -20,6 +20,7 @@ struct Delivery {
   std::int32_t depth = 16;        // newest samples kept per instance, by each end
   std::int32_t reader_depth = 0;  // kept by the reader, if different
   std::int32_t instances = 1;     // largest number of keys at one endpoint
+  bool has_many_sizes = false;    // the largest message is far larger than most
 };
 
 /// Topic, wire type and delivery of each message.
@@ -30,7 +31,7 @@ template <>
 struct Topic<TestAnnouncement> {
   using Sample = wire::TestAnnouncement;
   using Type = wire::TestAnnouncementPubSubType;
-  static constexpr const char* kName = "hybridtest/1/test_announcement";
+  static constexpr const char* kName = "hybridtest/2/test_announcement";
   static constexpr Delivery kDelivery{.for_late_joiners = true, .depth = 1};
 };
 
@@ -38,7 +39,7 @@ template <>
 struct Topic<ParticipantStatus> {
   using Sample = wire::ParticipantStatus;
   using Type = wire::ParticipantStatusPubSubType;
-  static constexpr const char* kName = "hybridtest/1/participant_status";
+  static constexpr const char* kName = "hybridtest/2/participant_status";
   // The reader keeps more than one because two participants that claim one id write to one
   // instance, and both must be heard for the second to be refused.
   static constexpr Delivery kDelivery{
@@ -49,23 +50,23 @@ template <>
 struct Topic<DisplacementCommand> {
   using Sample = wire::DisplacementCommand;
   using Type = wire::DisplacementCommandPubSubType;
-  static constexpr const char* kName = "hybridtest/1/displacement_command";
-  static constexpr Delivery kDelivery{};
+  static constexpr const char* kName = "hybridtest/2/displacement_command";
+  static constexpr Delivery kDelivery{.has_many_sizes = true};
 };
 
 template <>
 struct Topic<ForceMeasurement> {
   using Sample = wire::ForceMeasurement;
   using Type = wire::ForceMeasurementPubSubType;
-  static constexpr const char* kName = "hybridtest/1/force_measurement";
-  static constexpr Delivery kDelivery{.instances = kMaxSubstructures};
+  static constexpr const char* kName = "hybridtest/2/force_measurement";
+  static constexpr Delivery kDelivery{.instances = kMaxSubstructures, .has_many_sizes = true};
 };
 
 template <>
 struct Topic<TestControl> {
   using Sample = wire::TestControl;
   using Type = wire::TestControlPubSubType;
-  static constexpr const char* kName = "hybridtest/1/test_control";
+  static constexpr const char* kName = "hybridtest/2/test_control";
   static constexpr Delivery kDelivery{};
 };
 
@@ -73,7 +74,7 @@ template <>
 struct Topic<Event> {
   using Sample = wire::Event;
   using Type = wire::EventPubSubType;
-  static constexpr const char* kName = "hybridtest/1/event";
+  static constexpr const char* kName = "hybridtest/2/event";
   static constexpr Delivery kDelivery{.depth = 64, .instances = 128};
 };
 
@@ -81,7 +82,7 @@ template <>
 struct Topic<SignalBlock> {
   using Sample = wire::SignalBlock;
   using Type = wire::SignalBlockPubSubType;
-  static constexpr const char* kName = "hybridtest/1/signal_block";
+  static constexpr const char* kName = "hybridtest/2/signal_block";
   static constexpr Delivery kDelivery{.reliable = false, .depth = 4, .instances = kMaxSubstructures};
 };
 

@@ -7,20 +7,20 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 namespace hybridtest::fast_dds {
 namespace {
 
 template <class Array>
 constexpr std::size_t kSize = std::tuple_size_v<std::remove_cvref_t<Array>>;
-static_assert(kSize<decltype(wire::CommandPoint{}.displacement_m())> == kMaxInterfaceDofs);
-static_assert(kSize<decltype(wire::ForceMeasurement{}.force_n())> == kMaxInterfaceDofs);
 static_assert(kSize<decltype(wire::TestAnnouncement{}.substructures())> == kMaxSubstructures);
-static_assert(kSize<decltype(wire::DisplacementCommand{}.points())> == kCommandPoints);
 static_assert(kSize<decltype(wire::SignalBlock{}.samples())> == kMaxSignalSamples);
 static_assert(wire::Name::max_size == ParticipantId::kCapacity);
 
-using Values = std::array<double, kMaxInterfaceDofs>;
+static_assert(kSize<decltype(wire::DisplacementCommand{}.points())> == kCommandPoints);
+
+using Values = std::vector<double>;
 
 // --- checks
 
@@ -71,15 +71,11 @@ bool to_flags(std::uint32_t bits, MeasurementFlags& flags) noexcept {
 
 // --- parts
 
-std::uint8_t encode_values(const InterfaceVector& vector, Values& values) noexcept {
-  values.fill(0.0);
-  for (Eigen::Index i = 0; i < vector.size(); ++i) values[static_cast<std::size_t>(i)] = vector[i];
-  return static_cast<std::uint8_t>(vector.size());
-}
+void encode_values(const InterfaceVector& vector, Values& values) { values.assign(vector.begin(), vector.end()); }
 
-bool decode_values(const Values& values, std::uint8_t count, InterfaceVector& vector) noexcept {
-  if (count > values.size()) return false;
-  vector = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
+bool decode_values(const Values& values, InterfaceVector& vector) {
+  if (values.size() > kMaxInterfaceDofs) return false;
+  vector = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return true;
 }
 
@@ -95,21 +91,21 @@ FixedText<Capacity> decode_text(const eprosima::fastrtps::fixed_string<Capacity>
   return FixedText<Capacity>{std::string_view{field.c_str(), field.size()}};
 }
 
-void encode_point(const CommandPoint& point, wire::CommandPoint& sample) noexcept {
+void encode_point(const CommandPoint& point, wire::CommandPoint& sample) {
   sample.step(point.step);
   sample.model_time_s(point.model_time_s);
-  sample.displacement_count(encode_values(point.displacement_m, sample.displacement_m()));
-  sample.velocity_count(encode_values(point.velocity_m_per_s, sample.velocity_m_per_s()));
-  sample.acceleration_count(encode_values(point.acceleration_m_per_s2, sample.acceleration_m_per_s2()));
+  encode_values(point.displacement_m, sample.displacement_m());
+  encode_values(point.velocity_m_per_s, sample.velocity_m_per_s());
+  encode_values(point.acceleration_m_per_s2, sample.acceleration_m_per_s2());
 }
 
-bool decode_point(const wire::CommandPoint& sample, CommandPoint& point) noexcept {
+bool decode_point(const wire::CommandPoint& sample, CommandPoint& point) {
   point.step = sample.step();
   point.model_time_s = sample.model_time_s();
   return is_step(point.step) && is_time(point.model_time_s) &&
-         decode_values(sample.displacement_m(), sample.displacement_count(), point.displacement_m) &&
-         decode_values(sample.velocity_m_per_s(), sample.velocity_count(), point.velocity_m_per_s) &&
-         decode_values(sample.acceleration_m_per_s2(), sample.acceleration_count(), point.acceleration_m_per_s2);
+         decode_values(sample.displacement_m(), point.displacement_m) &&
+         decode_values(sample.velocity_m_per_s(), point.velocity_m_per_s) &&
+         decode_values(sample.acceleration_m_per_s2(), point.acceleration_m_per_s2);
 }
 
 }  // namespace
@@ -181,22 +177,26 @@ bool decode(const wire::ParticipantStatus& sample, ParticipantStatus& message) n
 
 // --- displacement_command
 
-void encode(const DisplacementCommand& message, wire::DisplacementCommand& sample) noexcept {
+void encode(const DisplacementCommand& message, wire::DisplacementCommand& sample) {
   sample.substructure(message.substructure);
   sample.attempt(message.attempt);
-  sample.point_count(message.point_count);
+  sample.iteration(message.iteration);
+  sample.is_trial(message.is_trial);
   sample.coordinator(message.coordinator);
   sample.send_time_ns(message.send_time.count());
+  sample.point_count(message.point_count);
   for (std::size_t i = 0; i < message.points.size(); ++i) encode_point(message.points[i], sample.points()[i]);
 }
 
-bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& message) noexcept {
+bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& message) {
   message.substructure = sample.substructure();
   message.attempt = sample.attempt();
-  message.point_count = sample.point_count();
+  message.iteration = sample.iteration();
+  message.is_trial = sample.is_trial();
   message.coordinator = sample.coordinator();
   message.send_time = Duration{sample.send_time_ns()};
   if (!is_substructure(message.substructure)) return false;
+  message.point_count = sample.point_count();
   if (message.point_count < 1 || message.point_count > kCommandPoints) return false;
   for (std::size_t i = 0; i < message.points.size(); ++i) {
     if (!decode_point(sample.points()[i], message.points[i])) return false;
@@ -206,35 +206,35 @@ bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& messag
 
 // --- force_measurement
 
-void encode(const ForceMeasurement& message, wire::ForceMeasurement& sample) noexcept {
+void encode(const ForceMeasurement& message, wire::ForceMeasurement& sample) {
   sample.substructure(message.substructure);
   sample.flags(static_cast<std::uint32_t>(message.flags));
   sample.sender(message.sender);
   sample.step(message.step);
+  sample.iteration(message.iteration);
   sample.model_time_s(message.model_time_s);
   sample.receive_time_ns(message.receive_time.count());
   sample.send_time_ns(message.send_time.count());
   sample.command_send_time_ns(message.command_send_time.count());
-  sample.imposed_displacement_count(encode_values(message.imposed_displacement_m, sample.imposed_displacement_m()));
-  sample.measured_displacement_count(encode_values(message.measured_displacement_m, sample.measured_displacement_m()));
-  sample.force_count(encode_values(message.force_n, sample.force_n()));
+  encode_values(message.imposed_displacement_m, sample.imposed_displacement_m());
+  encode_values(message.measured_displacement_m, sample.measured_displacement_m());
+  encode_values(message.force_n, sample.force_n());
 }
 
-bool decode(const wire::ForceMeasurement& sample, ForceMeasurement& message) noexcept {
+bool decode(const wire::ForceMeasurement& sample, ForceMeasurement& message) {
   message.substructure = sample.substructure();
   message.sender = sample.sender();
   message.step = sample.step();
+  message.iteration = sample.iteration();
   message.model_time_s = sample.model_time_s();
   message.receive_time = Duration{sample.receive_time_ns()};
   message.send_time = Duration{sample.send_time_ns()};
   message.command_send_time = Duration{sample.command_send_time_ns()};
   return is_substructure(message.substructure) && is_step(message.step) && is_time(message.model_time_s) &&
          to_flags(sample.flags(), message.flags) &&
-         decode_values(sample.imposed_displacement_m(), sample.imposed_displacement_count(),
-                       message.imposed_displacement_m) &&
-         decode_values(sample.measured_displacement_m(), sample.measured_displacement_count(),
-                       message.measured_displacement_m) &&
-         decode_values(sample.force_n(), sample.force_count(), message.force_n);
+         decode_values(sample.imposed_displacement_m(), message.imposed_displacement_m) &&
+         decode_values(sample.measured_displacement_m(), message.measured_displacement_m) &&
+         decode_values(sample.force_n(), message.force_n);
 }
 
 // --- test_control

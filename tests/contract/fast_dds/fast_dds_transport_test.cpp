@@ -168,7 +168,7 @@ TEST_P(ForgedControl, IsDroppedAndCountedWithoutLosingLaterMessages) {
   ASSERT_NE(forger, nullptr);
   const dds::TypeSupport type{new ForgedType{GetParam().bytes}};
   type.register_type(forger);
-  auto* topic = forger->create_topic("hybridtest/1/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  auto* topic = forger->create_topic("hybridtest/2/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   dds::PublisherQos publisher_qos;
   publisher_qos.partition().push_back(unique_test_name().c_str());
   auto* writer = forger->create_publisher(publisher_qos)->create_datawriter(topic, dds::DATAWRITER_QOS_DEFAULT);

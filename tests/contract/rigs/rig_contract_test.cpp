@@ -70,8 +70,8 @@ struct ReplayBench {
     RecordedMeasurement record;
     for (int row = 0; row < 1000; ++row) {
       record.time_s.push_back(5.0 + 0.0007 * row);
-      record.displacement_m.push_back(InterfaceVector{{1e-4 * row}});
-      record.force_n.push_back(InterfaceVector{{1e2 * row}});
+      record.displacement_m.push_back(SiteVector{{1e-4 * row}});
+      record.force_n.push_back(SiteVector{{1e2 * row}});
     }
     return std::make_unique<ReplayRig>(std::move(record), ReplayRig::AtEnd::hold);
   }
@@ -121,8 +121,8 @@ class RigContract : public testing::Test {
   static constexpr int kActuators = Bench::kActuators;
 
   RigContract() {
-    command_.displacement_m = InterfaceVector::Zero(kActuators);
-    feedback_ = {InterfaceVector::Zero(kActuators), InterfaceVector::Zero(kActuators)};
+    command_.displacement_m = SiteVector::Zero(kActuators);
+    feedback_ = {SiteVector::Zero(kActuators), SiteVector::Zero(kActuators)};
   }
 
   void arm() {
@@ -216,13 +216,13 @@ TYPED_TEST(RigContract, InvalidCommandIsAFaultWithoutMotion) {
   EXPECT_EQ(this->exchange(std::numeric_limits<double>::infinity()), RigStatus::fault);
   EXPECT_EQ(this->feedback_.displacement_m, before.displacement_m) << "with a fault the feedback is the last good one";
   EXPECT_EQ(this->feedback_.force_n, before.force_n);
-  this->command_.displacement_m = InterfaceVector::Zero(this->kActuators + 1);
+  this->command_.displacement_m = SiteVector::Zero(this->kActuators + 1);
   EXPECT_EQ(this->rig_->exchange(this->command_, this->feedback_), RigStatus::fault);
 }
 
 TYPED_TEST(RigContract, WrongFeedbackSizeIsAFault) {
   this->arm();
-  this->feedback_.force_n = InterfaceVector::Zero(this->kActuators + 1);
+  this->feedback_.force_n = SiteVector::Zero(this->kActuators + 1);
   EXPECT_EQ(this->exchange(0.0), RigStatus::fault);
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr ClosingMotionSettings kSettings{
     .period_s = 1e-3, .halt_s = 0.02, .return_time_s = 0.2, .displacement_limit_m = 0.1, .velocity_limit_m_per_s = 0.5};
 
-InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
+SiteVector one(double value) { return SiteVector::Constant(1, value); }
 
 std::vector<double> path(ClosingMotion& motion, double from_m, double velocity_m_per_s, bool returns) {
   std::vector<double> path_m{from_m};

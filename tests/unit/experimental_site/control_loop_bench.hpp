@@ -46,7 +46,7 @@ class LoopBench {
         loop{settings,
              rig,
              compensation(settings.dofs, compensates),
-             EnergyErrorMonitor{kStiffness_n_per_m * InterfaceMatrix::Identity(settings.dofs, settings.dofs), 0.005},
+             EnergyErrorMonitor{kStiffness_n_per_m * SiteMatrix::Identity(settings.dofs, settings.dofs), 0.005},
              ControlLoopPorts{requests, reports, signals},
              record} {}
 
@@ -65,12 +65,12 @@ class LoopBench {
 
   void ask(const LoopRequest& request) { requests.send(request); }
   void target(Step step, double displacement_m, double velocity_m_per_s = 0.0, double acceleration_m_per_s2 = 0.0) {
-    CommandPoint point;
+    TargetPoint point;
     point.step = step;
     point.model_time_s = static_cast<double>(step) * kStep_s / settings_.time_scale;
-    point.displacement_m = InterfaceVector::Constant(settings_.dofs, displacement_m);
-    point.velocity_m_per_s = InterfaceVector::Constant(settings_.dofs, velocity_m_per_s);
-    point.acceleration_m_per_s2 = InterfaceVector::Constant(settings_.dofs, acceleration_m_per_s2);
+    point.displacement_m = SiteVector::Constant(settings_.dofs, displacement_m);
+    point.velocity_m_per_s = SiteVector::Constant(settings_.dofs, velocity_m_per_s);
+    point.acceleration_m_per_s2 = SiteVector::Constant(settings_.dofs, acceleration_m_per_s2);
     requests.send(loop_request::Target{point});
   }
   /// Armed and started, the first target at rest.

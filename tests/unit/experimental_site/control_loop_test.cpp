@@ -372,7 +372,7 @@ TEST(ControlLoop, CatchesUpMissedControlPeriods) {
 TEST(ControlLoop, RecordsEveryPeriodInNamedColumns) {
   Bench bench{Bench::settings(CouplingMode::lockstep, 2), [](const ActuatorCommand& command, RigFeedback& feedback) {
                 feedback.displacement_m = 0.5 * command.displacement_m;
-                feedback.force_n = InterfaceVector::Constant(2, 7.0);
+                feedback.force_n = SiteVector::Constant(2, 7.0);
                 feedback.force_n[1] = 8.0;
                 return RigStatus::healthy;
               }};

@@ -16,15 +16,15 @@ constexpr double kOmega = 8.0;
 
 /// An elastic specimen that follows a sine late by `delay_s`, over whole cycles.
 EnergyErrorMonitor after_cycles(double delay_s, int cycles) {
-  EnergyErrorMonitor monitor{InterfaceMatrix::Constant(1, 1, kStiffness), 1e-3};
+  EnergyErrorMonitor monitor{SiteMatrix::Constant(1, 1, kStiffness), 1e-3};
   constexpr int kSamples = 2000;
   const double period_s = 2.0 * std::numbers::pi / kOmega / kSamples;
   for (int i = 0; i <= cycles * kSamples; ++i) {
     const double time_s = i * period_s;
     const double target = kAmplitude * std::sin(kOmega * time_s);
     const double measured = kAmplitude * std::sin(kOmega * (time_s - delay_s));
-    monitor.sample(InterfaceVector::Constant(1, target), InterfaceVector::Constant(1, measured),
-                   InterfaceVector::Constant(1, kStiffness * measured));
+    monitor.sample(SiteVector::Constant(1, target), SiteVector::Constant(1, measured),
+                   SiteVector::Constant(1, kStiffness * measured));
   }
   return monitor;
 }
@@ -45,7 +45,7 @@ TEST(EnergyErrorTest, IsZeroWithoutTrackingError) { EXPECT_NEAR(after_cycles(0.0
 TEST(EnergyErrorTest, IsPositiveWhenTheActuatorLeads) { EXPECT_GT(after_cycles(-0.02, 3).ratio(), 1.0); }
 
 TEST(EnergyErrorTest, RejectsStiffnessThatCannotScale) {
-  EXPECT_THROW((EnergyErrorMonitor{InterfaceMatrix::Zero(1, 1), 1e-3}), ConfigError);
+  EXPECT_THROW((EnergyErrorMonitor{SiteMatrix::Zero(1, 1), 1e-3}), ConfigError);
 }
 
 }  // namespace

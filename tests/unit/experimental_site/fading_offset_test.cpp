@@ -7,7 +7,7 @@
 namespace hybridtest {
 namespace {
 
-InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
+SiteVector one(double value) { return SiteVector::Constant(1, value); }
 
 TEST(FadingOffsetTest, FadesToZeroWithReportedVelocity) {
   constexpr double kDuration_s = 0.5;
@@ -38,7 +38,7 @@ TEST(FadingOffsetTest, FadesToZeroWithReportedVelocity) {
 
 TEST(FadingOffsetTest, ZeroOffsetEndsAtOnce) {
   FadingOffset offset{2};
-  offset.begin(InterfaceVector::Zero(2), InterfaceVector::Zero(2), 1.0);
+  offset.begin(SiteVector::Zero(2), SiteVector::Zero(2), 1.0);
   EXPECT_TRUE(offset.is_over());
 }
 

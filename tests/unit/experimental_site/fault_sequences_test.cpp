@@ -146,7 +146,7 @@ class FaultSequence {
   /// What the sample before demanded, this command shows.
   void check_command(const ActuatorCommand& command) {
     const std::size_t count = bench_.rig.commands.size();
-    InterfaceVector before_m = InterfaceVector::Zero(settings_.dofs);
+    SiteVector before_m = SiteVector::Zero(settings_.dofs);
     if (count > 1) before_m = bench_.rig.commands[count - 2].displacement_m;
     if (command.sample != static_cast<std::int64_t>(count) - 1) wrong("a control period is missing");
     if (!command.displacement_m.allFinite()) wrong("a command that is no number");
@@ -218,7 +218,7 @@ class FaultSequence {
 
   Random random_;
   ControlLoopSettings settings_;
-  InterfaceVector place_m_ = InterfaceVector::Zero(2);
+  SiteVector place_m_ = SiteVector::Zero(2);
   int stuck_ = 0;
   RigFeedback measured_;
   bool has_measured_ = false;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPeriod_s = 1.0e-3;
 
-InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
+SiteVector one(double value) { return SiteVector::Constant(1, value); }
 
 const SiteLimits kLimits{.displacement_m = 0.1,
                          .velocity_m_per_s = 1.0,
@@ -54,11 +54,11 @@ class Story {
   InterlockRules rules = default_interlock_rules();
   InterlockState state;
   SitePhase phase = SitePhase::running;
-  InterfaceVector target = one(0.01);
-  InterfaceVector velocity = one(0.1);
-  InterfaceVector command = one(0.012);
-  InterfaceVector measured = one(0.0095);
-  InterfaceVector force = one(1000.0);
+  SiteVector target = one(0.01);
+  SiteVector velocity = one(0.1);
+  SiteVector command = one(0.012);
+  SiteVector measured = one(0.0095);
+  SiteVector force = one(1000.0);
   double energy_ratio = 0.1;
   double lag_sine = 0.1;
   double age_s = 0.1;
@@ -210,9 +210,9 @@ TEST(InterlocksTest, NonFiniteValueDoesNotHideOtherTrips) {
 
   Story two;
   two.limits.tracking_error_m.reset();
-  two.measured = InterfaceVector::Constant(2, kNan);
+  two.measured = SiteVector::Constant(2, kNan);
   two.measured[1] = 0.2;
-  two.target = two.command = two.velocity = two.force = InterfaceVector::Zero(2);
+  two.target = two.command = two.velocity = two.force = SiteVector::Zero(2);
   EXPECT_EQ(two.sample().trip_count, 2);
   EXPECT_EQ(two.verdict.trips[0].kind, InterlockKind::displacement);
   EXPECT_EQ(two.verdict.trips[1].kind, InterlockKind::not_finite);

@@ -15,8 +15,8 @@ using testing::ThrowsMessage;
 
 RecordedMeasurement three_rows() {
   return {.time_s = {10.0, 10.1, 10.3},
-          .displacement_m = {InterfaceVector{{0.0}}, InterfaceVector{{0.01}}, InterfaceVector{{0.05}}},
-          .force_n = {InterfaceVector{{100.0}}, InterfaceVector{{200.0}}, InterfaceVector{{-200.0}}}};
+          .displacement_m = {SiteVector{{0.0}}, SiteVector{{0.01}}, SiteVector{{0.05}}},
+          .force_n = {SiteVector{{100.0}}, SiteVector{{200.0}}, SiteVector{{-200.0}}}};
 }
 
 struct Replay {
@@ -27,11 +27,11 @@ struct Replay {
   RigStatus at(double time_s) {
     ActuatorCommand command;
     command.time_s = time_s;
-    command.displacement_m = InterfaceVector{{0.9}};
+    command.displacement_m = SiteVector{{0.9}};
     return rig.exchange(command, feedback);
   }
   ReplayRig rig;
-  RigFeedback feedback{InterfaceVector::Zero(1), InterfaceVector::Zero(1)};
+  RigFeedback feedback{SiteVector::Zero(1), SiteVector::Zero(1)};
 };
 
 TEST(ReplayRig, InterpolatesTheRecordForAnyCommand) {
@@ -62,9 +62,9 @@ TEST(ReplayRig, HoldsStartUntilArmedAndPositionWhenStopped) {
   ReplayRig rig{three_rows(), ReplayRig::AtEnd::fault};
   rig.connect();
   ActuatorCommand command;
-  command.displacement_m = InterfaceVector::Zero(1);
+  command.displacement_m = SiteVector::Zero(1);
   command.time_s = 0.2;
-  RigFeedback feedback{InterfaceVector::Zero(1), InterfaceVector::Zero(1)};
+  RigFeedback feedback{SiteVector::Zero(1), SiteVector::Zero(1)};
   ASSERT_EQ(rig.exchange(command, feedback), RigStatus::healthy);
   EXPECT_EQ(feedback.force_n[0], 100.0);
   rig.arm();
@@ -88,7 +88,7 @@ TEST(ReplayRig, RejectsInvalidRecord) {
   refused([](auto& record) { record.force_n.pop_back(); }, "2 forces");
   refused([](auto& record) { record.time_s[2] = 10.1; }, "row 3 of the record: its time is not later");
   refused([](auto& record) { record.force_n[1][0] = std::numeric_limits<double>::quiet_NaN(); }, "row 2 of the record");
-  refused([](auto& record) { record.displacement_m[1] = InterfaceVector{{1.0, 2.0}}; }, "number of actuators differs");
+  refused([](auto& record) { record.displacement_m[1] = SiteVector{{1.0, 2.0}}; }, "number of actuators differs");
 }
 
 }  // namespace

@@ -31,18 +31,16 @@ RigidBeam drawn_beam(Random& random) {
                       .anchor_m = {random.uniform(-4.0, -1.5), lower_m + random.uniform(-0.1, 0.1)}}}}};
 }
 
-InterfaceVector drawn_pose(Random& random) {
-  return InterfaceVector{{random.uniform(-0.5, 0.5), random.uniform(-0.3, 0.3)}};
-}
+SiteVector drawn_pose(Random& random) { return SiteVector{{random.uniform(-0.5, 0.5), random.uniform(-0.3, 0.3)}}; }
 
-InterfaceVector strokes_of(const SetupGeometry& geometry, const InterfaceVector& pose) {
-  InterfaceVector stroke_m{geometry.actuators()};
+SiteVector strokes_of(const SetupGeometry& geometry, const SiteVector& pose) {
+  SiteVector stroke_m{geometry.actuators()};
   geometry.strokes(pose, stroke_m);
   return stroke_m;
 }
 
 TEST(RigidBeam, TranslationMovesBothActuatorsEqually) {
-  const InterfaceVector stroke_m = strokes_of(upright_beam(), InterfaceVector{{0.25, 0.0}});
+  const SiteVector stroke_m = strokes_of(upright_beam(), SiteVector{{0.25, 0.0}});
   EXPECT_DOUBLE_EQ(stroke_m[0], 0.25);
   EXPECT_DOUBLE_EQ(stroke_m[1], 0.25);
 }
@@ -50,7 +48,7 @@ TEST(RigidBeam, TranslationMovesBothActuatorsEqually) {
 TEST(RigidBeam, RotationMatchesClosedForm) {
   // The upper attachment goes to 0.6 (-sin, cos): law of cosines by hand.
   const double theta = 0.4;
-  const InterfaceVector stroke_m = strokes_of(upright_beam(), InterfaceVector{{0.0, theta}});
+  const SiteVector stroke_m = strokes_of(upright_beam(), SiteVector{{0.0, theta}});
   const double across_m = 0.6 * (1.0 - std::cos(theta));
   EXPECT_DOUBLE_EQ(stroke_m[0], std::hypot(2.0 - 0.6 * std::sin(theta), across_m) - 2.0);
   EXPECT_DOUBLE_EQ(stroke_m[1], std::hypot(2.0 + 0.6 * std::sin(theta), across_m) - 2.0);
@@ -61,8 +59,8 @@ TEST(RigidBeam, PoseRoundTripsThroughStrokes) {
   Random random{11};
   for (int i = 0; i < 10'000; ++i) {
     const RigidBeam beam = drawn_beam(random);
-    const InterfaceVector pose = drawn_pose(random);
-    InterfaceVector found = InterfaceVector::Zero(2);
+    const SiteVector pose = drawn_pose(random);
+    SiteVector found = SiteVector::Zero(2);
     ASSERT_TRUE(find_pose(beam, strokes_of(beam, pose), found)) << i << ": " << pose.transpose();
     ASSERT_LE((found - pose).cwiseAbs().maxCoeff(), 1e-12) << i << ": " << pose.transpose();
   }
@@ -75,12 +73,12 @@ double largest_work_difference(double h, bool is_force_transferred) {
   double largest = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const RigidBeam beam = drawn_beam(random);
-    const InterfaceVector pose = drawn_pose(random);
-    const InterfaceVector force_n{{1e5 * random.normal(), 1e5 * random.normal()}};
-    const InterfaceVector motion{{random.normal(), random.normal()}};
-    InterfaceVector dof_force = force_n;
+    const SiteVector pose = drawn_pose(random);
+    const SiteVector force_n{{1e5 * random.normal(), 1e5 * random.normal()}};
+    const SiteVector motion{{random.normal(), random.normal()}};
+    SiteVector dof_force = force_n;
     if (is_force_transferred) transfer_forces(beam, pose, force_n, dof_force);
-    const InterfaceVector extension_m =
+    const SiteVector extension_m =
         (strokes_of(beam, pose + h * motion) - strokes_of(beam, pose - h * motion)) / (2.0 * h);
     const double scale = force_n.norm() * motion.norm();
     largest = std::max(largest, std::abs(force_n.dot(extension_m) - dof_force.dot(motion)) / scale);
@@ -101,11 +99,11 @@ TEST(RigidBeam, ForcesDoTheSameVirtualWork) {
 
 TEST(RigidBeam, StrokesWithoutPoseAreNotFound) {
   const RigidBeam beam = upright_beam();
-  InterfaceVector pose{{0.1, 0.05}};
-  const InterfaceVector before = pose;
-  EXPECT_FALSE(find_pose(beam, InterfaceVector{{3.0, -1.9}}, pose)) << "further apart than the beam is long";
-  EXPECT_FALSE(find_pose(beam, InterfaceVector{{std::numeric_limits<double>::quiet_NaN(), 0.0}}, pose));
-  EXPECT_FALSE(find_pose(beam, InterfaceVector{{std::numeric_limits<double>::infinity(), 0.0}}, pose));
+  SiteVector pose{{0.1, 0.05}};
+  const SiteVector before = pose;
+  EXPECT_FALSE(find_pose(beam, SiteVector{{3.0, -1.9}}, pose)) << "further apart than the beam is long";
+  EXPECT_FALSE(find_pose(beam, SiteVector{{std::numeric_limits<double>::quiet_NaN(), 0.0}}, pose));
+  EXPECT_FALSE(find_pose(beam, SiteVector{{std::numeric_limits<double>::infinity(), 0.0}}, pose));
   EXPECT_EQ(pose, before);
 }
 
@@ -119,16 +117,16 @@ TEST(RigidBeam, RejectsActuatorsThatDoNotHoldTheBeam) {
 
 TEST(LinearGeometry, MapsByItsMatrix) {
   const LinearGeometry geometry{Eigen::MatrixXd{{1.0, 0.5}, {1.0, -0.5}}};
-  EXPECT_EQ(strokes_of(geometry, InterfaceVector{{0.25, 0.75}}), (InterfaceVector{{0.625, -0.125}}));
-  InterfaceVector dof_force{2};
-  transfer_forces(geometry, InterfaceVector::Zero(2), InterfaceVector{{10.0, 4.0}}, dof_force);
-  EXPECT_EQ(dof_force, (InterfaceVector{{14.0, 3.0}}));
+  EXPECT_EQ(strokes_of(geometry, SiteVector{{0.25, 0.75}}), (SiteVector{{0.625, -0.125}}));
+  SiteVector dof_force{2};
+  transfer_forces(geometry, SiteVector::Zero(2), SiteVector{{10.0, 4.0}}, dof_force);
+  EXPECT_EQ(dof_force, (SiteVector{{14.0, 3.0}}));
 }
 
 TEST(LinearGeometry, RedundantActuatorsGiveLeastSquaresPose) {
   const LinearGeometry geometry{Eigen::MatrixXd{{1.0}, {1.0}, {2.0}}};
-  InterfaceVector pose = InterfaceVector::Zero(1);
-  ASSERT_TRUE(find_pose(geometry, InterfaceVector{{0.1, 0.2, 0.3}}, pose));
+  SiteVector pose = SiteVector::Zero(1);
+  ASSERT_TRUE(find_pose(geometry, SiteVector{{0.1, 0.2, 0.3}}, pose));
   // (0.1 + 0.2 + 2 * 0.3) / (1 + 1 + 4)
   EXPECT_NEAR(pose[0], 0.15, 1e-16);
 }
@@ -143,12 +141,12 @@ TEST(LinearGeometry, RejectsUnheldDegreeOfFreedom) {
 TEST(SetupGeometry, DoesNotAllocate) {
   const RigidBeam beam = upright_beam();
   const LinearGeometry full{Eigen::MatrixXd::Identity(12, 12)};
-  InterfaceVector pose = InterfaceVector::Zero(2);
-  InterfaceVector full_pose = InterfaceVector::Zero(12);
-  InterfaceVector force = InterfaceVector::Ones(2);
-  const InterfaceVector stroke_m = strokes_of(beam, InterfaceVector{{0.2, 0.1}});
+  SiteVector pose = SiteVector::Zero(2);
+  SiteVector full_pose = SiteVector::Zero(12);
+  SiteVector force = SiteVector::Ones(2);
+  const SiteVector stroke_m = strokes_of(beam, SiteVector{{0.2, 0.1}});
   const std::size_t before = allocation_count();
-  const bool is_found = find_pose(beam, stroke_m, pose) && find_pose(full, InterfaceVector::Ones(12), full_pose);
+  const bool is_found = find_pose(beam, stroke_m, pose) && find_pose(full, SiteVector::Ones(12), full_pose);
   transfer_forces(beam, pose, stroke_m, force);
   EXPECT_EQ(allocation_count(), before);
   EXPECT_TRUE(is_found);

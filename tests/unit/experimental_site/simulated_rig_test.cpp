@@ -46,16 +46,16 @@ std::unique_ptr<SimulatedRig> one_actuator_rig(const SimulatedRig::SensorNoise& 
                                         specimen_of(std::make_unique<Elastic>(kStiffness_n_per_m)), noise, 1ms);
 }
 
-ActuatorCommand command_of(const InterfaceVector& displacement_m) {
+ActuatorCommand command_of(const SiteVector& displacement_m) {
   ActuatorCommand command;
   command.displacement_m = displacement_m;
   return command;
 }
 
-ActuatorCommand command_of(double displacement_m) { return command_of(InterfaceVector{{displacement_m}}); }
+ActuatorCommand command_of(double displacement_m) { return command_of(SiteVector{{displacement_m}}); }
 
 RigFeedback feedback_for(int actuators) {
-  return {.displacement_m = InterfaceVector::Zero(actuators), .force_n = InterfaceVector::Zero(actuators)};
+  return {.displacement_m = SiteVector::Zero(actuators), .force_n = SiteVector::Zero(actuators)};
 }
 
 /// Force = velocity, to see what the specimen is told.
@@ -90,11 +90,11 @@ TEST(SimulatedRig, ActuatorsAreIndependentAndShareTheSpecimen) {
   rig.connect();
   rig.arm();
   RigFeedback feedback = feedback_for(2);
-  ASSERT_EQ(rig.exchange(command_of(InterfaceVector{{0.5, -2.0}}), feedback), RigStatus::healthy);
-  EXPECT_EQ(feedback.displacement_m, (InterfaceVector{{0.5, 0.0}}));
-  EXPECT_EQ(feedback.force_n, (InterfaceVector{{1.0, -0.5}}));
-  ASSERT_EQ(rig.exchange(command_of(InterfaceVector{{0.5, -2.0}}), feedback), RigStatus::healthy);
-  EXPECT_EQ(feedback.force_n, (InterfaceVector{{3.0, -6.5}}));
+  ASSERT_EQ(rig.exchange(command_of(SiteVector{{0.5, -2.0}}), feedback), RigStatus::healthy);
+  EXPECT_EQ(feedback.displacement_m, (SiteVector{{0.5, 0.0}}));
+  EXPECT_EQ(feedback.force_n, (SiteVector{{1.0, -0.5}}));
+  ASSERT_EQ(rig.exchange(command_of(SiteVector{{0.5, -2.0}}), feedback), RigStatus::healthy);
+  EXPECT_EQ(feedback.force_n, (SiteVector{{3.0, -6.5}}));
 }
 
 TEST(SimulatedRig, PassesVelocityToSpecimenOncePerExchange) {
@@ -189,7 +189,7 @@ TEST(SimulatedRig, ChannelsHaveIndependentNoise) {
                    std::make_unique<ElasticSpecimen>(Eigen::MatrixXd::Identity(2, 2)), noise, 1ms};
   rig.connect();
   RigFeedback feedback = feedback_for(2);
-  ASSERT_EQ(rig.exchange(command_of(InterfaceVector::Zero(2)), feedback), RigStatus::healthy);
+  ASSERT_EQ(rig.exchange(command_of(SiteVector::Zero(2)), feedback), RigStatus::healthy);
   // Each reading is the first draw of its stream, as documented.
   EXPECT_EQ(feedback.displacement_m[0], (Random{7, 0}.normal()));
   EXPECT_EQ(feedback.force_n[0], (Random{7, 1}.normal()));
@@ -218,8 +218,8 @@ TEST(SimulatedRig, WrongCommandOrFeedbackSizeIsAFault) {
   rig->connect();
   rig->arm();
   RigFeedback feedback = feedback_for(1);
-  EXPECT_EQ(rig->exchange(command_of(InterfaceVector::Zero(2)), feedback), RigStatus::fault);
-  EXPECT_EQ(rig->exchange(command_of(InterfaceVector{}), feedback), RigStatus::fault);
+  EXPECT_EQ(rig->exchange(command_of(SiteVector::Zero(2)), feedback), RigStatus::fault);
+  EXPECT_EQ(rig->exchange(command_of(SiteVector{}), feedback), RigStatus::fault);
   RigFeedback too_small;
   EXPECT_EQ(rig->exchange(command_of(0.0), too_small), RigStatus::fault);
 }
@@ -277,7 +277,7 @@ TEST(SimulatedRig, ExchangeAllocatesNothing) {
     rig->arm();
     const int actuators = rig == &uncoupled ? 4 : 2;
     RigFeedback feedback = feedback_for(actuators);
-    ActuatorCommand command = command_of(InterfaceVector::Zero(actuators));
+    ActuatorCommand command = command_of(SiteVector::Zero(actuators));
     const std::size_t before = allocation_count();
     bool is_healthy = true;
     for (int i = 0; i < 2000; ++i) {

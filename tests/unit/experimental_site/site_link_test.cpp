@@ -50,10 +50,10 @@ class SiteLinkTest : public testing::Test {
     StepMeasurement measurement;
     measurement.step = step;
     measurement.model_time_s = 0.01 * static_cast<double>(step);
-    measurement.target_displacement_m = InterfaceVector::Constant(1, 1.0 * static_cast<double>(step));
-    measurement.imposed_displacement_m = InterfaceVector::Constant(1, 1.1 * static_cast<double>(step));
-    measurement.measured_displacement_m = InterfaceVector::Constant(1, 1.2 * static_cast<double>(step));
-    measurement.force_n = InterfaceVector::Constant(1, force_n);
+    measurement.target_displacement_m = SiteVector::Constant(1, 1.0 * static_cast<double>(step));
+    measurement.imposed_displacement_m = SiteVector::Constant(1, 1.1 * static_cast<double>(step));
+    measurement.measured_displacement_m = SiteVector::Constant(1, 1.2 * static_cast<double>(step));
+    measurement.force_n = SiteVector::Constant(1, force_n);
     measurement.flags = flags;
     reports_.send(measurement);
   }
@@ -86,7 +86,7 @@ class SiteLinkTest : public testing::Test {
   std::vector<Step> take_targets() {
     std::vector<Step> steps;
     for (const LoopRequest& request : take_requests()) {
-      const CommandPoint& point = std::get<loop_request::Target>(request).point;
+      const TargetPoint& point = std::get<loop_request::Target>(request).point;
       EXPECT_EQ(point.displacement_m[0], static_cast<double>(point.step));
       steps.push_back(point.step);
     }
@@ -361,7 +361,7 @@ class PromptLoop final : public Node {
     while (requests_.take(request)) {
       const auto* target = std::get_if<loop_request::Target>(&request);
       if (target == nullptr) continue;
-      const InterfaceVector& reached_m = target->point.displacement_m;
+      const SiteVector& reached_m = target->point.displacement_m;
       reports_.send(StepMeasurement{.step = target->point.step,
                                     .model_time_s = 0.0,
                                     .target_displacement_m = reached_m,

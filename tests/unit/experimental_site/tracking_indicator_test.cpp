@@ -13,7 +13,7 @@ namespace {
 constexpr double kPeriod_s = 1.0e-3;
 constexpr double kWindow_s = 1.0;
 
-InterfaceVector one(double value) { return InterfaceVector::Constant(1, value); }
+SiteVector one(double value) { return SiteVector::Constant(1, value); }
 
 /// After so many windows the mean of what was before the sine is below 1e-5 of it.
 double settled_lag_sine(double amplitude_m, double frequency_hz, double phase_lag, double gain = 1.0) {
@@ -81,8 +81,8 @@ TEST(TrackingIndicatorTest, ReturnsWorstDegreeOfFreedom) {
   TrackingIndicator second{1, kPeriod_s, kWindow_s, 0.0};
   for (int i = 0; i < 5000; ++i) {
     const double angle = 2.0 * std::numbers::pi * 5.0 * kPeriod_s * i;
-    InterfaceVector wanted = InterfaceVector::Constant(2, std::sin(angle));
-    InterfaceVector measured = wanted;
+    SiteVector wanted = SiteVector::Constant(2, std::sin(angle));
+    SiteVector measured = wanted;
     measured[1] = std::sin(angle + 0.2);
     both.sample(wanted, measured);
     second.sample(wanted.tail(1), measured.tail(1));

@@ -15,20 +15,20 @@ constexpr double kStep = 0.01;
 constexpr double kAmplitude = 0.05;
 constexpr double kOmega = 2.0 * std::numbers::pi;
 
-CommandPoint sine_target(Step step) {
+TargetPoint sine_target(Step step) {
   const double time = static_cast<double>(step) * kStep;
-  CommandPoint point;
+  TargetPoint point;
   point.step = step;
   point.model_time_s = time;
-  point.displacement_m = InterfaceVector::Constant(1, kAmplitude * std::sin(kOmega * time));
-  point.velocity_m_per_s = InterfaceVector::Constant(1, kAmplitude * kOmega * std::cos(kOmega * time));
-  point.acceleration_m_per_s2 = InterfaceVector::Constant(1, -kAmplitude * kOmega * kOmega * std::sin(kOmega * time));
+  point.displacement_m = SiteVector::Constant(1, kAmplitude * std::sin(kOmega * time));
+  point.velocity_m_per_s = SiteVector::Constant(1, kAmplitude * kOmega * std::cos(kOmega * time));
+  point.acceleration_m_per_s2 = SiteVector::Constant(1, -kAmplitude * kOmega * kOmega * std::sin(kOmega * time));
   return point;
 }
 
 TEST(TrajectoryTest, ReachesEachTargetExactlyAtItsTime) {
   Trajectory trajectory{1, kStep, 1.0};
-  trajectory.reset(InterfaceVector::Zero(1));
+  trajectory.reset(SiteVector::Zero(1));
   ReachedTarget reached;
   trajectory.set_target(sine_target(0));
   ASSERT_TRUE(trajectory.advance(kStep / 4, reached));
@@ -175,13 +175,13 @@ TEST(TrajectoryTest, PredictsPolynomialsOfItsOrderOnlyExactly) {
       // x = t^degree; the velocity and acceleration that go with it are sent.
       const auto target = [&](Step step) {
         const double time = static_cast<double>(step) * kStep;
-        CommandPoint point;
+        TargetPoint point;
         point.step = step;
         point.model_time_s = time;
-        point.displacement_m = InterfaceVector::Constant(1, std::pow(time, degree));
-        point.velocity_m_per_s = InterfaceVector::Constant(1, degree * std::pow(time, degree - 1));
+        point.displacement_m = SiteVector::Constant(1, std::pow(time, degree));
+        point.velocity_m_per_s = SiteVector::Constant(1, degree * std::pow(time, degree - 1));
         point.acceleration_m_per_s2 =
-            InterfaceVector::Constant(1, degree < 2 ? 0.0 : degree * (degree - 1) * std::pow(time, degree - 2));
+            SiteVector::Constant(1, degree < 2 ? 0.0 : degree * (degree - 1) * std::pow(time, degree - 2));
         return point;
       };
       Trajectory trajectory{1, kStep, 1.0, {.order = order}};

@@ -32,7 +32,7 @@ struct Bench {
     rig->arm();
   }
   [[nodiscard]] RigStatus exchange(double displacement_m, double rotation) {
-    command.displacement_m = InterfaceVector{{displacement_m, rotation}};
+    command.displacement_m = SiteVector{{displacement_m, rotation}};
     const RigStatus status = rig->exchange(command, feedback);
     ++command.sample;
     return status;
@@ -41,13 +41,13 @@ struct Bench {
   ScriptedRig* inside = nullptr;
   std::unique_ptr<TransformedRig> rig;
   ActuatorCommand command;
-  RigFeedback feedback{InterfaceVector::Zero(2), InterfaceVector::Zero(2)};
+  RigFeedback feedback{SiteVector::Zero(2), SiteVector::Zero(2)};
 };
 
 TEST(TransformedRig, CommandsInActuatorsAndMeasuresInDofs) {
   Bench bench{two_beside_each_other()};
   ASSERT_EQ(bench.exchange(0.25, 0.75), RigStatus::healthy);
-  EXPECT_EQ(bench.inside->commands.back().displacement_m, (InterfaceVector{{0.625, -0.125}}));
+  EXPECT_EQ(bench.inside->commands.back().displacement_m, (SiteVector{{0.625, -0.125}}));
   EXPECT_NEAR(bench.feedback.displacement_m[0], 0.25, 1e-16);
   EXPECT_NEAR(bench.feedback.displacement_m[1], 0.75, 2e-16);
   // T^T k T = k diag(2, 0.5)
@@ -61,16 +61,16 @@ TEST(TransformedRig, MeasuresActualPoseOfTheBeam) {
                   RigidBeam::Actuator{{0.0, 0.6}, {-2.0, 0.6}}, RigidBeam::Actuator{{0.0, -0.6}, {-2.0, -0.6}}}),
               1.0, [](const ActuatorCommand& command, RigFeedback& feedback) {
                 feedback.displacement_m = 0.5 * command.displacement_m;
-                feedback.force_n = InterfaceVector{{100.0, 300.0}};
+                feedback.force_n = SiteVector{{100.0, 300.0}};
                 return RigStatus::healthy;
               }};
   ASSERT_EQ(bench.exchange(0.2, 0.3), RigStatus::healthy);
   const RigidBeam beam{{RigidBeam::Actuator{{0.0, 0.6}, {-2.0, 0.6}}, RigidBeam::Actuator{{0.0, -0.6}, {-2.0, -0.6}}}};
-  InterfaceVector stroke_m{2};
+  SiteVector stroke_m{2};
   beam.strokes(bench.feedback.displacement_m, stroke_m);
   EXPECT_NEAR((stroke_m - 0.5 * bench.inside->commands.back().displacement_m).norm(), 0.0, 1e-15);
-  InterfaceVector expected{2};
-  transfer_forces(beam, bench.feedback.displacement_m, InterfaceVector{{100.0, 300.0}}, expected);
+  SiteVector expected{2};
+  transfer_forces(beam, bench.feedback.displacement_m, SiteVector{{100.0, 300.0}}, expected);
   EXPECT_EQ(bench.feedback.force_n, expected) << "forces act at the measured pose";
 }
 
@@ -78,7 +78,7 @@ TEST(TransformedRig, StrokeBeyondLimitIsClippedAndAFault) {
   Bench bench{two_beside_each_other(), 0.3};
   EXPECT_EQ(bench.exchange(0.3, 0.0), RigStatus::healthy);
   EXPECT_EQ(bench.exchange(0.2, 0.5), RigStatus::fault);
-  EXPECT_EQ(bench.inside->commands.back().displacement_m, (InterfaceVector{{0.3, 0.2 - 0.5 * 0.5}}));
+  EXPECT_EQ(bench.inside->commands.back().displacement_m, (SiteVector{{0.3, 0.2 - 0.5 * 0.5}}));
   EXPECT_EQ(bench.exchange(-0.2, 0.5), RigStatus::fault);
   EXPECT_EQ(bench.inside->commands.back().displacement_m[1], -0.3);
   EXPECT_EQ(bench.exchange(0.1, 0.0), RigStatus::healthy);
@@ -93,7 +93,7 @@ TEST(TransformedRig, MeasurementWithoutPoseIsAFaultAndKeepsLastGood) {
                 return RigStatus::healthy;
               }};
   ASSERT_EQ(bench.exchange(0.1, 0.0), RigStatus::healthy);
-  const InterfaceVector good_m = bench.feedback.displacement_m;
+  const SiteVector good_m = bench.feedback.displacement_m;
   is_broken = true;
   EXPECT_EQ(bench.exchange(0.2, 0.0), RigStatus::fault);
   EXPECT_EQ(bench.feedback.displacement_m, good_m);
@@ -106,7 +106,7 @@ TEST(TransformedRig, ForwardsStopsAndFaults) {
   EXPECT_EQ(bench.exchange(0.1, 0.0), RigStatus::fault);
   bench.rig->stop_motion();
   EXPECT_EQ(bench.inside->stops, 1);
-  bench.command.displacement_m = InterfaceVector{{0.1}};
+  bench.command.displacement_m = SiteVector{{0.1}};
   EXPECT_EQ(bench.rig->exchange(bench.command, bench.feedback), RigStatus::fault) << "a command of another size";
 }
 

@@ -30,7 +30,7 @@ CommandDatagram kept_command() {
   command.request = ControllerRequest::active;
   command.control_period_ns = 976562;
   command.time_ns = 12345678901234;
-  command.displacement_m = InterfaceVector{{0.0125, -1.0 / 3.0, 2.5e-7}};
+  command.displacement_m = SiteVector{{0.0125, -1.0 / 3.0, 2.5e-7}};
   return command;
 }
 
@@ -42,8 +42,8 @@ MeasurementDatagram kept_measurement() {
   measurement.status = kFollowsDatagrams | kCommandLimited;
   measurement.discarded = 258;
   measurement.time_ns = -5000000007;
-  measurement.displacement_m = InterfaceVector{{0.012, -0.25, std::numeric_limits<double>::infinity()}};
-  measurement.force_n = InterfaceVector{{-40.0e3, 0.1, 6.5e4}};
+  measurement.displacement_m = SiteVector{{0.012, -0.25, std::numeric_limits<double>::infinity()}};
+  measurement.force_n = SiteVector{{-40.0e3, 0.1, 6.5e4}};
   return measurement;
 }
 
@@ -69,7 +69,7 @@ TEST(UdpDatagram, StoredMeasurementRoundTripsByteByByte) {
 
 TEST(UdpDatagram, RoundTripsForEveryActuatorCount) {
   Random random{3};
-  for (int actuators = 1; actuators <= kMaxInterfaceDofs; ++actuators) {
+  for (int actuators = 1; actuators <= kMaxSiteDofs; ++actuators) {
     MeasurementDatagram measurement = kept_measurement();
     measurement.displacement_m.resize(actuators);
     measurement.force_n.resize(actuators);

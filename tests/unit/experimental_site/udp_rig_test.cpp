@@ -57,7 +57,7 @@ struct Bench {
     rig->arm();
   }
   [[nodiscard]] RigStatus exchange(double first_m, double second_m = 0.0) {
-    command.displacement_m = InterfaceVector{{first_m, second_m}};
+    command.displacement_m = SiteVector{{first_m, second_m}};
     const RigStatus status = rig->exchange(command, feedback);
     ++command.sample;
     command.time_s += 0.001;
@@ -68,15 +68,15 @@ struct Bench {
   ScriptedPort* port = nullptr;
   std::optional<UdpRig> rig;
   ActuatorCommand command;
-  RigFeedback feedback{InterfaceVector::Zero(2), InterfaceVector::Zero(2)};
+  RigFeedback feedback{SiteVector::Zero(2), SiteVector::Zero(2)};
 };
 
 TEST(UdpRig, SendsTheCommandAndReturnsItsMeasurement) {
   Bench bench;
   bench.arm();
   ASSERT_EQ(bench.exchange(0.01, -0.02), RigStatus::healthy);
-  EXPECT_EQ(bench.feedback.displacement_m, (InterfaceVector{{0.01, -0.02}}));
-  EXPECT_EQ(bench.feedback.force_n, (InterfaceVector{{0.01 * kStiffness_n_per_m, -0.02 * kStiffness_n_per_m}}));
+  EXPECT_EQ(bench.feedback.displacement_m, (SiteVector{{0.01, -0.02}}));
+  EXPECT_EQ(bench.feedback.force_n, (SiteVector{{0.01 * kStiffness_n_per_m, -0.02 * kStiffness_n_per_m}}));
   const CommandDatagram& sent = bench.controller.commands.back();
   EXPECT_EQ(sent.request, ControllerRequest::active);
   EXPECT_EQ(sent.loop_count, 1U);
@@ -199,7 +199,7 @@ TEST(UdpRig, RejectsInvalidCommand) {
   bench.arm();
   const auto sent = bench.controller.commands.size();
   EXPECT_EQ(bench.exchange(std::numeric_limits<double>::quiet_NaN()), RigStatus::fault);
-  bench.command.displacement_m = InterfaceVector{{0.01}};
+  bench.command.displacement_m = SiteVector{{0.01}};
   EXPECT_EQ(bench.rig->exchange(bench.command, bench.feedback), RigStatus::fault);
   EXPECT_EQ(bench.controller.commands.size(), sent);
 }
@@ -242,7 +242,7 @@ TEST(UdpRig, ConnectReportsOtherActuatorCount) {
   bench.controller.deliver = [](const auto&, auto& arriving) {
     MeasurementDatagram one;
     one.command_sequence = 1;
-    one.displacement_m = one.force_n = InterfaceVector::Zero(1);
+    one.displacement_m = one.force_n = SiteVector::Zero(1);
     arriving.push_back(ScriptedController::bytes_of(one));
   };
   EXPECT_THAT([&] { bench.rig->connect(); },
@@ -384,7 +384,7 @@ TEST(UdpRig, RejectsAnswerToCommandNeverSent) {
   foreign.sequence = 1'000'000;
   foreign.command_sequence = 1'000'000;
   foreign.state = ControllerState::active;
-  foreign.displacement_m = foreign.force_n = InterfaceVector{{0.9, 0.9}};
+  foreign.displacement_m = foreign.force_n = SiteVector{{0.9, 0.9}};
   bench.port->arriving.push_back(ScriptedController::bytes_of(foreign));
   ASSERT_EQ(bench.exchange(0.01), RigStatus::healthy);
   EXPECT_EQ(bench.feedback.displacement_m[0], 0.01);
@@ -431,8 +431,8 @@ TEST(UdpRig, DoesNotAllocateWhenArmed) {
   rig.connect();
   rig.arm();
   ActuatorCommand command;
-  command.displacement_m = InterfaceVector{{0.01, 0.02}};
-  RigFeedback feedback{InterfaceVector::Zero(2), InterfaceVector::Zero(2)};
+  command.displacement_m = SiteVector{{0.01, 0.02}};
+  RigFeedback feedback{SiteVector::Zero(2), SiteVector::Zero(2)};
   const std::size_t before = allocation_count();
   for (command.sample = 0; command.sample < 100; ++command.sample) {
     ASSERT_EQ(rig.exchange(command, feedback), RigStatus::healthy);

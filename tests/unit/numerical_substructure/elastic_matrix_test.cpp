@@ -19,14 +19,14 @@ TEST(ElasticMatrix, ForceIsStiffnessTimesDisplacement) {
 
 TEST(ElasticMatrix, AcceptsLargestInterface) {
   Random random{4};
-  Eigen::MatrixXd half(kMaxInterfaceDofs, kMaxInterfaceDofs);
+  Eigen::MatrixXd half(kMaxInterfaceDofs, 2);
   for (double& entry : half.reshaped()) entry = random.normal();
   const Eigen::MatrixXd stiffness = half * half.transpose();
   ElasticMatrix model{stiffness};
   InterfaceVector force_n = InterfaceVector::Zero(kMaxInterfaceDofs);
-  for (int dof = 0; dof < kMaxInterfaceDofs; ++dof) {
+  for (int dof = 0; dof < kMaxInterfaceDofs; dof += 89) {
     model.trial(InterfaceVector::Unit(kMaxInterfaceDofs, dof), InterfaceVector::Zero(kMaxInterfaceDofs), force_n);
-    EXPECT_LT((force_n - stiffness.col(dof)).norm(), 1e-13 * stiffness.norm());
+    EXPECT_LT((force_n - stiffness.col(dof)).norm(), 1e-13 * stiffness.col(dof).norm()) << dof;
   }
 }
 

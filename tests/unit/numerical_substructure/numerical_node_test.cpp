@@ -85,7 +85,7 @@ class NumericalNodeTest : public testing::Test {
   NumericalNode node_{kIndex,    std::make_unique<ScriptedSubstructure>(1, linear_spring(100.0), calls_),
                       presence_, MembershipPorts{announcements_, control_, seconds{30}},
                       commands_, measurements_,
-                      steps_};
+                      steps_,    {0}};
   Instant now_{};
 };
 

@@ -10,9 +10,9 @@ namespace {
 TEST(ElasticSpecimen, CouplesItsActuators) {
   ElasticSpecimen specimen{Eigen::MatrixXd{{2.0, -1.0}, {-1.0, 3.0}}};
   ASSERT_EQ(specimen.dofs(), 2);
-  InterfaceVector force_n = InterfaceVector::Zero(2);
-  specimen.impose(InterfaceVector{{0.5, -2.0}}, InterfaceVector::Zero(2), force_n);
-  EXPECT_EQ(force_n, (InterfaceVector{{3.0, -6.5}}));
+  SiteVector force_n = SiteVector::Zero(2);
+  specimen.impose(SiteVector{{0.5, -2.0}}, SiteVector::Zero(2), force_n);
+  EXPECT_EQ(force_n, (SiteVector{{3.0, -6.5}}));
 }
 
 TEST(ElasticSpecimen, RejectsInvalidStiffness) {

@@ -16,16 +16,16 @@ TEST(LawSpecimen, KeepsImposedDisplacement) {
       Bilinear::Parameters{.stiffness_n_per_m = 4.0e6, .yield_force_n = 4.0e4, .hardening_ratio = 0.0}));
   LawSpecimen specimen{std::move(laws)};
   ASSERT_EQ(specimen.dofs(), 2);
-  const InterfaceVector at_rest = InterfaceVector::Zero(2);
-  InterfaceVector force_n = at_rest;
-  specimen.impose(InterfaceVector{{0.01, 0.03}}, at_rest, force_n);
+  const SiteVector at_rest = SiteVector::Zero(2);
+  SiteVector force_n = at_rest;
+  specimen.impose(SiteVector{{0.01, 0.03}}, at_rest, force_n);
   EXPECT_DOUBLE_EQ(force_n[0], 2.0e4);
   EXPECT_DOUBLE_EQ(force_n[1], 4.0e4);
-  specimen.impose(InterfaceVector{{0.0, 0.02}}, at_rest, force_n);  // elastic back to nothing
+  specimen.impose(SiteVector{{0.0, 0.02}}, at_rest, force_n);  // elastic back to nothing
   EXPECT_EQ(force_n[0], 0.0);
   EXPECT_NEAR(force_n[1], 0.0, 1e-9);
   specimen.reset();
-  specimen.impose(InterfaceVector{{0.0, 0.005}}, at_rest, force_n);
+  specimen.impose(SiteVector{{0.0, 0.005}}, at_rest, force_n);
   EXPECT_DOUBLE_EQ(force_n[1], 2.0e4);
 }
 
@@ -36,8 +36,8 @@ TEST(LawSpecimen, RejectsNoLawAndTooMany) {
     return LawSpecimen{std::move(laws)};
   };
   EXPECT_THROW(make(0), ConfigError);
-  EXPECT_NO_THROW(make(kMaxInterfaceDofs));
-  EXPECT_THROW(make(kMaxInterfaceDofs + 1), ConfigError);
+  EXPECT_NO_THROW(make(kMaxSiteDofs));
+  EXPECT_THROW(make(kMaxSiteDofs + 1), ConfigError);
 }
 
 }  // namespace

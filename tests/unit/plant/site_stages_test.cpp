@@ -88,12 +88,12 @@ TEST(SiteStages, StagesTogetherEqualTheRig) {
   rig.arm();
   TransferStage transfer{model, kPeriod_s};
   SpecimenStage specimen{model, kPeriod_s};
-  RigFeedback feedback{.displacement_m = InterfaceVector::Zero(1), .force_n = InterfaceVector::Zero(1)};
+  RigFeedback feedback{.displacement_m = SiteVector::Zero(1), .force_n = SiteVector::Zero(1)};
   Motion motion;
   for (int i = 0; i < 500; ++i) {
     ActuatorCommand asked;
     asked.time_s = kPeriod_s * i;
-    asked.displacement_m = InterfaceVector::Constant(1, 0.02 * std::sin(0.03 * i));
+    asked.displacement_m = SiteVector::Constant(1, 0.02 * std::sin(0.03 * i));
     ASSERT_EQ(rig.exchange(asked, feedback), RigStatus::healthy);
     EXPECT_EQ(feedback.displacement_m[0], transfer.step(command(asked.displacement_m[0])));
     const Motion before = motion;

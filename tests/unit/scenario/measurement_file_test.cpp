@@ -37,16 +37,16 @@ const std::string kHeader = "sample,time_s,measured_force_n,measured_displacemen
 TEST_F(MeasurementFile, ReadsColumnsByNameAndIgnoresOthers) {
   const RecordedMeasurement record = read(kHeader + "0,0.5,100,1e-3\r\n1,0.75,-2.5e3,0.25\n");
   EXPECT_THAT(record.time_s, ElementsAre(0.5, 0.75));
-  EXPECT_EQ(record.displacement_m[1], (InterfaceVector{{0.25}}));
-  EXPECT_EQ(record.force_n[0], (InterfaceVector{{100.0}}));
+  EXPECT_EQ(record.displacement_m[1], (SiteVector{{0.25}}));
+  EXPECT_EQ(record.force_n[0], (SiteVector{{100.0}}));
 }
 
 TEST_F(MeasurementFile, NumbersTheColumnsOfSeveralActuators) {
   const RecordedMeasurement record = read(
       "time_s,measured_displacement_m_2,measured_displacement_m_1,measured_force_n_1,measured_force_n_2\n0,2,1,3,4\n",
       2);
-  EXPECT_EQ(record.displacement_m[0], (InterfaceVector{{1.0, 2.0}}));
-  EXPECT_EQ(record.force_n[0], (InterfaceVector{{3.0, 4.0}}));
+  EXPECT_EQ(record.displacement_m[0], (SiteVector{{1.0, 2.0}}));
+  EXPECT_EQ(record.force_n[0], (SiteVector{{3.0, 4.0}}));
 }
 
 TEST_F(MeasurementFile, ReportsErrorWithItsPlace) {

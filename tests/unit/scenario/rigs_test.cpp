@@ -78,8 +78,8 @@ TEST_F(RigsTest, GeometryWrapsAnyRig) {
   rig->connect();
   rig->arm();
   ActuatorCommand command;
-  command.displacement_m = InterfaceVector{{0.01}};
-  RigFeedback feedback{InterfaceVector::Zero(1), InterfaceVector::Zero(1)};
+  command.displacement_m = SiteVector{{0.01}};
+  RigFeedback feedback{SiteVector::Zero(1), SiteVector::Zero(1)};
   ASSERT_EQ(rig->exchange(command, feedback), RigStatus::healthy);
   EXPECT_DOUBLE_EQ(feedback.displacement_m[0], 0.01);
   EXPECT_DOUBLE_EQ(feedback.force_n[0], (1.0e6 + 2.0 * 2.0 * 2.0e6) * 0.01);

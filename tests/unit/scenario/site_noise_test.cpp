@@ -10,9 +10,9 @@ namespace {
 double first_reading_n(const SubstructureScenario& site) {
   const auto rig = site.make_rig(0.001);
   rig->connect();
-  RigFeedback feedback{.displacement_m = InterfaceVector::Zero(1), .force_n = InterfaceVector::Zero(1)};
+  RigFeedback feedback{.displacement_m = SiteVector::Zero(1), .force_n = SiteVector::Zero(1)};
   ActuatorCommand command;
-  command.displacement_m = InterfaceVector::Zero(1);
+  command.displacement_m = SiteVector::Zero(1);
   EXPECT_EQ(rig->exchange(command, feedback), RigStatus::healthy);
   return feedback.force_n[0];
 }

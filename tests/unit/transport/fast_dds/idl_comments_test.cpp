@@ -48,8 +48,9 @@ void survey_field(const std::string& line, const std::string& where, bool in_fin
       survey.complaints.push_back(where + name + " does not have the unit of its name");
     }
   }
-  if (in_final && line.find('<') != std::string::npos) {
-    survey.complaints.push_back(where + name + " needs memory from the heap in a @final struct");
+  static const std::regex kBoundless{R"(\s+(string |sequence<[^,]*>).*)"};
+  if (in_final && std::regex_match(line, kBoundless)) {
+    survey.complaints.push_back(where + name + " has no limit of its length in a @final struct");
   }
 }
 
@@ -122,9 +123,11 @@ TEST(IdlComments, ReportsStructWithoutExtensibility) {
   EXPECT_EQ(survey_text("struct A {\n  double x;  // [m]\n};\n").complaints.size(), 1U);
 }
 
-TEST(IdlComments, ReportsHeapTypeInFinalStruct) {
-  EXPECT_EQ(survey_text("@final\nstruct A {\n  sequence<double, 3> x;  // [m]\n};\n").complaints.size(), 1U);
-  EXPECT_TRUE(survey_text("@appendable\nstruct A {\n  sequence<double, 3> x;  // [m]\n};\n").complaints.empty());
+TEST(IdlComments, ReportsLengthWithoutLimitInFinalStruct) {
+  EXPECT_EQ(survey_text("@final\nstruct A {\n  sequence<double> x;  // [m]\n};\n").complaints.size(), 1U);
+  EXPECT_EQ(survey_text("@final\nstruct A {\n  string x;  // [-]\n};\n").complaints.size(), 1U);
+  EXPECT_TRUE(survey_text("@final\nstruct A {\n  sequence<double, 3> x;  // [m]\n};\n").complaints.empty());
+  EXPECT_TRUE(survey_text("@appendable\nstruct A {\n  sequence<double> x;  // [m]\n};\n").complaints.empty());
 }
 
 }  // namespace

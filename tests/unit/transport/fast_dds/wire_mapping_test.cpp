@@ -87,7 +87,7 @@ class Draw {
     m.time_scale = time_s();
     m.substructure_count = static_cast<std::uint16_t>(up_to(kMaxSubstructures));
     for (auto& substructure : m.substructures) {
-      substructure = {text<48>(), one_of(Role::operator_tool), static_cast<std::uint8_t>(up_to(kMaxInterfaceDofs))};
+      substructure = {text<48>(), one_of(Role::operator_tool), static_cast<std::uint16_t>(up_to(kMaxInterfaceDofs))};
     }
     return m;
   }
@@ -105,6 +105,8 @@ class Draw {
     DisplacementCommand m;
     m.substructure = static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1));
     m.coordinator = any<Incarnation>();
+    m.iteration = any<std::uint16_t>();
+    m.is_trial = up_to(1) == 1;
     m.point_count = static_cast<std::uint8_t>(1 + up_to(kCommandPoints - 1));
     for (auto& point : m.points) point = {step(), time_s(), vector(), vector(), vector()};
     m.attempt = any<std::uint16_t>();
@@ -115,6 +117,7 @@ class Draw {
     return {static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1)),
             any<Incarnation>(),
             step(),
+            any<std::uint16_t>(),
             time_s(),
             vector(),
             vector(),
@@ -230,10 +233,11 @@ TEST(WireMapping, RejectsCommandOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.points()[3].step(-2); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[3].model_time_s(-1e-9); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[0].model_time_s(kNaN); }));
-  EXPECT_TRUE(refused([](auto& s) { s.points()[0].displacement_count(kMaxInterfaceDofs + 1); }));
-  EXPECT_TRUE(refused([](auto& s) { s.points()[1].velocity_count(255); }));
-  EXPECT_TRUE(refused([](auto& s) { s.points()[2].acceleration_count(13); }));
-  EXPECT_FALSE(refused([](auto& s) { s.points()[0].displacement_m()[0] = kNaN; })) << "for the nodes to decide";
+  EXPECT_TRUE(refused([](auto& s) { s.points()[0].displacement_m().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[1].velocity_m_per_s().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.points()[2].acceleration_m_per_s2().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_FALSE(refused([](auto& s) { s.points()[2].acceleration_m_per_s2().resize(kMaxInterfaceDofs); }));
+  EXPECT_FALSE(refused([](auto& s) { s.points()[0].displacement_m().assign(1, kNaN); })) << "for the nodes to decide";
 }
 
 TEST(WireMapping, RejectsMeasurementOutOfRange) {
@@ -242,9 +246,9 @@ TEST(WireMapping, RejectsMeasurementOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.flags(1U << 5U); }));
   EXPECT_TRUE(refused([](auto& s) { s.step(-2); }));
   EXPECT_TRUE(refused([](auto& s) { s.model_time_s(std::numeric_limits<double>::infinity()); }));
-  EXPECT_TRUE(refused([](auto& s) { s.imposed_displacement_count(13); }));
-  EXPECT_TRUE(refused([](auto& s) { s.measured_displacement_count(13); }));
-  EXPECT_TRUE(refused([](auto& s) { s.force_count(13); }));
+  EXPECT_TRUE(refused([](auto& s) { s.imposed_displacement_m().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.measured_displacement_m().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.force_n().resize(kMaxInterfaceDofs + 1); }));
 }
 
 TEST(WireMapping, RejectsStatusOutOfRange) {
@@ -266,7 +270,7 @@ TEST(WireMapping, RejectsAnnouncementOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.duration_s(-1.0); }));
   EXPECT_TRUE(refused([](auto& s) { s.time_scale(kNaN); }));
   EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].role(9); }));
-  EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].interface_dofs(13); }));
+  EXPECT_TRUE(refused([](auto& s) { s.substructures()[31].interface_dofs(kMaxInterfaceDofs + 1); }));
 }
 
 TEST(WireMapping, RejectsControlAndEventOutOfRange) {
@@ -289,12 +293,41 @@ TEST(WireMapping, RejectsSignalBlockOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.samples()[31].model_time_s(kNaN); }));
 }
 
-TEST(WireMapping, HotMessagesFitOneEthernetFrame) {
+/// Of a command with its history, for an interface of so many degrees of freedom.
+std::size_t command_bytes(Eigen::Index dofs) {
+  DisplacementCommand command;
+  command.point_count = kCommandPoints;
+  for (CommandPoint& point : command.points) {
+    point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 = InterfaceVector::Zero(dofs);
+  }
+  wire::DisplacementCommand sample;
+  encode(command, sample);
+  return wire::DisplacementCommand::getCdrSerializedSize(sample);
+}
+
+std::size_t measurement_bytes(Eigen::Index dofs) {
+  ForceMeasurement measurement;
+  measurement.imposed_displacement_m = measurement.measured_displacement_m = measurement.force_n =
+      InterfaceVector::Zero(dofs);
+  wire::ForceMeasurement sample;
+  encode(measurement, sample);
+  return wire::ForceMeasurement::getCdrSerializedSize(sample);
+}
+
+TEST(WireMapping, MessagesAreAsSmallAsTheInterface) {
+  // Header 24, and in each of four points: step and time 16, three lengths with a value each 3 (8 + 8).
+  EXPECT_EQ(command_bytes(1), 24U + 4U * (16U + 3U * 16U));
+  // Header 64 with its padding, and three lengths with a value each.
+  EXPECT_EQ(measurement_bytes(1), 64U + 3U * 16U);
+  EXPECT_EQ(command_bytes(100) - command_bytes(1), 4U * 3U * 99U * 8U);
+}
+
+TEST(WireMapping, SiteMessagesFitOneEthernetFrame) {
   // 1500 bytes less headers: IP 20, UDP 8, RTPS 20, INFO_TS 12, DATA 24 with inline key hash 24,
   // HEARTBEAT that rides along 32, encapsulation 4.
   constexpr std::size_t kRoom = 1500 - 20 - 8 - 20 - 12 - 24 - 24 - 32 - 4;
-  EXPECT_LE(wire::DisplacementCommand::getMaxCdrSerializedSize(), kRoom);
-  EXPECT_LE(wire::ForceMeasurement::getMaxCdrSerializedSize(), kRoom);
+  EXPECT_LE(command_bytes(kMaxSiteDofs), kRoom);
+  EXPECT_LE(measurement_bytes(kMaxSiteDofs), kRoom);
   EXPECT_LE(wire::SignalBlock::getMaxCdrSerializedSize(), kRoom);
 }
 
