@@ -439,6 +439,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
         gap.verdict = stage.judgement.verdict;
       } else if (!stage.judgement.corrections.empty()) {
         gap.is_at_fault = gap.verdict.has_value();
+        gap.is_corrected = !gap.is_at_fault;
       }
     }
   }

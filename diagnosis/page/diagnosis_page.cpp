@@ -27,9 +27,10 @@ std::string judged_link(const InterfaceGap& gap, bool is_main) {
       "<span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span><em>{}</em></li>\n",
       state, escaped(plain(gap.interface)), sees(gap.interface), percent(gap.share), between_percent(gap.share_ci95),
       100.0 * std::clamp(gap.share, 0.0, 1.0),
-      is_main           ? "✗ largest gap"
-      : gap.is_at_fault ? "above its noise floor"
-                        : "✓ within its noise floor");
+      is_main            ? "✗ largest gap"
+      : gap.is_at_fault  ? "above its noise floor"
+      : gap.is_corrected ? "✓ numbers slightly off"
+                         : "✓ within its noise floor");
 }
 
 std::string unjudged_link(std::string_view interface, const std::string& why) {
@@ -70,6 +71,17 @@ std::string parameter_text(const ReportedParameter& parameter) {
   return text + "</span>";
 }
 
+/// With the law that stands in place of the specimen's.
+std::string name_of(const RankedCause& cause) {
+  return plain(cause.effect) + (cause.law.empty() ? "" : ": " + plain(cause.law));
+}
+
+/// No number of these recordings makes sure.
+std::string probability_text(double probability) {
+  constexpr double kMostShown = 0.999;
+  return probability > kMostShown ? "over " + percent(kMostShown) : percent(probability);
+}
+
 std::string row(const RankedCause& cause) {
   std::string parameters;
   for (const ReportedParameter& parameter : cause.parameters) parameters += parameter_text(parameter);
@@ -78,16 +90,16 @@ std::string row(const RankedCause& cause) {
       "<tr class=\"{}\"><td><b>{}</b><small>{}</small><small class=\"eq\">{}</small></td>"
       "<td class=\"prob\">{}<span class=\"bar\"><i "
       "style=\"width:{:.1f}%\"></i></span></td><td>{}</td><td>{}</td></tr>\n",
-      cause.is_cause ? "cause" : "", escaped(plain(cause.effect)), escaped("at the " + plain(cause.interface)),
-      escaped(cause.equation), percent(cause.probability), 100.0 * std::clamp(cause.probability, 0.0, 1.0), parameters,
-      standing);
+      cause.is_cause ? "cause" : "", escaped(name_of(cause)), escaped("at the " + plain(cause.interface)),
+      escaped(cause.equation), probability_text(cause.probability), 100.0 * std::clamp(cause.probability, 0.0, 1.0),
+      parameters, standing);
 }
 
 /// The causes and the effects that cannot be distinguished from them; empty when there is no such effect.
 std::string alike_text(const DiagnosisReport& report) {
   std::vector<std::string> alike;
   for (const RankedCause& cause : report.ranking) {
-    if (cause.is_cause || cause.is_indistinguishable) alike.push_back(plain(cause.effect));
+    if (cause.is_cause || cause.is_indistinguishable) alike.push_back(name_of(cause));
   }
   const bool is_open =
       report.verdict == Verdict::set || std::ranges::any_of(report.ranking, &RankedCause::is_indistinguishable);

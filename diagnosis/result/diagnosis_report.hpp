@@ -44,7 +44,8 @@ struct InterfaceGap {
   std::string interface;  // `transfer_system`
   bool is_judged = false;
   std::string why_not{};             // if not judged: the missing channel or other requirement
-  bool is_at_fault = false;          // its gap is above its noise floor
+  bool is_at_fault = false;          // its gap is above its noise floor, and is more than numbers slightly off
+  bool is_corrected = false;         // its gap is only numbers slightly off, see `corrections`
   std::optional<Verdict> verdict{};  // on this interface alone, if it is at fault
   double share = 0.0;                // of the whole gap, 0 to 1
   Interval share_ci95{};

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/interface_vector.hpp"
 #include "tests/support/shear_frame.hpp"
 #include "tests/support/system_fixture.hpp"
+#include "tests/support/tall_tower.hpp"
 
 /// The same scenario gives the same bytes: over DDS in several processes, simulated in one, and at every
 /// optimisation level.
@@ -79,6 +81,19 @@ TEST_F(SameBits, FrameOfTenThousandRunsAsItIsSimulated) {
   EXPECT_EQ(recorded("run").last_step("coordinator"), 300.0);
   expect_same_table("coordinator", "steps", {"wall_time_s"});
   for (const char* site : {"first", "second"}) expect_same_table(site, "control");
+}
+
+/// That such a tower moves right, WideInterface shows under simulated time. A command has 49 kB here.
+TEST_F(SameBits, WidestInterfaceRunsAsItIsSimulated) {
+  test::tall_tower::write_structure(directory(), kMaxInterfaceDofs);
+  const std::filesystem::path scenario = test::tall_tower::write_scenario(directory(), "nothing", kMaxInterfaceDofs);
+  StartedProgram run = start_run(scenario, "run", {});
+  StartedProgram simulated = start_simulate(scenario, "simulated", {});
+  ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
+  ASSERT_THAT(simulated.wait(), ::testing::Optional(kExitCompleted)) << simulated.standard_error();
+  EXPECT_EQ(recorded("run").last_step("coordinator"), 500.0);
+  expect_same_table("coordinator", "steps", {"wall_time_s"});
+  expect_same_table("columns", "steps");
 }
 
 /// The site without dynamics of its own. That the motion is right, tests/simulation/reference_test.cpp shows.

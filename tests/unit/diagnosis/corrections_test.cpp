@@ -56,6 +56,11 @@ TEST(Corrections, NumbersSlightlyOffAreNone) {
       EXPECT_NEAR(number.parameters[1].value, 0.015 * kMadeStiffness_n_per_m, 1e-3 * kMadeStiffness_n_per_m);
     }
   }
+  for (const char* interface : {"transfer_system", "specimen"}) {
+    const auto gap = std::ranges::find(diagnosis.report.where, interface, &report::InterfaceGap::interface);
+    ASSERT_NE(gap, diagnosis.report.where.end());
+    EXPECT_TRUE(gap->is_corrected && !gap->is_at_fault) << interface;
+  }
   // The augmented model has the right numbers, and the gap is gone with them.
   EXPECT_EQ(diagnosis.causes.size(), 2U);
   EXPECT_LT(diagnosis.report.interface_shrink->nrmse_after, 1.2 * diagnosis.report.interface_shrink->floor_nrmse);

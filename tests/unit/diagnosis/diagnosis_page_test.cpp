@@ -104,6 +104,25 @@ TEST(DiagnosisPage, IsSelfContainedAndSmall) {
   EXPECT_EQ(first_imbalance("<p><b></p>"), "</p> closes b") << "control";
 }
 
+TEST(DiagnosisPage, NumbersSlightlyOffAreNotTheNoise) {
+  DiagnosisReport report = example();
+  report.where.front().is_at_fault = false;
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("within its noise floor"));
+  report.where.front().is_corrected = true;
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("numbers slightly off"));
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("within its noise floor")));
+}
+
+TEST(DiagnosisPage, RowNamesTheLawAndClaimsNoCertainty) {
+  DiagnosisReport report = example();
+  report.ranking.front().effect = "hysteresis_law";
+  report.ranking.front().law = "bouc_wen";
+  report.ranking.front().probability = 1.0;
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("<b>hysteresis law: bouc wen</b>"));
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("over 99.9"));
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("100.00")));
+}
+
 TEST(DiagnosisPage, ShowsInterfaceEffectAndShrink) {
   const std::string page = diagnosis_page(example());
   EXPECT_THAT(page,

@@ -68,6 +68,39 @@ TEST_F(StructureSection, ReadsMatricesAndAddsThoseOfSubstructures) {
   EXPECT_GT(scenario.structure.damping_n_s_per_m.coeff(2, 2), 0.0);
 }
 
+TEST_F(StructureSection, PatternListsInterfaceDofsOneByOne) {
+  const std::string model = "    model: {type: elastic, stiffness_n_per_m: 6.0e6}\n";
+  std::string wide = text();
+  wide.replace(wide.find(model), model.size(),
+               "    model: {type: elastic, stiffness_matrix_n_per_m: [[6.0e6, 0], [0, 7.0e6]]}\n");
+  wide.replace(wide.find("[{dof: 1.y}]"), 12, "[{dofs: \"*y\"}]");
+  const Scenario scenario = file_.read(wide);
+  const SubstructureScenario& frame = scenario.substructures[1];
+  EXPECT_THAT(frame.interface_names, ElementsAre("1.y", "roof_y"));
+  EXPECT_EQ(frame.interface.dofs()[1].dof, 3);
+  EXPECT_EQ(frame.interface.dofs()[1].relative_to, InterfaceDof::kGround);
+  EXPECT_THAT(frame.recorded, ElementsAre(0, 1));
+
+  EXPECT_THAT(file_.errors(with("\"*y\"", "\"*w\"", wide)), Contains(HasSubstr("no degree of freedom matches '*w'")));
+  EXPECT_THAT(file_.errors(with("{dofs: \"*y\"}", "{dofs: \"*y\"}, {dof: roof_y}", wide)),
+              Contains(HasSubstr("'roof_y' is listed twice")));
+}
+
+TEST_F(StructureSection, SiteHasFewerInterfaceDofsThanNumericalOne) {
+  std::string rows = "%%MatrixMarket matrix coordinate real symmetric\n13 13 13\n";
+  std::string dofs = "node,direction\n";
+  for (int node = 1; node <= 13; ++node) {
+    rows += std::to_string(node) + " " + std::to_string(node) + " 2e4\n";
+    dofs += std::to_string(node) + ",x\n";
+  }
+  write("m.mtx", rows);
+  write("k.mtx", rows);
+  write("dofs.csv", dofs);
+  const std::string wide_site = with("{dof: node 1 dof 1}", "{dofs: \"*\"}", with("{dof: 1.y}", "{dof: 1.x}", text()));
+  EXPECT_THAT(file_.errors(wide_site), Contains(AllOf(HasSubstr("13 degrees of freedom; expected 1 to 12"),
+                                                      HasSubstr("control loop of a site"))));
+}
+
 TEST_F(StructureSection, GroundMovesOneDirection) {
   EXPECT_EQ(file_.read(text()).structure.influence, Eigen::Vector4d(1, 0, 1, 0));
   EXPECT_EQ(file_.read(text(), {"excitation.direction=y"}).structure.influence, Eigen::Vector4d(0, 1, 0, 1));
