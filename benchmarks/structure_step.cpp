@@ -1,8 +1,8 @@
 // Cost of one step of a structure from matrices: the elastic force K u and the step of the integrator, over that of
-// the sparse work that the method consists of, by Eigen alone: the products K u and C v and the solution of
-// (M/dt^2 + C/2dt) d = f. Measured in one run for frames of 10 to 10 000 degrees of freedom with Rayleigh damping.
+// the sparse work that the method consists of, by Eigen alone: products with K and C, and solutions with
+// M/dt^2 + C/2dt. Measured in one run for frames of 10 to 10 000 degrees of freedom with Rayleigh damping.
 //
-// The kinds take turns in short rounds, so that other work on the machine affects all of them alike. The result is
+// The two take turns in short rounds, so that other work on the machine affects all of them alike. The result is
 // the median over the rounds. Exit code 1 when an integrator takes more than 1.3 times as long at any size.
 
 #include <Eigen/SparseCholesky>
@@ -16,8 +16,12 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/integrators/alpha_operator_splitting.hpp"
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
+#include "coordinator/integrators/generalised_alpha.hpp"
+#include "coordinator/integrators/kr_alpha.hpp"
+#include "coordinator/integrators/rosenbrock_w.hpp"
 #include "mechanics/structure/damping.hpp"
 
 namespace {
@@ -79,20 +83,57 @@ StepKind with_integrator(std::string name, const LinearStructure& structure, std
           {}};
 }
 
-StepKind with_eigen(const LinearStructure& structure) {
+/// The sparse work of a step of the method: products with matrices of the pattern of K, the elastic force among them,
+/// products with those of the pattern of C, and solutions.
+struct SparseWork {
+  int products_k = 1;
+  int products_c = 1;
+  int solutions = 1;
+  int commands = 1;  // in a step of the method
+};
+
+StepKind with_eigen(const LinearStructure& structure, SparseWork work) {
   const SparseMatrix effective =
       structure.mass_kg / (kStep_s * kStep_s) + structure.damping_n_s_per_m / (2.0 * kStep_s);
   const auto factor = std::make_shared<Eigen::SimplicialLDLT<SparseMatrix>>(effective);
   return {"Eigen alone",
-          [factor, stiffness = structure.stiffness_n_per_m, damping = structure.damping_n_s_per_m,
+          [factor, work, stiffness = structure.stiffness_n_per_m, damping = structure.damping_n_s_per_m,
            force_n = Eigen::VectorXd{structure.size()}, solution_m = Eigen::VectorXd{structure.size()},
            motion = Eigen::VectorXd::Constant(structure.size(), 1.0e-3).eval()]() mutable {
-            force_n.noalias() = stiffness * motion;
-            force_n.noalias() += damping * motion;
-            solution_m = factor->solve(force_n);
+            force_n.setZero();
+            for (int i = 0; i < work.products_k; ++i) force_n.noalias() += stiffness * motion;
+            for (int i = 0; i < work.products_c; ++i) force_n.noalias() += damping * motion;
+            for (int i = 0; i < work.solutions; ++i) solution_m = factor->solve(force_n);
             return solution_m[0];
           },
           {}};
+}
+
+struct Method {
+  std::string name;
+  SparseWork work;
+  std::function<std::shared_ptr<Integrator>(const LinearStructure&)> make;
+};
+
+template <class Integration, class... Parameters>
+std::function<std::shared_ptr<Integrator>(const LinearStructure&)> maker(Parameters... parameters) {
+  return [parameters...](const LinearStructure& structure) {
+    return std::make_shared<Integration>(parameters..., structure, kStep_s);
+  };
+}
+
+/// The products are those of the equations in the headers; products with the diagonal mass count as vector work.
+const std::vector<Method>& methods() {
+  static const std::vector<Method> table{
+      {"central_difference", {1, 1}, maker<CentralDifference>()},
+      {"explicit_newmark", {1, 1}, maker<ExplicitNewmark>()},
+      {"cr", {1, 2}, maker<KrAlpha>(KrAlpha::Parameters{.rho_inf = 1.0})},
+      {"kr_alpha", {2, 2}, maker<KrAlpha>(KrAlpha::Parameters{})},
+      {"alpha_operator_splitting", {1, 1}, maker<AlphaOperatorSplitting>(AlphaOperatorSplitting::Parameters{})},
+      {"generalised_alpha", {8, 3, 4, 3}, maker<GeneralisedAlpha>(GeneralisedAlpha::Parameters{})},
+      {"rosenbrock_w", {4, 2, 2, 2}, maker<RosenbrockW>()},
+  };
+  return table;
 }
 
 double median(std::vector<double> values) {
@@ -113,21 +154,20 @@ void take_turn(StepKind& kind, int steps, double& sink) {
 int main() {
   double sink = 0.0;
   double worst = 0.0;
-  std::printf("%8s  %-20s %12s %8s\n", "dofs", "", "us a step", "ratio");
+  std::printf("%8s  %-26s %12s %12s %8s\n", "dofs", "", "us a step", "Eigen alone", "ratio");
   for (const auto& [floors, width] : {std::pair{5, 2}, {10, 10}, {40, 25}, {100, 100}}) {
     const LinearStructure structure = frame(floors, width);
-    std::vector<StepKind> kinds{
-        with_eigen(structure),
-        with_integrator("central_difference", structure, std::make_shared<CentralDifference>(structure, kStep_s)),
-        with_integrator("explicit_newmark", structure, std::make_shared<ExplicitNewmark>(structure, kStep_s))};
     const int steps = std::max(1, kDofStepsPerTurn / (floors * width));
-    for (int turn = 0; turn < kTurns; ++turn) {
-      for (StepKind& kind : kinds) take_turn(kind, steps, sink);
-    }
-    const double bare_us = median(kinds.front().us_per_step);
-    for (const StepKind& kind : kinds) {
-      const double us = median(kind.us_per_step);
-      std::printf("%8d  %-20s %12.3f %8.2f\n", floors * width, kind.name.c_str(), us, us / bare_us);
+    for (const Method& method : methods()) {
+      StepKind bare = with_eigen(structure, method.work);
+      StepKind ours = with_integrator(method.name, structure, method.make(structure));
+      for (int turn = 0; turn < kTurns; ++turn) {
+        take_turn(bare, std::max(1, steps / method.work.commands), sink);
+        take_turn(ours, steps, sink);
+      }
+      const double bare_us = median(bare.us_per_step) / method.work.commands;
+      const double us = median(ours.us_per_step);
+      std::printf("%8d  %-26s %12.3f %12.3f %8.2f\n", floors * width, ours.name.c_str(), us, bare_us, us / bare_us);
       worst = std::max(worst, us / bare_us);
     }
   }

@@ -19,6 +19,9 @@ GeneralisedAlpha::GeneralisedAlpha(const Parameters& parameters, const LinearStr
       end_{begin_},
       balanced_{begin_.acceleration_m_per_s2},
       displacement_before_m_{balanced_},
+      predicted_displacement_m_{balanced_},
+      predicted_velocity_m_per_s_{balanced_},
+      constant_n_{balanced_},
       unbalance_n_{balanced_},
       buffer_{balanced_},
       current_{begin_},
@@ -33,60 +36,68 @@ void GeneralisedAlpha::advance(const Eigen::Ref<const Eigen::VectorXd>& restorin
   } else {
     find_end();
     if (iteration_ < iterations_) {
-      complete(current_.displacement_m, current_.velocity_m_per_s);
+      complete();
     } else {
       end_step();
     }
   }
-  if (iteration_ == 0) find_end();
+  if (iteration_ == 0) {
+    predict_end();
+    find_end();
+  }
   ++iteration_;
   place_command();
 }
 
 void GeneralisedAlpha::start() noexcept {
-  complete(current_.displacement_m, current_.velocity_m_per_s);
+  complete();
   begin_ = completed_;
+  current_.displacement_m = begin_.displacement_m;
   balanced_ = begin_.acceleration_m_per_s2;
   displacement_before_m_ =
       begin_.displacement_m - step_s_ * begin_.velocity_m_per_s + (0.5 * step_s_ * step_s_) * balanced_;
 }
 
-/// With the acceleration that the newest force leaves.
-void GeneralisedAlpha::complete(const Eigen::VectorXd& displacement_m,
-                                const Eigen::VectorXd& velocity_m_per_s) noexcept {
-  completed_.displacement_m = displacement_m;
-  completed_.velocity_m_per_s = velocity_m_per_s;
+/// The command as it was, with the acceleration that the newest force leaves; the next command takes its place.
+void GeneralisedAlpha::complete() noexcept {
+  completed_.displacement_m.swap(current_.displacement_m);
+  completed_.velocity_m_per_s.swap(current_.velocity_m_per_s);
   completed_.acceleration_m_per_s2 = unbalance_n_;
   completed_.acceleration_m_per_s2.noalias() -= damping_ * completed_.velocity_m_per_s;
   mass_factor_.solve_in_place(completed_.acceleration_m_per_s2);
 }
 
-/// With a' = 0 first, then with the a' of equilibrium.
-void GeneralisedAlpha::find_end() noexcept {
+/// With a' = 0, and what is the same at each command of the step.
+void GeneralisedAlpha::predict_end() noexcept {
   const double h = step_s_;
-  end_.displacement_m = begin_.displacement_m + h * begin_.velocity_m_per_s +
-                        ((0.5 - weights_.beta) * h * h) * begin_.acceleration_m_per_s2;
-  end_.velocity_m_per_s = begin_.velocity_m_per_s + ((1.0 - weights_.gamma) * h) * begin_.acceleration_m_per_s2;
+  predicted_displacement_m_ = begin_.displacement_m + h * begin_.velocity_m_per_s +
+                              ((0.5 - weights_.beta) * h * h) * begin_.acceleration_m_per_s2;
+  predicted_velocity_m_per_s_ = begin_.velocity_m_per_s + ((1.0 - weights_.gamma) * h) * begin_.acceleration_m_per_s2;
+  buffer_ = (weights_.alpha_f * balanced_ - weights_.alpha_m * begin_.acceleration_m_per_s2) / (1.0 - weights_.alpha_f);
+  constant_n_.noalias() = mass_ * buffer_;
+  constant_n_.noalias() -= stiffness_ * predicted_displacement_m_;
+  constant_n_.noalias() -= damping_ * predicted_velocity_m_per_s_;
+}
+
+/// With the a' of equilibrium.
+void GeneralisedAlpha::find_end() noexcept {
   Eigen::VectorXd& solved = end_.acceleration_m_per_s2;
-  solved = unbalance_n_;
-  buffer_ = current_.displacement_m - end_.displacement_m;
-  solved.noalias() += stiffness_ * buffer_;
-  solved.noalias() -= damping_ * end_.velocity_m_per_s;
+  solved = unbalance_n_ + constant_n_;
+  solved.noalias() += stiffness_ * current_.displacement_m;
   solved *= 1.0 - weights_.alpha_f;
-  buffer_ = weights_.alpha_f * balanced_ - weights_.alpha_m * begin_.acceleration_m_per_s2;
-  solved.noalias() += mass_ * buffer_;
   effective_mass_.solve_in_place(solved);
-  end_.displacement_m += (weights_.beta * h * h) * solved;
-  end_.velocity_m_per_s += (weights_.gamma * h) * solved;
+  end_.displacement_m = predicted_displacement_m_ + (weights_.beta * step_s_ * step_s_) * solved;
+  end_.velocity_m_per_s = predicted_velocity_m_per_s_ + (weights_.gamma * step_s_) * solved;
 }
 
 void GeneralisedAlpha::end_step() noexcept {
   balanced_ = ((1.0 - weights_.alpha_m) * end_.acceleration_m_per_s2 + weights_.alpha_m * begin_.acceleration_m_per_s2 -
                weights_.alpha_f * balanced_) /
               (1.0 - weights_.alpha_f);
-  displacement_before_m_ = begin_.displacement_m;
-  begin_ = end_;
-  completed_ = end_;
+  displacement_before_m_.swap(begin_.displacement_m);
+  begin_.displacement_m = completed_.displacement_m = end_.displacement_m;
+  begin_.velocity_m_per_s = completed_.velocity_m_per_s = end_.velocity_m_per_s;
+  begin_.acceleration_m_per_s2.swap(end_.acceleration_m_per_s2);
   completed_.acceleration_m_per_s2 = balanced_;
   iteration_ = 0;
 }

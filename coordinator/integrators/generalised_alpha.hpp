@@ -57,7 +57,8 @@ class GeneralisedAlpha final : public Integrator {
 
  private:
   void start() noexcept;
-  void complete(const Eigen::VectorXd& displacement_m, const Eigen::VectorXd& velocity_m_per_s) noexcept;
+  void complete() noexcept;
+  void predict_end() noexcept;
   void find_end() noexcept;
   void end_step() noexcept;
   void place_command() noexcept;
@@ -70,12 +71,15 @@ class GeneralisedAlpha final : public Integrator {
   Eigen::SparseMatrix<double> mass_;
   Eigen::SparseMatrix<double> damping_;
   Eigen::SparseMatrix<double> stiffness_;
-  int iteration_ = 0;                      // of the command that waits for its force, 1 to n; at the start 0
-  MotionState begin_;                      // u, v and a
-  MotionState end_;                        // u', v' and a' by the newest force
-  Eigen::VectorXd balanced_;               // M^-1 G at the beginning
-  Eigen::VectorXd displacement_before_m_;  // a step before u
-  Eigen::VectorXd unbalance_n_;            // f - r of the newest command
+  int iteration_ = 0;                         // of the command that waits for its force, 1 to n; at the start 0
+  MotionState begin_;                         // u, v and a
+  MotionState end_;                           // u', v' and a' by the newest force
+  Eigen::VectorXd balanced_;                  // M^-1 G at the beginning
+  Eigen::VectorXd displacement_before_m_;     // a step before u
+  Eigen::VectorXd predicted_displacement_m_;  // u' and v' with a' = 0
+  Eigen::VectorXd predicted_velocity_m_per_s_;
+  Eigen::VectorXd constant_n_;   // of the equation for a', the same at each command of a step
+  Eigen::VectorXd unbalance_n_;  // f - r of the newest command
   Eigen::VectorXd buffer_;
   MotionState current_;
   MotionState completed_;

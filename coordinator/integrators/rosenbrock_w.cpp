@@ -33,8 +33,8 @@ void RosenbrockW::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_for
   HYBRIDTEST_ASSERT(restoring_force_n.size() == unbalance_n_.size() && applied_force_n.size() == unbalance_n_.size());
   unbalance_n_ = applied_force_n - restoring_force_n;
   unbalance_n_.noalias() -= damping_ * current_.velocity_m_per_s;
-  completed_.displacement_m = current_.displacement_m;
-  completed_.velocity_m_per_s = current_.velocity_m_per_s;
+  completed_.displacement_m.swap(current_.displacement_m);  // the stages place the next command there
+  completed_.velocity_m_per_s.swap(current_.velocity_m_per_s);
   completed_.acceleration_m_per_s2 = unbalance_n_;
   mass_factor_.solve_in_place(completed_.acceleration_m_per_s2);
   if (is_second_) {
@@ -48,10 +48,9 @@ void RosenbrockW::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_for
 
 /// Of [I - g h J] (a, b) = h (v, M^-1 G): a = h v + g h b, [M + g h C + (g h)^2 K_I] b = h (G - g h K_I v).
 void RosenbrockW::first_stage() noexcept {
-  velocity_change_ = unbalance_n_;
   shift_ = (kGamma * step_s_) * velocity_m_per_s_;
-  velocity_change_.noalias() -= stiffness_ * shift_;
-  velocity_change_ *= step_s_;
+  unbalance_n_.noalias() -= stiffness_ * shift_;
+  velocity_change_ = step_s_ * unbalance_n_;
   effective_mass_.solve_in_place(velocity_change_);
   displacement_change_ = step_s_ * velocity_m_per_s_ + (kGamma * step_s_) * velocity_change_;
   current_.displacement_m = displacement_m_ + 0.5 * displacement_change_;
@@ -62,7 +61,7 @@ void RosenbrockW::first_stage() noexcept {
 void RosenbrockW::second_stage() noexcept {
   shift_ = kGamma * velocity_change_;
   unbalance_n_.noalias() += damping_ * shift_;
-  shift_ = step_s_ * current_.velocity_m_per_s - (kGamma * step_s_) * velocity_change_;
+  shift_ = step_s_ * completed_.velocity_m_per_s - (kGamma * step_s_) * velocity_change_;
   displacement_change_ = kGamma * (displacement_change_ - shift_);
   unbalance_n_.noalias() += stiffness_ * displacement_change_;
   velocity_change_ = step_s_ * unbalance_n_;
