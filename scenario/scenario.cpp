@@ -277,7 +277,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.real_time = read_real_time(section, time.mode);
 }
 
-SubstructureScenario read_substructure(Section& section, const Scenario& scenario, const DofTable& table,
+SubstructureScenario read_substructure(Section& section, Scenario& scenario, const DofTable& table,
                                        const std::filesystem::path& directory) {
   SubstructureScenario substructure;
   substructure.id = plain_name(section, "id", ParticipantId::kCapacity);
@@ -287,7 +287,8 @@ SubstructureScenario read_substructure(Section& section, const Scenario& scenari
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
   read_interface(section, table, substructure);
   if (is_numerical) {
-    substructure.make_model = read_model(section.section("model"), named_interface(substructure, table), directory);
+    substructure.make_model =
+        read_model(section.section("model"), named_interface(substructure, table), directory, scenario.files);
   } else {
     read_site(section, scenario, directory, substructure);
   }
@@ -390,7 +391,7 @@ ScenarioDigest digest_of(const Scenario& scenario) {
   std::string text = scenario.effective;
   for (const NamedFile& named : scenario.files) {
     if (!named.is_digested) continue;
-    const ScenarioDigest content = sha256(read_input_file(named.file, kAnySize, "a file of the structure"));
+    const ScenarioDigest content = sha256(read_input_file(named.file, kAnySize, "a matrix"));
     text.append(content.begin(), content.end());
   }
   return sha256(text);

@@ -11,15 +11,9 @@
 #include "core/config/section.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 #include "scenario/dof_table.hpp"
+#include "scenario/named_file.hpp"
 
 namespace hybridtest {
-
-/// A file that a scenario names by its path, and that a run keeps beside its scenario.
-struct NamedFile {
-  std::filesystem::path file;
-  std::string written;      // the path in the scenario
-  bool is_digested = true;  // its content is part of the scenario's digest
-};
 
 /// What the section `structure` says. `structure` has mass and stiffness; damping follows from the rule once the
 /// initial stiffness of everything is known.

@@ -18,9 +18,11 @@ namespace {
 using config::Section;
 
 /// A full stiffness: a number for one degree of freedom, a matrix, or a Matrix Market file.
-std::function<Eigen::MatrixXd()> read_stiffness(Section& section, int dofs, const std::filesystem::path& directory) {
+std::function<Eigen::MatrixXd()> read_stiffness(Section& section, int dofs, const std::filesystem::path& directory,
+                                                std::vector<NamedFile>& files) {
   if (section.has("matrix_market")) {
     const std::filesystem::path file = named_file(section, "matrix_market", directory).value_or("");
+    files.push_back({.file = file, .written = section.text("matrix_market")});
     return [file, dofs] {
       const Eigen::SparseMatrix<double> matrix = read_matrix_market(file);
       if (matrix.rows() != dofs || matrix.cols() != dofs) {
@@ -136,7 +138,7 @@ Maker<SubstructureModel> read_springs(Section& section, const NamedInterface& in
 }  // namespace
 
 Maker<SubstructureModel> read_model(Section section, const NamedInterface& interface,
-                                    const std::filesystem::path& directory) {
+                                    const std::filesystem::path& directory, std::vector<NamedFile>& files) {
   const auto dofs = static_cast<int>(interface.names.size());
   std::vector<std::string> names{"elastic", "springs", "shear_building"};
   for (const auto& law : laws()) {
@@ -145,7 +147,7 @@ Maker<SubstructureModel> read_model(Section section, const NamedInterface& inter
   const auto type = section.choice("type", names);
   Maker<SubstructureModel> maker;
   if (type == 0) {
-    const auto stiffness = read_stiffness(section, dofs, directory);
+    const auto stiffness = read_stiffness(section, dofs, directory, files);
     maker = [stiffness] { return std::make_unique<ElasticMatrix>(stiffness()); };
   } else if (type == 1) {
     maker = read_springs(section, interface);

@@ -8,6 +8,7 @@
 
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/catalogue/part.hpp"
+#include "scenario/named_file.hpp"
 
 namespace hybridtest {
 
@@ -20,7 +21,9 @@ struct NamedInterface {
 
 /// The model of a numerical substructure.
 /// @param directory   where files that it names are looked for.
+/// @param files       those files are added.
 [[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, const NamedInterface& interface,
-                                                  const std::filesystem::path& directory);
+                                                  const std::filesystem::path& directory,
+                                                  std::vector<NamedFile>& files);
 
 }  // namespace hybridtest

@@ -166,10 +166,15 @@ TEST_F(StructureSection, DigestDependsOnTheContentOfFiles) {
 }
 
 TEST_F(StructureSection, RunDirectoryHoldsTheFiles) {
-  const Scenario scenario = file_.read(text());
+  write("spring.mtx", "%%MatrixMarket matrix array real symmetric\n1 1\n6e6\n");
+  const Scenario scenario = file_.read(with("model: {type: elastic, stiffness_n_per_m: 6.0e6}",
+                                            "model: {type: elastic, matrix_market: spring.mtx}", text()));
   const TemporaryDirectory run;
   prepare_run_directory(run.path(), scenario);
   EXPECT_EQ(read_scenario(run / "scenario.yaml", {}).digest, scenario.digest);
+  write("spring.mtx", "%%MatrixMarket matrix array real symmetric\n1 1\n7e6\n");
+  EXPECT_EQ(read_scenario(run / "scenario.yaml", {}).digest, scenario.digest) << "the run has its own copy";
+  EXPECT_NE(read_scenario(file_.path(), {}).digest, scenario.digest);
 }
 
 /// What the scenario accepts, the file takes: as many names of this length as are accepted.
