@@ -20,6 +20,7 @@
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
 #include "coordinator/integrators/generalised_alpha.hpp"
+#include "coordinator/integrators/implicit_newmark.hpp"
 #include "coordinator/integrators/kr_alpha.hpp"
 #include "coordinator/integrators/rosenbrock_w.hpp"
 #include "mechanics/structure/damping.hpp"
@@ -131,6 +132,8 @@ const std::vector<Method>& methods() {
       {"kr_alpha", {2, 2}, maker<KrAlpha>(KrAlpha::Parameters{})},
       {"alpha_operator_splitting", {1, 1}, maker<AlphaOperatorSplitting>(AlphaOperatorSplitting::Parameters{})},
       {"generalised_alpha", {8, 3, 4, 3}, maker<GeneralisedAlpha>(GeneralisedAlpha::Parameters{})},
+      // Linear and under a constant load it needs one trial.
+      {"implicit_newmark", {2, 3, 3, 2}, maker<ImplicitNewmark>(ImplicitNewmark::Parameters{})},
       {"rosenbrock_w", {4, 2, 2, 2}, maker<RosenbrockW>()},
   };
   return table;

@@ -48,7 +48,7 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrato
   HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
   HYBRIDTEST_ASSERT(settings_.stiffness_n_per_m.size() == 0 ||
                     settings_.stiffness_n_per_m.rows() == restoring_force_n_.size());
-  row_.resize(4 + 4 * settings_.recorded_dofs.size());
+  row_.resize(5 + 4 * settings_.recorded_dofs.size());
   // In paced mode a site answers one step after the command: when its actuators have reached the target.
   if (settings_.mode == CouplingMode::paced) {
     settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
@@ -192,21 +192,21 @@ void Coordinator::start(Instant now) noexcept {
   started_ = now;
   step_completed_ = now;
   step_due_ = now;
-  open_step(now);
+  open_command(now);
 }
 
 void Coordinator::run(Instant now) noexcept {
   watch_participants(now);
   while (phase_ == Phase::running) {
-    if (!step_is_sent_) {
+    if (!command_is_sent_) {
       if (is_paused_ || now < step_due_) return;
       for (std::size_t i = 0; i < commands_.size(); ++i) send_command(static_cast<SubstructureIndex>(i), now);
-      step_is_sent_ = true;
-      ledger_.open(ledger_.step(), now);
+      command_is_sent_ = true;
+      ledger_.open(ledger_.step(), ledger_.iteration(), now);
       for (std::size_t i = 0; i < commands_.size(); ++i) ledger_.count_attempt(static_cast<SubstructureIndex>(i));
       repeat_due_ = now + settings_.repeat_after;
       // The previous step is recorded now, while the substructures work on this one.
-      if (completed_steps_ > 0) record_step(now);
+      record_step(now);
     }
     while (!ledger_.is_complete() && ports_.measurements.take(measurement_)) {
       if (ledger_.enter(measurement_, now) == LedgerEntry::accepted) last_to_answer_ = measurement_.substructure;
@@ -215,7 +215,7 @@ void Coordinator::run(Instant now) noexcept {
       repeat_unanswered(now);
       return;
     }
-    complete_step(now);
+    complete_command(now);
   }
 }
 
@@ -272,7 +272,7 @@ void Coordinator::watch_participants(Instant now) noexcept {
 }
 
 const CoupledSubstructure* Coordinator::owes_answer(const CoupledSubstructure& except) const noexcept {
-  if (phase_ != Phase::running || !step_is_sent_) return nullptr;
+  if (phase_ != Phase::running || !command_is_sent_) return nullptr;
   for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
     const bool owes = !ledger_.has_answered(static_cast<SubstructureIndex>(i));
     if (owes && &settings_.substructures[i] != &except) return &settings_.substructures[i];
@@ -291,18 +291,23 @@ void Coordinator::watch_pace(Instant now) noexcept {
          {taken_s, step_s});
 }
 
-void Coordinator::open_step(Instant now) noexcept {
+void Coordinator::open_command(Instant now) noexcept {
   const MotionState& current = integrator_->current();
   const Step step = completed_steps_;
-  ledger_.open(step, now);
-  step_is_sent_ = false;
+  const auto iteration = static_cast<std::uint16_t>(integrator_->iteration());
+  ledger_.open(step, iteration, now);
+  command_is_sent_ = false;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
     const InterfaceMap& interface = settings_.substructures[i].interface;
-    // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
-    if (step > 0) fill_rates(interface, integrator_->completed(), command.points[0]);
-    std::ranges::rotate(command.points, command.points.end() - 1);
+    if (iteration == 0) {
+      // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
+      if (step > 0) fill_rates(interface, integrator_->completed(), command.points[0]);
+      std::rotate(command.points.begin(), command.points.end() - 1, command.points.end());
+    }
     fill_point(interface, step, current, command.points[0]);
+    command.iteration = iteration;
+    command.is_trial = integrator_->is_trial();
     // The history is for sites; of a wide interface it would make each command four times as large.
     const Step points = interface.size() <= kMaxSiteDofs ? kCommandPoints : 1;
     command.point_count = static_cast<std::uint8_t>(std::min(step + 1, points));
@@ -332,8 +337,22 @@ void Coordinator::repeat_unanswered(Instant now) noexcept {
   }
 }
 
-void Coordinator::complete_step(Instant now) noexcept {
+void Coordinator::complete_command(Instant now) noexcept {
   record_exchanges();
+  if (!collect_forces(now)) return;
+  const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(ledger_.step())];
+  applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
+  const bool was_trial = integrator_->is_trial();
+  if (!was_trial) iterations_ = integrator_->iteration();
+  integrator_->advance(restoring_force_n_, applied_force_n_);
+  if (was_trial) {
+    go_on_trying(now);
+  } else {
+    complete_step(now);
+  }
+}
+
+bool Coordinator::collect_forces(Instant now) noexcept {
   restoring_force_n_.setZero();
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const InterfaceMap& interface = settings_.substructures[i].interface;
@@ -342,15 +361,29 @@ void Coordinator::complete_step(Instant now) noexcept {
       report(now, Severity::fault, EventCode::measurement_not_finite, settings_.substructures[i].id);
       presence_.raise(FaultFlags::not_finite);
       begin_stop(now, StopReason::not_finite, settings_.substructures[i].id);
-      return;
+      return false;
     }
     interface.add_to_structure(force_n, restoring_force_n_);
   }
   add_elastic_force();
+  return true;
+}
+
+void Coordinator::go_on_trying(Instant now) noexcept {
+  if (!integrator_->current().displacement_m.allFinite()) {
+    presence_.raise(FaultFlags::not_finite);
+    begin_stop(now, StopReason::not_finite, kCoordinatorId);
+  } else if (const double missing_m = integrator_->missing_m(); missing_m != 0.0) {
+    report(now, Severity::fault, EventCode::no_equilibrium, {},
+           {static_cast<double>(integrator_->iteration()), missing_m});
+    begin_stop(now, StopReason::no_equilibrium, kCoordinatorId);
+  } else {
+    open_command(now);
+  }
+}
+
+void Coordinator::complete_step(Instant now) noexcept {
   const Step step = ledger_.step();
-  const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
-  applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
-  integrator_->advance(restoring_force_n_, applied_force_n_);
   ++completed_steps_;
   watch_pace(now);
   if (step == settings_.last_step) {
@@ -370,7 +403,7 @@ void Coordinator::complete_step(Instant now) noexcept {
     step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
     if (step == 0) step_due_ = now;
   }
-  open_step(now);
+  open_command(now);
 }
 
 void Coordinator::add_elastic_force() noexcept {
@@ -379,6 +412,7 @@ void Coordinator::add_elastic_force() noexcept {
 }
 
 void Coordinator::record_step(Instant now) noexcept {
+  if (std::exchange(recorded_steps_, completed_steps_) == completed_steps_) return;
   const MotionState& completed = integrator_->completed();
   const auto step = completed_steps_ - 1;
   std::size_t next = 0;
@@ -392,18 +426,20 @@ void Coordinator::record_step(Instant now) noexcept {
     row_[next++] = completed.acceleration_m_per_s2[dof];
     row_[next++] = restoring_force_n_[dof];
   }
+  row_[next++] = iterations_;
   record_.steps.append(row_);
 }
 
 void Coordinator::record_exchanges() noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const auto index = static_cast<SubstructureIndex>(i);
-    std::array<double, 6> row{static_cast<double>(ledger_.step()),
+    std::array<double, 7> row{static_cast<double>(ledger_.step()),
                               static_cast<double>(i),
                               kUnanswered,
                               static_cast<double>(ledger_.attempts(index)),
                               0.0,
-                              kUnanswered};
+                              kUnanswered,
+                              static_cast<double>(ledger_.iteration())};
     if (ledger_.has_answered(index)) {
       const ForceMeasurement& answer = ledger_.answer(index);
       row[2] = to_seconds(ledger_.round_trip(index)) * 1e6;
@@ -421,8 +457,8 @@ void Coordinator::begin_stop(Instant now, StopReason reason, const ParticipantId
   stop_by_ = now + (was_armed ? settings_.stop_timeout : std::min(settings_.stop_timeout, kLeaveUnarmed));
   if (phase_ == Phase::running) {
     running_time_ = now - started_;
-    if (completed_steps_ > 0 && !step_is_sent_) record_step(now);
-    if (step_is_sent_ && !ledger_.is_complete()) record_exchanges();
+    record_step(now);
+    if (command_is_sent_ && !ledger_.is_complete()) record_exchanges();
   }
   report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, who,
          {static_cast<double>(reason), 0.0});
@@ -469,7 +505,7 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
     case Phase::arming: return std::min(presence_wake, control_repeat_due_);
     case Phase::running: {
       if (is_paused_) return presence_wake;
-      return std::min(presence_wake, step_is_sent_ ? repeat_due_ : std::max(step_due_, now));
+      return std::min(presence_wake, command_is_sent_ ? repeat_due_ : std::max(step_due_, now));
     }
     case Phase::stopping: return std::min({presence_wake, control_repeat_due_, stop_by_});
     case Phase::done: return kNever;
@@ -515,6 +551,7 @@ TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs) {
     layout.columns.push_back({"acceleration_" + dof + "_m_per_s2", "m/s2"});
     layout.columns.push_back({"restoring_force_" + dof + "_n", "N"});
   }
+  layout.columns.push_back({"iterations", ""});
   return layout;
 }
 
@@ -525,7 +562,8 @@ TableLayout Coordinator::exchanges_layout() {
            {"round_trip_us", "us"},
            {"attempts", ""},
            {"flags", ""},
-           {"turnaround_us", "us"}}};
+           {"turnaround_us", "us"},
+           {"iteration", ""}}};
 }
 
 }  // namespace hybridtest

@@ -72,7 +72,8 @@ struct CoordinatorReport {
 
 /// The integration coordinator. It waits for the participants, arms and starts them, and steps the
 /// structure through the ground motion. In each step it sends one command to every substructure and
-/// takes one force from it. It ends the test after the last step or at the first fault.
+/// takes one force from it, several where the integrator iterates. It ends the test after the last step or at the first
+/// fault.
 class Coordinator final : public Node {
  public:
   Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
@@ -101,9 +102,14 @@ class Coordinator final : public Node {
   void stop(Instant now) noexcept;
 
   void watch_participants(Instant now) noexcept;
-  void open_step(Instant now) noexcept;
+  void open_command(Instant now) noexcept;
   void send_command(SubstructureIndex substructure, Instant now) noexcept;
   void repeat_unanswered(Instant now) noexcept;
+  void complete_command(Instant now) noexcept;
+  /// @return false when a force is not finite, which ends the test.
+  [[nodiscard]] bool collect_forces(Instant now) noexcept;
+  /// Goes on to the next trial of the step.
+  void go_on_trying(Instant now) noexcept;
   void complete_step(Instant now) noexcept;
   /// K u of the elastic part, added to the forces of the substructures.
   void add_elastic_force() noexcept;
@@ -138,11 +144,13 @@ class Coordinator final : public Node {
   ForceMeasurement measurement_;               // the one being taken
   Instant repeat_due_ = kNever;
   Instant step_due_{};  // paced: earliest time to send the commands of the open step
-  bool step_is_sent_ = false;
+  bool command_is_sent_ = false;
   bool is_paused_ = false;
   StopReason requested_stop_ = StopReason::none;
   StopReason reason_ = StopReason::none;
   Step completed_steps_ = 0;
+  Step recorded_steps_ = 0;
+  int iterations_ = 0;  // trials of the last completed step
   Instant started_{};
   Instant step_completed_{};  // the last one; paced: or the end of a pause
   double longest_stall_s_ = 0.0;

@@ -1,13 +1,16 @@
 #include "coordinator/step_ledger.hpp"
 
+#include <utility>
+
 namespace hybridtest {
 
 void StepLedger::bind(SubstructureIndex substructure, Incarnation incarnation) noexcept {
   accounts_[substructure].bound = incarnation;
 }
 
-void StepLedger::open(Step step, Instant now) noexcept {
+void StepLedger::open(Step step, std::uint16_t iteration, Instant now) noexcept {
   step_ = step;
+  iteration_ = iteration;
   opened_ = now;
   answered_ = 0;
   for (Account& account : std::span{accounts_}.first(count_)) {
@@ -19,8 +22,10 @@ void StepLedger::open(Step step, Instant now) noexcept {
 LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) noexcept {
   if (measurement.substructure >= count_) return LedgerEntry::foreign;
   Account& account = accounts_[measurement.substructure];
-  if (measurement.sender != account.bound || measurement.step > step_) return LedgerEntry::foreign;
-  if (measurement.step < step_) return LedgerEntry::stale;
+  const std::pair answered{measurement.step, measurement.iteration};
+  const std::pair opened{step_, iteration_};
+  if (measurement.sender != account.bound || answered > opened) return LedgerEntry::foreign;
+  if (answered < opened) return LedgerEntry::stale;
   if (account.answered) return LedgerEntry::duplicate;
   account.answered = true;
   account.answer = measurement;

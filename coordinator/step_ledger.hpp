@@ -11,32 +11,33 @@ namespace hybridtest {
 
 /// Result of entering a measurement.
 enum class LedgerEntry : std::uint8_t {
-  accepted,   // the first answer of its substructure to the open step
-  duplicate,  // this step has already been answered
-  stale,      // an answer to a step that is closed
-  foreign,    // not from the process this test armed, or an unknown substructure or step
+  accepted,   // the first answer of its substructure to the open command
+  duplicate,  // this command has already been answered
+  stale,      // an answer to a step or an iteration that is closed
+  foreign,    // not from the process this test armed, or to a command that was never given
 };
 
-/// State of the open step: which substructures have answered, and how long it took. Each step is
-/// completed exactly once, also when the network loses, repeats or reorders messages.
+/// State of the open command, which is a step and an iteration of it: which substructures have answered, and how long
+/// it took. Each is completed exactly once, also when the network loses, repeats or reorders messages.
 class StepLedger {
  public:
   explicit StepLedger(std::size_t substructures) noexcept : count_{substructures} {}
 
   /// Binds a substructure to the process that was armed; answers of others are foreign.
   void bind(SubstructureIndex substructure, Incarnation incarnation) noexcept;
-  void open(Step step, Instant now) noexcept;
+  void open(Step step, std::uint16_t iteration, Instant now) noexcept;
 
   [[nodiscard]] LedgerEntry enter(const ForceMeasurement& measurement, Instant now) noexcept;
 
   [[nodiscard]] Step step() const noexcept { return step_; }
-  /// When the open step was sent.
+  [[nodiscard]] std::uint16_t iteration() const noexcept { return iteration_; }
+  /// When the open command was sent.
   [[nodiscard]] Instant opened() const noexcept { return opened_; }
   [[nodiscard]] bool is_complete() const noexcept { return answered_ == count_; }
   [[nodiscard]] bool has_answered(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answered;
   }
-  /// The answer to the open step; valid once has_answered().
+  /// The answer to the open command; valid once has_answered().
   [[nodiscard]] const ForceMeasurement& answer(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answer;
   }
@@ -44,7 +45,7 @@ class StepLedger {
   [[nodiscard]] Duration round_trip(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].round_trip;
   }
-  /// Commands sent for the open step: 1 unless repeated.
+  /// How often the open command was sent: once unless repeated.
   [[nodiscard]] std::uint16_t attempts(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].attempts;
   }
@@ -62,6 +63,7 @@ class StepLedger {
   std::size_t count_;
   std::size_t answered_ = 0;
   Step step_ = kNoStep;
+  std::uint16_t iteration_ = 0;
   Instant opened_{};
   std::array<Account, kMaxSubstructures> accounts_{};
 };

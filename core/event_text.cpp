@@ -136,6 +136,12 @@ std::string describe(const Event& event) {
     case EventCode::test_stalled:
       return "the test stood still for " + number(event.values[0]) + " s (a step takes " + number(event.values[1]) +
              " s); last to answer: " + subject;
+    case EventCode::no_equilibrium:
+      return "no equilibrium after " + number(event.values[0]) + " trials: the last one was corrected by " +
+             number(event.values[1]) +
+             " m. A substructure is stiffer or more strongly damped than its initial stiffness says, or yields too far "
+             "in a "
+             "step: shorten the step, or raise iterations_max or tolerance_m";
   }
   return "unknown event";
 }

@@ -24,7 +24,7 @@ struct TestEnd {
 };
 
 /// All of them, one row per StopReason; docs/ends.md describes each.
-inline constexpr std::array<TestEnd, 12> kTestEnds{{
+inline constexpr std::array<TestEnd, 13> kTestEnds{{
     {StopReason::none, "none", "end unknown", kExitEndedEarly},
     {StopReason::completed, "completed", "completed", kExitCompleted},
     {StopReason::interrupted, "interrupted", "stopped by the operator", kExitEndedEarly},
@@ -37,6 +37,7 @@ inline constexpr std::array<TestEnd, 12> kTestEnds{{
     {StopReason::recording_failed, "recording_failed", "ended: recording failed", kExitDataInvalid},
     {StopReason::emergency_stop, "emergency_stop", "ended by an emergency stop", kExitEndedEarly},
     {StopReason::participant_failed, "participant_failed", "never started: a participant failed", kExitConfiguration},
+    {StopReason::no_equilibrium, "no_equilibrium", "ended: no equilibrium in a step", kExitEndedEarly},
 }};
 
 /// @return the row of `none` for a number that is no reason.

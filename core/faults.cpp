@@ -64,6 +64,7 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::real_time_refused: return "real_time_refused";
     case EventCode::answer_overdue: return "answer_overdue";
     case EventCode::test_stalled: return "test_stalled";
+    case EventCode::no_equilibrium: return "no_equilibrium";
   }
   return "unknown";
 }

@@ -64,6 +64,7 @@ enum class StopReason : std::uint8_t {
   recording_failed,
   emergency_stop,
   participant_failed,  // a participant could not start
+  no_equilibrium,      // a step that the integrator iterates found none
 };
 
 enum class EventCode : std::uint16_t {
@@ -96,6 +97,7 @@ enum class EventCode : std::uint16_t {
   real_time_refused,  // subject: which request; values: errno, requested value
   answer_overdue,     // subject: who; values[0]: time since the command was sent [s]
   test_stalled,       // subject: who answered last; values: time without a new step [s], wall time of a step [s]
+  no_equilibrium,     // values: trials, last correction [m]
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

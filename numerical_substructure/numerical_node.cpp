@@ -58,23 +58,40 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
   if (presence_.state() != LifecycleState::running) return;
   if (!command.fits(force_n_.size())) return;
 
-  const Step newest = command.newest().step;
-  if (newest < last_point_.step) return;
-  if (newest == last_point_.step) {
+  const CommandPoint& newest = command.newest();
+  const std::pair asked{newest.step, command.iteration};
+  const std::pair answered{last_point_.step, last_iteration_};
+  if (asked < answered) return;
+  if (asked == answered) {
     answer(command, now, MeasurementFlags::repeated);
     return;
   }
-  for (int i = command.point_count - 1; i >= 0; --i) {
+  for (int i = command.point_count - 1; i > 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
-    if (point.step == last_point_.step + 1) take_step(point);
+    if (point.step == last_step_ + 1) take_step(point);
   }
-  if (last_point_.step == newest) answer(command, now, MeasurementFlags::none);
+  if (newest.step != last_step_ + 1) return;
+  if (command.is_trial) {
+    try_point(newest);
+  } else {
+    take_step(newest);
+  }
+  last_iteration_ = command.iteration;
+  answer(command, now, MeasurementFlags::none);
+}
+
+void NumericalNode::try_point(const CommandPoint& point) noexcept {
+  if (is_tried_) model_->revert();
+  model_->trial(point.displacement_m, point.velocity_m_per_s, force_n_);
+  is_tried_ = true;
+  last_point_ = point;
 }
 
 void NumericalNode::take_step(const CommandPoint& point) noexcept {
-  model_->trial(point.displacement_m, point.velocity_m_per_s, force_n_);
+  try_point(point);
   model_->commit();
-  last_point_ = point;
+  is_tried_ = false;
+  last_step_ = point.step;
   presence_.set_last_step(point.step);
 
   std::size_t next = 0;
@@ -91,6 +108,7 @@ void NumericalNode::answer(const DisplacementCommand& command, Instant now, Meas
   answer_.substructure = index_;
   answer_.sender = presence_.identity().incarnation;
   answer_.step = last_point_.step;
+  answer_.iteration = last_iteration_;
   answer_.model_time_s = last_point_.model_time_s;
   answer_.imposed_displacement_m = last_point_.displacement_m;
   answer_.measured_displacement_m = last_point_.displacement_m;

@@ -15,7 +15,8 @@
 namespace hybridtest {
 
 /// Answers each displacement command with the restoring force of a structural model. A step changes
-/// the model once, also when its command arrives several times.
+/// the model once, also when its command arrives several times. A trial does not change it: the next trial of the step,
+/// or its final command, starts from the state at the end of the step before.
 class NumericalNode final : public Node {
  public:
   /// @param index      position of this substructure in the scenario.
@@ -42,6 +43,8 @@ class NumericalNode final : public Node {
  private:
   void obey(Request request) noexcept;
   void serve(const DisplacementCommand& command, Instant now) noexcept;
+  /// Force at the displacement, from the state at the end of the last step.
+  void try_point(const CommandPoint& point) noexcept;
   void take_step(const CommandPoint& point) noexcept;
   void answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept;
 
@@ -53,7 +56,10 @@ class NumericalNode final : public Node {
   Outbox<ForceMeasurement>& measurements_;
   RowSink& steps_;
   StopReason requested_stop_ = StopReason::none;
-  CommandPoint last_point_;
+  CommandPoint last_point_;  // the last one answered
+  std::uint16_t last_iteration_ = 0;
+  Step last_step_ = kNoStep;  // the last one whose state the model has
+  bool is_tried_ = false;     // the model holds a trial
   DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
   InterfaceVector force_n_;

@@ -357,6 +357,22 @@ void check_substructures(Section& root, const Scenario& scenario) {
   }
 }
 
+/// A specimen cannot go back to the state before a trial.
+void check_trials(Section& integrator, const Scenario& scenario) {
+  if (!scenario.integrator.needs.tries_displacements) return;
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::experimental_site) continue;
+    integrator.error("type", "'" + scenario.integrator.type +
+                                 "' tries several displacements in a step, each from the state before it; the specimen "
+                                 "of '" +
+                                 substructure.id +
+                                 "' cannot go back. Expected numerical substructures alone; with a site take an "
+                                 "integrator that commands each displacement once, such as alpha_operator_splitting, "
+                                 "cr or kr_alpha");
+    return;
+  }
+}
+
 /// Makes the parts once, so that what they object to is found before anything runs.
 void try_out(const Scenario& scenario, SubstructureScenario& substructure) {
   if (substructure.role == Role::numerical_substructure) {
@@ -470,6 +486,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   recording.finish();
   root.finish();
   check_substructures(root, scenario);
+  check_trials(integrator, scenario);
   document.throw_if_errors();
 
   for (std::size_t i = 0; i < substructures.size(); ++i) {

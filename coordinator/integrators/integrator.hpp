@@ -23,27 +23,50 @@ struct IntegratorNeeds {
   bool corrects_displacement = false;
   /// Commands, each a step of the test apart, in one step of the method.
   int commands_per_step = 1;
+  /// Tries displacements before the final one of a step. Only what can go back to the state before the step bears it:
+  /// models, not specimens.
+  bool tries_displacements = false;
 };
 
-/// Time integration of M a + C v + r(u) = f, one restoring force per step.
+/// Time integration of M a + C v + r(u) = f, one restoring force per command.
 ///
 /// At step i the integrator commands a displacement and waits for its force r_i. advance(r_i, f_i)
-/// completes step i and moves to step i + 1. Sizes are fixed at construction; advance() allocates nothing.
+/// completes step i and moves to step i + 1, unless the command was a trial: then the next command belongs to step i
+/// too. Sizes are fixed at construction; advance() allocates nothing.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// The step that waits for its restoring force. The displacement is the command; velocity and
+  /// The command that waits for its restoring force. The displacement is the command; velocity and
   /// acceleration are predictions. At step 0 the initial state.
   [[nodiscard]] virtual const MotionState& current() const noexcept = 0;
   /// The step before, with velocity and acceleration in equilibrium, M a + C v + r = f. The
   /// displacement is the one commanded, unless the method corrects it: then r is the measured force
   /// plus the initial stiffness times the correction. Not valid before the first advance().
   [[nodiscard]] virtual const MotionState& completed() const noexcept = 0;
+  /// Trials of the step before the current command.
+  [[nodiscard]] virtual int iteration() const noexcept { return 0; }
+  /// Whether the current command is only tried: its force is wanted, from the state at the end of the step before, and
+  /// the state stays there.
+  [[nodiscard]] virtual bool is_trial() const noexcept { return false; }
+  /// By how much the current command, which is no trial, still misses equilibrium because no more trials are allowed
+  /// [m]; 0 when it does not.
+  [[nodiscard]] virtual double missing_m() const noexcept { return 0.0; }
   /// @param restoring_force_n, applied_force_n   one entry per degree of freedom, of the current step.
   virtual void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                        const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept = 0;
 };
+
+/// Completes the current step: all its trials and its final command, whose force is the last one asked for.
+/// @param restoring_force_n   (const MotionState& command) -> one entry per degree of freedom.
+template <class Force>
+void complete_step(Integrator& integrator, const Force& restoring_force_n,
+                   const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) {
+  for (bool was_trial = true; was_trial;) {
+    was_trial = integrator.is_trial();
+    integrator.advance(restoring_force_n(integrator.current()), applied_force_n);
+  }
+}
 
 /// Initial motion of the structure; an empty vector means zero.
 struct InitialMotion {

@@ -61,17 +61,20 @@ bool free_vibration_grows(Integrator& integrator, const Eigen::SparseMatrix<doub
   for (double& force_n : applied_n) force_n = random.uniform(0.5, 1.0) * (random.uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0);
   Eigen::VectorXd restoring_n{applied_n.size()};
   CommandHistory history{applied_n.size(), delayed};
+  // Trials are no history; there are none where forces are late, since a specimen cannot be tried.
+  const auto force_n = [&](const MotionState& command) -> const Eigen::VectorXd& {
+    history.push(command.displacement_m);
+    restoring_n = stiffness_n_per_m * command.displacement_m;
+    for (const DelayedForce& force : delayed) restoring_n += force.stiffness_n_per_m * history.late(force.delay_steps);
+    return restoring_n;
+  };
   Peaks before{};
   Peaks now{};
   for (int span = 0; span < kSpans; ++span) {
     before = now;
     now = {};
     for (int step = 0; step < kSpanSteps; ++step) {
-      history.push(integrator.current().displacement_m);
-      restoring_n = stiffness_n_per_m * integrator.current().displacement_m;
-      for (const DelayedForce& force : delayed)
-        restoring_n += force.stiffness_n_per_m * history.late(force.delay_steps);
-      integrator.advance(restoring_n, applied_n);
+      complete_step(integrator, force_n, applied_n);
       applied_n.setZero();
       raise(now, integrator.completed());
     }

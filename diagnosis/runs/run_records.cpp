@@ -386,6 +386,14 @@ void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen
 StructureRecord structure_record(const std::filesystem::path& run, const Scenario& scenario) {
   const Scenario ran = read_scenario(run / "scenario.yaml", {});
   require_same_test(scenario, ran);
+  for (const Scenario* tried : {&scenario, &ran}) {
+    if (!tried->integrator.needs.tries_displacements) continue;
+    throw RecordingError{
+        fmt::format("{}: the integrator {} tries several displacements in a step, and the forces of the trials are not "
+                    "recorded: the "
+                    "structure cannot be recomputed; expected an integrator that commands each displacement once",
+                    run.string(), tried->integrator.type)};
+  }
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
   if (ran.recorded_dofs.size() < ran.dofs.size()) {
     throw RecordingError{

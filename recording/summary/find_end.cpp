@@ -14,6 +14,7 @@ Codes causes_of(StopReason reason) {
     case StopReason::participant_lost: return {EventCode::answer_overdue, EventCode::participant_lost};
     case StopReason::coordinator_lost: return {EventCode::coordinator_lost};
     case StopReason::not_finite: return {EventCode::measurement_not_finite};
+    case StopReason::no_equilibrium: return {EventCode::no_equilibrium};
     case StopReason::not_assembled: return {EventCode::participant_missing};
     case StopReason::refused:
       return {EventCode::digest_mismatch, EventCode::second_coordinator, EventCode::duplicate_id};
@@ -67,6 +68,7 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::completed:
     case StopReason::interlock:
     case StopReason::not_finite:
+    case StopReason::no_equilibrium:
     case StopReason::refused:
     case StopReason::recording_failed:
     case StopReason::emergency_stop: return false;

@@ -4,6 +4,7 @@
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
 #include "coordinator/integrators/generalised_alpha.hpp"
+#include "coordinator/integrators/implicit_newmark.hpp"
 #include "coordinator/integrators/kr_alpha.hpp"
 #include "coordinator/integrators/rosenbrock_w.hpp"
 
@@ -60,6 +61,7 @@ const std::vector<PartType<IntegratorReading>>& integrators() {
       with_parameters<KrAlpha>("kr_alpha", "Kolay and Ricles, 2014"),
       with_parameters<AlphaOperatorSplitting>("alpha_operator_splitting", "Combescure and Pegon, 1997"),
       with_parameters<GeneralisedAlpha>("generalised_alpha", "Schellenberg, Mahin and Fenves, 2009"),
+      with_parameters<ImplicitNewmark>("implicit_newmark", "Newmark, 1959, iterated"),
       plain<RosenbrockW>("rosenbrock_w", "Bursi, Gonzalez-Buelga, Vulcan, Neild and Wagg, 2008"),
   };
   return table;

@@ -191,6 +191,7 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::interrupted:
     case StopReason::coordinator_lost:
     case StopReason::not_finite:
+    case StopReason::no_equilibrium:
     case StopReason::refused:
     case StopReason::emergency_stop:
     case StopReason::participant_failed:

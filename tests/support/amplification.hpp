@@ -34,7 +34,10 @@ inline Eigen::VectorXd free_displacements(const MakeIntegrator& make, int comman
   Eigen::VectorXd displacements{samples};
   for (Eigen::Index step = 0; step < samples * commands_per_step; ++step) {
     const double force = start == 2 && step == 0 ? 1.0 / (step_s * step_s) : 0.0;
-    integrator->advance(mode.stiffness_ratio * integrator->current().displacement_m, one(force));
+    complete_step(
+        *integrator,
+        [&](const MotionState& command) -> Eigen::VectorXd { return mode.stiffness_ratio * command.displacement_m; },
+        one(force));
     if (step % commands_per_step == 0) {
       displacements[step / commands_per_step] = integrator->completed().displacement_m[0];
     }

@@ -11,6 +11,7 @@
 #include "coordinator/integrators/central_difference.hpp"
 #include "coordinator/integrators/explicit_newmark.hpp"
 #include "coordinator/integrators/generalised_alpha.hpp"
+#include "coordinator/integrators/implicit_newmark.hpp"
 #include "coordinator/integrators/kr_alpha.hpp"
 #include "coordinator/integrators/rosenbrock_w.hpp"
 
@@ -55,6 +56,7 @@ inline IntegrationMethod generalised_alpha(double rho_inf, int iterations) {
       "generalised_alpha_" + std::to_string(std::lround(100.0 * rho_inf)) + "_" + std::to_string(iterations),
       {.rho_inf = rho_inf, .iterations = iterations});
 }
+inline IntegrationMethod implicit_newmark() { return method<ImplicitNewmark>("implicit_newmark", {}); }
 inline IntegrationMethod rosenbrock_w() { return method<RosenbrockW>("rosenbrock_w"); }
 
 inline std::vector<IntegrationMethod> explicit_methods() {
@@ -74,6 +76,7 @@ inline std::vector<IntegrationMethod> methods_with_initial_stiffness() {
 }
 inline std::vector<IntegrationMethod> all_methods() {
   std::vector<IntegrationMethod> all = explicit_methods();
+  all.push_back(implicit_newmark());
   for (IntegrationMethod& one : methods_with_initial_stiffness()) all.push_back(std::move(one));
   return all;
 }

@@ -29,6 +29,13 @@ class CountingIntegrator final : public Integrator {
   [[nodiscard]] const MotionState& completed() const noexcept override { return completed_; }
   void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override {
+    if (is_trial()) {
+      ++iteration_;
+      current_.displacement_m.array() += 0.0001;
+      if (iteration_ == missing_after) missing_ = 0.5;
+      return;
+    }
+    iteration_ = 0;
     completed_ = current_;
     completed_.displacement_m.array() += correction_m;
     completed_.velocity_m_per_s = restoring_force_n;
@@ -37,11 +44,19 @@ class CountingIntegrator final : public Integrator {
     if (++advances == diverges_after) current_.displacement_m[0] = std::numeric_limits<double>::infinity();
   }
 
+  [[nodiscard]] int iteration() const noexcept override { return iteration_; }
+  [[nodiscard]] bool is_trial() const noexcept override { return iteration_ < trials; }
+  [[nodiscard]] double missing_m() const noexcept override { return missing_; }
+
+  int trials = 0;  // of each step
+  int missing_after = -1;
   double correction_m = 0.0;  // of the displacement once the force is known
   int advances = 0;
   int diverges_after = -1;
 
  private:
+  int iteration_ = 0;
+  double missing_ = 0.0;
   MotionState current_;
   MotionState completed_;
 };
@@ -105,8 +120,10 @@ class CoordinatorTest : public testing::Test {
   void keep_alive() {
     for (const Substructure& substructure : substructures_) statuses_.send(substructure.status);
   }
-  void answer(std::size_t substructure, Step step, double force_n = 1.0, Incarnation sender = 0) {
+  void answer(std::size_t substructure, Step step, double force_n = 1.0, Incarnation sender = 0,
+              std::uint16_t iteration = 0) {
     ForceMeasurement measurement;
+    measurement.iteration = iteration;
     measurement.substructure = static_cast<SubstructureIndex>(substructure);
     measurement.sender = sender == 0 ? substructures_[substructure].status.incarnation : sender;
     measurement.step = step;
@@ -219,6 +236,66 @@ TEST_F(CoordinatorTest, ArmsWhenAllAreReadyAndStartsWhenAllAreArmed) {
   ASSERT_EQ(commands.size(), 2U);
   EXPECT_EQ(commands[0].newest().step, 0);
   EXPECT_EQ(commands[1].substructure, 1);
+}
+
+TEST_F(CoordinatorTest, AsksForTrialsBeforeTheFinalDisplacement) {
+  make();
+  integrator_->trials = 2;
+  start();
+  for (std::uint16_t iteration = 0; iteration <= 2; ++iteration) {
+    const auto commands = take_commands();
+    ASSERT_EQ(commands.size(), 2U);
+    EXPECT_EQ(commands[1].newest().step, 0);
+    EXPECT_EQ(commands[1].point_count, 1) << "a trial is no point of the history";
+    EXPECT_EQ(commands[1].iteration, iteration);
+    EXPECT_EQ(commands[1].is_trial, iteration < 2);
+    EXPECT_NEAR(commands[1].newest().displacement_m[0], 0.0001 * iteration, 1e-15);
+    EXPECT_EQ(completed(), 0);
+    if (iteration > 0) answer(0, 0, 77.0, 0, 0);  // a late one
+    answer(0, 0, 10.0, 0, iteration);
+    answer(1, 0, 20.0, 0, iteration);
+    advance(milliseconds{1});
+  }
+  EXPECT_EQ(completed(), 1);
+  ASSERT_EQ(steps_.size(), 1U);
+  EXPECT_EQ(steps_.at(0, steps_.column("iterations")), 2.0);
+  EXPECT_EQ(steps_.at(0, steps_.column("restoring_force_floor_n")), 30.0);
+  EXPECT_EQ(exchanges_.column_values("iteration"), (std::vector<double>{0.0, 0.0, 1.0, 1.0, 2.0, 2.0}));
+  EXPECT_EQ(take_commands().front().newest().step, 1);
+}
+
+TEST_F(CoordinatorTest, RepeatsATrialThatIsNotAnswered) {
+  make();
+  integrator_->trials = 1;
+  start();
+  static_cast<void>(take_commands());
+  answer(0, 0);
+  advance(milliseconds{250});
+  const auto repeated = take_commands();
+  ASSERT_EQ(repeated.size(), 1U);
+  EXPECT_EQ(repeated[0].substructure, 1);
+  EXPECT_EQ(repeated[0].iteration, 0);
+  EXPECT_TRUE(repeated[0].is_trial);
+  EXPECT_EQ(repeated[0].attempt, 1);
+}
+
+TEST_F(CoordinatorTest, EndsWithoutEquilibrium) {
+  make();
+  integrator_->trials = 3;
+  integrator_->missing_after = 2;
+  start();
+  for (std::uint16_t iteration = 0; iteration < 2; ++iteration) {
+    answer(0, 0, 1.0, 0, iteration);
+    answer(1, 0, 1.0, 0, iteration);
+    advance(milliseconds{1});
+  }
+  EXPECT_EQ(reason(), StopReason::no_equilibrium);
+  static_cast<void>(subjects(EventCode::no_equilibrium));
+  const auto told = std::ranges::find(told_, EventCode::no_equilibrium, &Event::code);
+  ASSERT_NE(told, told_.end());
+  EXPECT_EQ(told->values[0], 2.0);
+  EXPECT_EQ(told->values[1], 0.5);
+  EXPECT_EQ(steps_.size(), 0U);
 }
 
 TEST_F(CoordinatorTest, NamesSubstructureThatDidNotAppear) {

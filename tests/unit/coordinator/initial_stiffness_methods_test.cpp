@@ -8,7 +8,6 @@
 
 #include "coordinator/preflight/free_vibration.hpp"
 #include "tests/support/amplification.hpp"
-#include "tests/support/implicit_newmark.hpp"
 #include "tests/support/integration_methods.hpp"
 
 /// The integrators with the initial stiffness in their matrices, against the implicit methods whose roots they have.
@@ -117,6 +116,15 @@ TEST(GeneralisedAlpha, LastCommandMeetsTheEndOfTheStep) {
 TEST(AlphaOperatorSplitting, HasTheRootsOfHhtAlpha) {
   for (const double alpha : {0.0, -0.1, -0.2, -1.0 / 3.0}) {
     expect_roots(test::operator_splitting(alpha), hht_alpha(alpha));
+  }
+}
+
+TEST(ImplicitNewmark, HasTheRootsOfItsFormula) {
+  expect_roots(test::implicit_newmark(), hht_alpha(0.0));
+  for (const double gamma : {0.6, 0.8}) {
+    const double beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
+    expect_roots(test::method<ImplicitNewmark>("implicit_newmark_damped", {.gamma = gamma, .beta = beta}),
+                 {0.0, 0.0, gamma, beta});
   }
 }
 
@@ -294,19 +302,18 @@ TEST(InitialStiffnessMethods, FreeVibrationIsThatOfAverageAcceleration) {
   constexpr double kStep_s = 0.065;
   const InitialMotion initial{Eigen::VectorXd::LinSpaced(5, 0.0, 0.1), Eigen::VectorXd::LinSpaced(5, 1.0, -1.0)};
   const Eigen::VectorXd no_load = Eigen::VectorXd::Zero(5);
+  const auto force_n = [&](const MotionState& command) -> Eigen::VectorXd {
+    return building.initial_stiffness_n_per_m * command.displacement_m;
+  };
   for (const IntegrationMethod& method : {test::cr(), test::operator_splitting(0.0)}) {
     const auto integrator = method.make(building, kStep_s, initial);
-    test::ImplicitNewmark reference{building,
-                                    kStep_s,
-                                    {[&](const Eigen::VectorXd& u) { return building.initial_stiffness_n_per_m * u; }},
-                                    no_load,
-                                    initial};
+    const auto reference = test::implicit_newmark().make(building, kStep_s, initial);
     for (int step = 0; step < 500; ++step) {
-      integrator->advance(building.initial_stiffness_n_per_m * integrator->current().displacement_m, no_load);
-      ASSERT_LT((integrator->completed().displacement_m - reference.state().displacement_m).cwiseAbs().maxCoeff(),
+      complete_step(*integrator, force_n, no_load);
+      complete_step(*reference, force_n, no_load);
+      ASSERT_LT((integrator->completed().displacement_m - reference->completed().displacement_m).cwiseAbs().maxCoeff(),
                 1e-10)
           << method.name << " step " << step;
-      reference.advance(no_load);
     }
   }
 }
@@ -314,15 +321,19 @@ TEST(InitialStiffnessMethods, FreeVibrationIsThatOfAverageAcceleration) {
 TEST(InitialStiffnessMethods, KeepTheEnergyOfAverageAcceleration) {
   const LinearStructure building = test::shear_building(5, 1.0e4, 1.0e9);
   constexpr double kStep_s = 0.065;
-  for (const IntegrationMethod& method : {test::cr(), test::operator_splitting(0.0)}) {
+  for (const IntegrationMethod& method : {test::cr(), test::operator_splitting(0.0), test::implicit_newmark()}) {
     // h^T M h/2 + mean(u)^T K mean(u)/2 with h = (u_{i+1} - u_i)/dt is what average acceleration conserves.
     const auto integrator =
         method.make(building, kStep_s, {Eigen::VectorXd::LinSpaced(5, 0.0, 0.1), Eigen::VectorXd::Zero(5)});
     Eigen::VectorXd before;
     double first = 0.0;
     for (int step = 0; step < 5000; ++step) {
-      integrator->advance(building.initial_stiffness_n_per_m * integrator->current().displacement_m,
-                          Eigen::VectorXd::Zero(5));
+      complete_step(
+          *integrator,
+          [&](const MotionState& command) -> Eigen::VectorXd {
+            return building.initial_stiffness_n_per_m * command.displacement_m;
+          },
+          Eigen::VectorXd::Zero(5));
       const Eigen::VectorXd now = integrator->completed().displacement_m;
       if (step > 0) {
         const Eigen::VectorXd velocity = (now - before) / kStep_s;
@@ -335,23 +346,6 @@ TEST(InitialStiffnessMethods, KeepTheEnergyOfAverageAcceleration) {
       before = now;
     }
   }
-}
-
-TEST(ImplicitNewmark, FindsEquilibriumOfALawWithHistory) {
-  // A yielding spring under a slow load: at rest at last, where its force is the load.
-  double plastic_m = 0.0;
-  double trial_plastic_m = 0.0;
-  const auto force = [&](const Eigen::VectorXd& u) -> Eigen::VectorXd {
-    const double elastic_n = 100.0 * (u[0] - plastic_m);
-    const double force_n = std::clamp(elastic_n, -5.0 + 2.0 * u[0], 5.0 + 2.0 * u[0]);
-    trial_plastic_m = u[0] - force_n / 100.0;
-    return one(force_n);
-  };
-  test::ImplicitNewmark method{
-      test::oscillator(1.0, 10.0, 100.0), 0.01, {force, [&] { plastic_m = trial_plastic_m; }}, one(0.0)};
-  for (int step = 1; step <= 20000; ++step) method.advance(one(std::min(5.5, 0.001 * step)));
-  EXPECT_NEAR(method.state().displacement_m[0], 0.25, 1e-6);
-  EXPECT_NEAR(method.state().velocity_m_per_s[0], 0.0, 1e-8);
 }
 
 }  // namespace

@@ -36,6 +36,12 @@ const Eigen::VectorXd kNoLoad = Eigen::VectorXd::Zero(1);
 
 Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
 
+auto spring(double stiffness_n_per_m) {
+  return [stiffness_n_per_m](const MotionState& command) -> Eigen::VectorXd {
+    return stiffness_n_per_m * command.displacement_m;
+  };
+}
+
 TEST_P(IntegratorTest, StartsAtTheInitialMotion) {
   const auto integrator = make(test::oscillator(kMass_kg, 0.0, kStiffness_n_per_m), 0.01, {one(0.3), one(-0.2)});
   EXPECT_EQ(integrator->current().displacement_m[0], 0.3);
@@ -72,7 +78,7 @@ double free_vibration_error(const test::IntegrationMethod& method, double step_s
     const double exact = std::exp(-decay * time_s) * (kInitialDisplacement_m * std::cos(damped * time_s) +
                                                       (kInitialVelocity_m_per_s + decay * kInitialDisplacement_m) /
                                                           damped * std::sin(damped * time_s));
-    integrator->advance(kStiffness_n_per_m * integrator->current().displacement_m, kNoLoad);
+    complete_step(*integrator, spring(kStiffness_n_per_m), kNoLoad);
     error = std::max(error, std::abs(integrator->completed().displacement_m[0] - exact));
   }
   return error;
@@ -142,10 +148,14 @@ TEST_P(IntegratorTest, CompletedMotionIsInEquilibrium) {
     const auto integrator =
         make(structure, 0.02, {Eigen::VectorXd::Constant(6, 0.1), Eigen::VectorXd::Constant(6, -1.0)});
     for (int step = 0; step < 200; ++step) {
-      const Eigen::VectorXd restoring = structure.initial_stiffness_n_per_m * integrator->current().displacement_m;
       const Eigen::VectorXd applied = load(6, step);
-      const Eigen::VectorXd displacement = integrator->current().displacement_m;
-      integrator->advance(restoring, applied);
+      Eigen::VectorXd displacement;
+      Eigen::VectorXd restoring;
+      const auto force = [&](const MotionState& command) -> const Eigen::VectorXd& {
+        displacement = command.displacement_m;
+        return restoring = structure.initial_stiffness_n_per_m * displacement;
+      };
+      complete_step(*integrator, force, applied);
       const MotionState& completed = integrator->completed();
       const Eigen::VectorXd correction = completed.displacement_m - displacement;
       if (!GetParam().needs.corrects_displacement) {
@@ -176,7 +186,7 @@ TEST_P(IntegratorTest, IsExactForConstantAcceleration) {
       EXPECT_NEAR(integrator->current().velocity_m_per_s[0], 1.5 * step * kStep_s, 1e-13);
       EXPECT_NEAR(integrator->current().acceleration_m_per_s2[0], 1.5, 1e-13);
     }
-    integrator->advance(kNoLoad, one(3.0));
+    complete_step(*integrator, spring(0.0), one(3.0));
     if (step % GetParam().needs.commands_per_step != 0) continue;  // a command inside a step of the method
     EXPECT_NEAR(integrator->completed().displacement_m[0], 0.75 * std::pow(step * kStep_s, 2), 1e-12);
   }

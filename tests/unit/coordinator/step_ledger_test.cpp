@@ -18,7 +18,7 @@ class StepLedgerTest : public testing::Test {
   StepLedgerTest() {
     ledger_.bind(0, 10);
     ledger_.bind(1, 11);
-    ledger_.open(4, Instant{Duration{100}});
+    ledger_.open(4, 0, Instant{Duration{100}});
   }
   StepLedger ledger_{2};
   Instant now_{Duration{350}};
@@ -49,9 +49,25 @@ TEST_F(StepLedgerTest, RejectsAnswersToOtherSteps) {
 TEST_F(StepLedgerTest, OpeningNextStepClearsAnswers) {
   static_cast<void>(ledger_.enter(answer(0, 4, 10), now_));
   static_cast<void>(ledger_.enter(answer(1, 4, 11), now_));
-  ledger_.open(5, now_);
+  ledger_.open(5, 0, now_);
   EXPECT_FALSE(ledger_.is_complete());
   EXPECT_EQ(ledger_.enter(answer(0, 4, 10), now_), LedgerEntry::stale);
+}
+
+TEST_F(StepLedgerTest, MatchesAnswersByIteration) {
+  const auto answer_to = [](Step step, std::uint16_t iteration) {
+    ForceMeasurement measurement = answer(0, step, 10);
+    measurement.iteration = iteration;
+    return measurement;
+  };
+  ledger_.open(4, 2, now_);
+  EXPECT_EQ(ledger_.iteration(), 2);
+  EXPECT_EQ(ledger_.enter(answer_to(3, 9), now_), LedgerEntry::stale);
+  EXPECT_EQ(ledger_.enter(answer_to(4, 1), now_), LedgerEntry::stale);
+  EXPECT_EQ(ledger_.enter(answer_to(4, 3), now_), LedgerEntry::foreign);
+  EXPECT_EQ(ledger_.enter(answer_to(5, 0), now_), LedgerEntry::foreign);
+  EXPECT_EQ(ledger_.enter(answer_to(4, 2), now_), LedgerEntry::accepted);
+  EXPECT_EQ(ledger_.enter(answer_to(4, 2), now_), LedgerEntry::duplicate);
 }
 
 }  // namespace

@@ -72,10 +72,15 @@ std::vector<Eigen::Vector2d> history(const test::IntegrationMethod& method, doub
   const int steps_per_sample = static_cast<int>(std::lround(sample_s / step_s));
   std::vector<Eigen::Vector2d> found;
   for (int step = 0; found.size() < samples; ++step) {
-    const Eigen::VectorXd& command = integrator->current().displacement_m;
-    const double lower = first_storey.force_n(command[0]);
-    const double upper = 3.0e6 * (command[1] - command[0]);
-    integrator->advance(Eigen::Vector2d{lower - upper, upper}, load * motion.at(step * step_s));
+    Column tried = first_storey;
+    const auto force_n = [&](const MotionState& command) -> Eigen::Vector2d {
+      tried = first_storey;
+      const double lower = tried.force_n(command.displacement_m[0]);
+      const double upper = 3.0e6 * (command.displacement_m[1] - command.displacement_m[0]);
+      return {lower - upper, upper};
+    };
+    complete_step(*integrator, force_n, load * motion.at(step * step_s));
+    first_storey = tried;
     if (step > 0 && step % steps_per_sample == 0) found.emplace_back(integrator->completed().displacement_m);
   }
   return found;

@@ -60,6 +60,16 @@ class NumericalNodeTest : public testing::Test {
     command.send_time = milliseconds{1000 + step};
     return command;
   }
+  static DisplacementCommand at_iteration(DisplacementCommand command, std::uint16_t iteration) {
+    command.iteration = iteration;
+    return command;
+  }
+  static DisplacementCommand trial(Step step, std::uint16_t iteration, double displacement_m) {
+    DisplacementCommand tried = at_iteration(command(step), iteration);
+    tried.is_trial = true;
+    tried.points[0].displacement_m = InterfaceVector::Constant(1, displacement_m);
+    return tried;
+  }
   void give(const DisplacementCommand& command) {
     commands_.send(command);
     advance();
@@ -159,6 +169,95 @@ TEST_F(NumericalNodeTest, TakesEachStepOnceUnderNetworkFaults) {
   ASSERT_EQ(calls_.commits, newest + 1);
   EXPECT_EQ(calls_.trials, calls_.commits);
   EXPECT_EQ(calls_.reverts, 0);
+  for (std::size_t i = 0; i < calls_.committed_m.size(); ++i) {
+    ASSERT_EQ(calls_.committed_m[i][0], static_cast<double>(i));
+  }
+}
+
+TEST_F(NumericalNodeTest, TrialIsAnsweredAndNotKept) {
+  start();
+  give(command(0));
+  give(trial(1, 0, 5.0));
+  EXPECT_EQ(calls_.trials, 2);
+  EXPECT_EQ(calls_.commits, 1);
+  EXPECT_EQ(presence_.own_status().last_step, 0);
+  auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 2U);
+  EXPECT_EQ(measurements[1].step, 1);
+  EXPECT_EQ(measurements[1].iteration, 0);
+  EXPECT_EQ(measurements[1].force_n[0], 500.0);
+  give(trial(1, 1, 6.0));
+  EXPECT_EQ(calls_.reverts, 1) << "from the state at the end of the step before";
+  give(at_iteration(command(1), 2));
+  EXPECT_EQ(calls_.reverts, 2);
+  EXPECT_EQ(calls_.commits, 2);
+  EXPECT_EQ(calls_.committed_m.back()[0], 1.0);
+  measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 2U);
+  EXPECT_EQ(measurements[0].iteration, 1);
+  EXPECT_EQ(measurements[1].iteration, 2);
+  EXPECT_EQ(measurements[1].force_n[0], 100.0);
+  EXPECT_EQ(steps_.size(), 2U) << "a trial is no step";
+}
+
+TEST_F(NumericalNodeTest, RepeatedTrialIsAnsweredWithoutAnother) {
+  start();
+  give(command(0));
+  give(trial(1, 0, 5.0));
+  give(trial(1, 1, 6.0));
+  take_measurements();
+  give(trial(1, 1, 6.0));
+  give(trial(1, 0, 5.0));  // a late copy
+  EXPECT_EQ(calls_.trials, 3);
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 1U);
+  EXPECT_EQ(measurements[0].iteration, 1);
+  EXPECT_EQ(measurements[0].force_n[0], 600.0);
+  EXPECT_EQ(measurements[0].flags, MeasurementFlags::repeated);
+}
+
+TEST_F(NumericalNodeTest, IgnoresTrialsOfAStepThatIsTaken) {
+  start();
+  give(command(0));
+  give(at_iteration(command(1), 2));
+  take_measurements();
+  give(trial(1, 1, 5.0));  // late
+  give(trial(1, 3, 5.0));  // was never asked for
+  give(trial(3, 0, 5.0));  // step 2 is in its history and is taken; that of step 3 is tried
+  EXPECT_EQ(calls_.commits, 3);
+  EXPECT_EQ(calls_.committed_m.back()[0], 2.0);
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 1U);
+  EXPECT_EQ(measurements[0].step, 3);
+}
+
+TEST_F(NumericalNodeTest, TriesAndTakesInOrderUnderNetworkFaults) {
+  start();
+  Random random{5};
+  give(command(0));
+  constexpr Step kSteps = 300;
+  for (Step step = 1; step <= kSteps; ++step) {
+    const auto trials = static_cast<std::uint16_t>(random.below(4));
+    for (std::uint16_t iteration = 0; iteration <= trials; ++iteration) {
+      const bool is_final = iteration == trials;
+      const DisplacementCommand asked =
+          is_final ? at_iteration(command(step), iteration) : trial(step, iteration, 1000.0 + iteration);
+      // The coordinator waits for the answer; copies of this one and of earlier ones come in any order and number.
+      bool is_answered = false;
+      while (!is_answered) {
+        if (random.below(2) == 0) give(asked);
+        if (iteration > 0 && random.below(3) == 0) {
+          give(trial(step, static_cast<std::uint16_t>(random.below(iteration)), 7.0));
+        }
+        if (random.below(3) == 0) give(command(step - 1));
+        for (const ForceMeasurement& measurement : take_measurements()) {
+          const bool is_this = measurement.step == step && measurement.iteration == iteration;
+          is_answered = is_answered || is_this;
+        }
+      }
+    }
+  }
+  ASSERT_EQ(calls_.commits, kSteps + 1);
   for (std::size_t i = 0; i < calls_.committed_m.size(); ++i) {
     ASSERT_EQ(calls_.committed_m[i][0], static_cast<double>(i));
   }

@@ -37,6 +37,7 @@ const std::vector<std::string> kSettings{
     "type: alpha_operator_splitting, alpha: -0.1",
     "type: alpha_operator_splitting, alpha: -0.3",
     "type: generalised_alpha, rho_inf: 0.8, iterations: 3",
+    "type: implicit_newmark",
     "type: rosenbrock_w",
 };
 
@@ -96,6 +97,11 @@ double fast_mode_radius(const IntegratorReading& integrator) {
       .radius();
 }
 
+std::string needs_of(const IntegratorNeeds& needs) {
+  return std::string{needs.initial_stiffness ? "initial stiffness" : ""} +
+         (needs.tries_displacements ? ", trials: numerical substructures alone" : "");
+}
+
 std::string row(const std::string& setting) {
   const IntegratorReading integrator = integrator_of(setting);
   const std::string limit = stable_up_to(integrator);
@@ -106,8 +112,8 @@ std::string row(const std::string& setting) {
     const ModeOf mode{integrator, omega_dt};
     text += fmt::format(" {} | {} |", percent(mode.damping_ratio(), 3), percent(mode.period_error(), 2));
   }
-  return text + fmt::format(" {} | {} | {} |\n", integrator.needs.commands_per_step,
-                            integrator.needs.initial_stiffness ? "initial stiffness" : "", integrator.source);
+  return text + fmt::format(" {} | {} | {} |\n", integrator.needs.commands_per_step, needs_of(integrator.needs),
+                            integrator.source);
 }
 
 std::string integrator_rows() {
@@ -127,17 +133,20 @@ class ModeWithDamper {
                                     {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Zero(1)})},
         damping_n_s_per_m_{damper_dt / kStep_s} {
     for (int step = 0; step < kSteps && largest_m_ < kGrown_m; ++step) {
-      const MotionState command = integrator_->current();
-      integrator_->advance(command.displacement_m + damping_n_s_per_m_ * command.velocity_m_per_s,
-                           Eigen::VectorXd::Zero(1));
+      double commanded_m_per_s = 0.0;
+      const auto force_n = [&](const MotionState& command) -> Eigen::VectorXd {
+        commanded_m_per_s = command.velocity_m_per_s[0];
+        return command.displacement_m + damping_n_s_per_m_ * command.velocity_m_per_s;
+      };
+      complete_step(*integrator_, force_n, Eigen::VectorXd::Zero(1));
+      has_equilibrium_ = has_equilibrium_ && integrator_->missing_m() == 0.0;
       const MotionState& completed = integrator_->completed();
       largest_m_ = std::max(largest_m_, std::abs(completed.displacement_m[0]));
-      velocity_error_ =
-          std::max(velocity_error_, std::abs(command.velocity_m_per_s[0] - completed.velocity_m_per_s[0]));
+      velocity_error_ = std::max(velocity_error_, std::abs(commanded_m_per_s - completed.velocity_m_per_s[0]));
     }
   }
 
-  [[nodiscard]] bool grows() const { return !(largest_m_ < kGrown_m); }
+  [[nodiscard]] bool fails() const { return !has_equilibrium_ || !(largest_m_ < kGrown_m); }
   /// Of the velocity that comes with a command against the one in equilibrium, over the amplitude of the velocity.
   [[nodiscard]] double velocity_error() const { return velocity_error_; }
 
@@ -148,6 +157,7 @@ class ModeWithDamper {
 
   std::unique_ptr<Integrator> integrator_;
   double damping_n_s_per_m_;
+  bool has_equilibrium_ = true;
   double largest_m_ = 0.0;
   double velocity_error_ = 0.0;
 };
@@ -157,7 +167,7 @@ double damper_limit(const IntegratorReading& integrator) {
   double unstable = 100.0;
   while (unstable - stable > 1e-4) {
     const double middle = 0.5 * (stable + unstable);
-    (ModeWithDamper{integrator, middle}.grows() ? unstable : stable) = middle;
+    (ModeWithDamper{integrator, middle}.fails() ? unstable : stable) = middle;
   }
   return stable;
 }

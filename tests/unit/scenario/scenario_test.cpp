@@ -187,6 +187,12 @@ TEST_F(ScenarioTest, EffectiveScenarioKeepsTheDigest) {
   EXPECT_EQ(again.digest, first.digest);
 }
 
+TEST_F(ScenarioTest, RefusesTrialsOfASpecimen) {
+  EXPECT_THAT(
+      file_.errors(kScenarioText, {"integrator={type: implicit_newmark}"}),
+      Contains(AllOf(HasSubstr("the specimen of 'storey_1' cannot go back"), HasSubstr("alpha_operator_splitting"))));
+}
+
 TEST_F(ScenarioTest, ShippedScenariosKeepTheirDigest) {
   const std::filesystem::path directory = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios";
   const std::vector<std::string> motion{"excitation.ground_motion=" + (file_.directory() / "motion.txt").string(),
