@@ -9,6 +9,7 @@
 #include "core/config_error.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "recording/csv_export.hpp"
+#include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
 #include "scenario/scenario_digest.hpp"
 #include "tests/simulation/kept_simulation.hpp"
@@ -101,6 +102,16 @@ TEST_F(RunRecording, RequiresSiteNameForSeveralSites) {
   const Recording second = read_recording(directory_.path(), RecordingRole::fit, "second_storey_columns");
   const RunFileReader site{run_file(directory_.path(), "second_storey_columns")};
   EXPECT_EQ(second.dofs[0].of(Channel::measured_force), first(second, site.column("control", "measured_force_n")));
+}
+
+TEST_F(RunRecording, StructureOfIteratedRunIsNotRecomputed) {
+  const std::filesystem::path source{HYBRIDTEST_SOURCE_DIR};
+  const Scenario scenario = read_scenario(
+      source / "tests/system/scenarios/two_storey_iterated.yaml",
+      {"excitation.ground_motion=" + (source / "launch/scenarios/ground_motions/design_ec8_c.AT2").string()});
+  prepare_run_directory(directory_.path(), scenario);
+  EXPECT_THAT([&] { static_cast<void>(structure_record(directory_.path(), scenario)); },
+              testing::ThrowsMessage<RecordingError>(testing::HasSubstr("tries several displacements in a step")));
 }
 
 TEST(ReadRecording, FindingsAndMissingFileAreConfigErrors) {

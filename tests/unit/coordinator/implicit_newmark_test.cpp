@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coordinator/preflight/free_vibration.hpp"
 #include "core/config_error.hpp"
 #include "tests/support/structures.hpp"
 
@@ -91,6 +92,16 @@ TEST(ImplicitNewmark, FindsEquilibriumOfALawWithHistory) {
   }
   EXPECT_NEAR(method.completed().displacement_m[0], 0.25, 1e-6);
   EXPECT_NEAR(method.completed().velocity_m_per_s[0], 0.0, 1e-8);
+}
+
+TEST(ImplicitNewmark, StaysStableWhereTheStiffnessSoftens) {
+  for (const double omega_dt : {0.1, 2.1, 20.0}) {
+    for (const double share : {0.3, 0.7}) {
+      ImplicitNewmark method{{}, test::oscillator(1.0, 0.0, 1.0), omega_dt};
+      EXPECT_FALSE(free_vibration_grows(method, test::oscillator(1.0, 0.0, share).initial_stiffness_n_per_m))
+          << "omega dt " << omega_dt << ", stiffness " << share << " of the initial one";
+    }
+  }
 }
 
 TEST(ImplicitNewmark, RejectsParametersThatAreNotStable) {
