@@ -44,11 +44,13 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrato
       restoring_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())},
       applied_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())} {
   HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSubstructures);
-  HYBRIDTEST_ASSERT(std::cmp_equal(settings_.ground_acceleration_m_per_s2.size(), settings_.last_step + 1));
-  HYBRIDTEST_ASSERT(settings_.load_per_ground_acceleration_kg.size() == restoring_force_n_.size());
+  HYBRIDTEST_ASSERT(settings_.load.covers(settings_.last_step, restoring_force_n_.size()));
   HYBRIDTEST_ASSERT(settings_.stiffness_n_per_m.size() == 0 ||
                     settings_.stiffness_n_per_m.rows() == restoring_force_n_.size());
-  row_.resize(5 + 4 * settings_.recorded_dofs.size());
+  const bool has_forces = settings_.load.has_forces();
+  if (has_forces) forces_n_.setZero(restoring_force_n_.size());
+  row_.resize(4 + std::max<std::size_t>(1, settings_.load.ground_count()) +
+              (has_forces ? 5 : 4) * settings_.recorded_dofs.size());
   // In paced mode a site answers one step after the command: when its actuators have reached the target.
   if (settings_.mode == CouplingMode::paced) {
     settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
@@ -340,8 +342,11 @@ void Coordinator::repeat_unanswered(Instant now) noexcept {
 void Coordinator::complete_command(Instant now) noexcept {
   record_exchanges();
   if (!collect_forces(now)) return;
-  const double ground_acceleration = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(ledger_.step())];
-  applied_force_n_ = settings_.load_per_ground_acceleration_kg * ground_acceleration;
+  settings_.load.ground_at(ledger_.step(), applied_force_n_);
+  if (settings_.load.has_forces()) {
+    settings_.load.forces_at(ledger_.step(), forces_n_);
+    applied_force_n_ += forces_n_;
+  }
   const bool was_trial = integrator_->is_trial();
   if (!was_trial) iterations_ = integrator_->iteration();
   integrator_->advance(restoring_force_n_, applied_force_n_);
@@ -419,12 +424,15 @@ void Coordinator::record_step(Instant now) noexcept {
   row_[next++] = static_cast<double>(step);
   row_[next++] = static_cast<double>(step) * settings_.step_s;
   row_[next++] = to_seconds(now - started_);
-  row_[next++] = settings_.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
+  const std::size_t ground_motions = settings_.load.ground_count();
+  if (ground_motions == 0) row_[next++] = 0.0;
+  for (std::size_t k = 0; k < ground_motions; ++k) row_[next++] = settings_.load.ground_acceleration(k, step);
   for (const Eigen::Index dof : settings_.recorded_dofs) {
     row_[next++] = completed.displacement_m[dof];
     row_[next++] = completed.velocity_m_per_s[dof];
     row_[next++] = completed.acceleration_m_per_s2[dof];
     row_[next++] = restoring_force_n_[dof];
+    if (settings_.load.has_forces()) row_[next++] = forces_n_[dof];
   }
   row_[next++] = iterations_;
   record_.steps.append(row_);
@@ -542,14 +550,19 @@ void Coordinator::fill_rates(const InterfaceMap& interface, const MotionState& m
   interface.to_interface(motion.acceleration_m_per_s2, point.acceleration_m_per_s2);
 }
 
-TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs) {
+TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs, std::size_t ground_motions,
+                                      bool has_forces) {
   TableLayout layout{
       "steps", {{"step", ""}, {"model_time_s", "s"}, {"wall_time_s", "s"}, {"ground_acceleration_m_per_s2", "m/s2"}}};
+  for (std::size_t k = 2; k <= ground_motions; ++k) {
+    layout.columns.push_back({"ground_acceleration_" + std::to_string(k) + "_m_per_s2", "m/s2"});
+  }
   for (const std::string& dof : dofs) {
     layout.columns.push_back({"displacement_" + dof + "_m", "m"});
     layout.columns.push_back({"velocity_" + dof + "_m_per_s", "m/s"});
     layout.columns.push_back({"acceleration_" + dof + "_m_per_s2", "m/s2"});
     layout.columns.push_back({"restoring_force_" + dof + "_n", "N"});
+    if (has_forces) layout.columns.push_back({"applied_force_" + dof + "_n", "N"});
   }
   layout.columns.push_back({"iterations", ""});
   return layout;

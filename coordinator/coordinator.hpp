@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "coordinator/excitation/applied_load.hpp"
 #include "coordinator/integrators/integrator.hpp"
 #include "coordinator/step_ledger.hpp"
 #include "core/messages.hpp"
@@ -33,10 +34,7 @@ struct CoordinatorSettings {
   std::vector<CoupledSubstructure> substructures;
   /// Of the elastic part, which the coordinator computes by itself, n x n. Empty without one.
   Eigen::SparseMatrix<double> stiffness_n_per_m;
-  /// Load on each structure degree of freedom per unit of ground acceleration: -M iota [kg].
-  Eigen::VectorXd load_per_ground_acceleration_kg;
-  /// At each step 0 .. last_step [m/s2].
-  std::vector<double> ground_acceleration_m_per_s2;
+  AppliedLoad load;
   /// Degrees of freedom in the table of steps.
   std::vector<Eigen::Index> recorded_dofs;
   bool stop_on_recording_failure = false;            // when any participant cannot record
@@ -71,7 +69,7 @@ struct CoordinatorReport {
 };
 
 /// The integration coordinator. It waits for the participants, arms and starts them, and steps the
-/// structure through the ground motion. In each step it sends one command to every substructure and
+/// structure through the test. In each step it sends one command to every substructure and
 /// takes one force from it, several where the integrator iterates. It ends the test after the last step or at the first
 /// fault.
 class Coordinator final : public Node {
@@ -87,7 +85,12 @@ class Coordinator final : public Node {
   [[nodiscard]] bool is_done() const noexcept { return phase_ == Phase::done; }
   [[nodiscard]] CoordinatorReport report() const noexcept;
 
-  [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);
+  /// @param ground_motions   how many. The first, or 0 without one, has the column ground_acceleration_m_per_s2; number
+  /// k
+  ///                         from 2 has ground_acceleration_k_m_per_s2.
+  /// @param has_forces       a column with the applied force for each degree of freedom, ground motions left out.
+  [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs, std::size_t ground_motions,
+                                                bool has_forces);
   [[nodiscard]] static TableLayout exchanges_layout();
 
  private:
@@ -160,6 +163,7 @@ class Coordinator final : public Node {
   Instant control_repeat_due_{};
   Eigen::VectorXd restoring_force_n_;
   Eigen::VectorXd applied_force_n_;
+  Eigen::VectorXd forces_n_;  // of the loads that are forces; empty without them
   std::vector<double> row_;
 };
 

@@ -8,6 +8,9 @@ namespace hybridtest {
 /// Standard gravity, exact by definition.
 inline constexpr double kStandardGravity_m_per_s2 = 9.80665;
 
+/// The damping ratio that design codes draw response spectra for.
+inline constexpr double kSpectrumDamping = 0.05;
+
 /// What a check and a summary say of a ground motion, so that a wrong unit or scale shows before the response does.
 struct GroundMotionFacts {
   double peak_m_per_s2 = 0.0;  // largest magnitude, scaled

@@ -6,6 +6,7 @@
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
+#include "launch/excitation_text.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/site_model_file.hpp"
@@ -13,12 +14,6 @@
 
 namespace hybridtest {
 namespace {
-
-void print_ground_motion(const Scenario& scenario) {
-  fmt::print("\nground motion {}: {}\n", scenario.ground_motion_text, ground_motion_text(scenario.ground_motion));
-  const std::string warning = ground_motion_warning(scenario.ground_motion);
-  if (!warning.empty()) fmt::print("  WARNING: {}\n", warning);
-}
 
 void print_modes(const Scenario& scenario, const VibrationModes& modes) {
   const Eigen::VectorXd ratios = damping_ratios(scenario.structure, modes);
@@ -143,7 +138,7 @@ int check(const std::filesystem::path& file, const std::vector<std::string>& ove
   const TestStability stability = test_stability(scenario, modes);
   fmt::print("{}: valid, {} degrees of freedom, {} substructures, {} steps\n", scenario.name, scenario.dofs.size(),
              scenario.substructures.size(), scenario.time.last_step);
-  print_ground_motion(scenario);
+  fmt::print("{}", excitation_text(scenario, modes));
   print_modes(scenario, modes);
   print_step(scenario, stability);
   for (const SiteStability& site : stability.sites) print_site(scenario, site, !stability.has_modes_beyond_step);

@@ -5,7 +5,7 @@
 #include <regex>
 #include <system_error>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "core/input_file.hpp"
@@ -84,7 +84,7 @@ int make_new(const NewOptions& options) {
   }
   const fs::path shipped = shipped_scenario(options.from);
   if (options.motion) static_cast<void>(read_ground_motion(*options.motion, motion_options(options)));
-  const fs::path motion = options.motion ? *options.motion : read_scenario(shipped, {}).ground_motion_file;
+  const fs::path motion = options.motion ? *options.motion : read_scenario(shipped, {}).excitation.records.front().file;
   const fs::path motion_path = fs::path{"ground_motions"} / motion.filename();
   const std::string text =
       text_of_new(options, read_input_file(shipped, std::size_t{4} << 20U, "a scenario"), name, motion_path.string());
@@ -99,7 +99,7 @@ int make_new(const NewOptions& options) {
     throw ConfigError{"NAME " + folder.string() + ": cannot write there: " + error.code().message()};
   }
   const Scenario made = read_scenario(scenario, {});
-  const double motion_s = read_ground_motion(made.ground_motion_file, motion_options(options)).end_s();
+  const double motion_s = read_ground_motion(made.excitation.records.front().file, motion_options(options)).end_s();
   fmt::print("{}: made from {}\nground motion {}: {:.6g} s; the test lasts {:.6g} s (time.duration_s)\n\n",
              scenario.string(), options.from, (folder / motion_path).string(), motion_s, made.time.duration_s);
   fmt::print("  hybridtest check {0}\n  hybridtest simulate {0} --seed 1\n  hybridtest run {0}\n", scenario.string());

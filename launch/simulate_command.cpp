@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <iterator>
 #include <map>
 
 #include "core/config_error.hpp"
@@ -120,9 +122,9 @@ class SimulatedRecording {
   }
   /// Closes the files, so that they can be repaired. @return why recordings failed.
   [[nodiscard]] std::vector<std::string> close(const SimulationResult& result) {
-    parts_.at(std::string{kCoordinatorId})
-        .recorder->sink("test")
-        .append(test_row(scenario_, result.coordinator, exit_code_for(result.coordinator.reason)));
+    Recorder& coordinator = *parts_.at(std::string{kCoordinatorId}).recorder;
+    write_test_tables(scenario_, result.coordinator, exit_code_for(result.coordinator.reason),
+                      [&](std::string_view table) -> RowSink& { return coordinator.sink(table); });
     for (auto& [id, part] : parts_) {
       const bool had_failed = part.recorder->failed();
       part.recorder->close();
@@ -142,7 +144,7 @@ class SimulatedRecording {
   };
 
   void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
-    if (role == Role::coordinator) tables.push_back(test_layout());
+    if (role == Role::coordinator) std::ranges::move(test_tables(), std::back_inserter(tables));
     std::vector<RecordedTable> recorded;
     for (const TableLayout& table : tables) recorded.push_back({table, kRingRows});
     parts_[id].recorder =

@@ -21,10 +21,9 @@ CoordinatorSettings coordinator_settings(const Scenario& scenario) {
   settings.discovery_timeout = scenario.timeouts.discovery;
   settings.arm_timeout = scenario.timeouts.arm;
   settings.stop_timeout = scenario.timeouts.stop;
-  settings.ground_acceleration_m_per_s2 = scenario.ground_acceleration_m_per_s2;
   settings.stiffness_n_per_m = scenario.structure.stiffness_n_per_m;
   settings.recorded_dofs = scenario.recorded_dofs;
-  settings.load_per_ground_acceleration_kg = scenario.structure.load_per_ground_acceleration_kg();
+  settings.load = scenario.excitation.load(scenario.structure);
   for (const SubstructureScenario& substructure : scenario.substructures) {
     settings.substructures.push_back({substructure.id, substructure.role, substructure.interface});
   }
@@ -73,7 +72,9 @@ CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const P
 }
 
 std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario) {
-  return {Coordinator::steps_layout(scenario.recorded_names()), Coordinator::exchanges_layout()};
+  return {Coordinator::steps_layout(scenario.recorded_names(), scenario.excitation.records.size(),
+                                    !scenario.excitation.forces.empty()),
+          Coordinator::exchanges_layout()};
 }
 
 NumericalParticipant::NumericalParticipant(const Scenario& scenario, const SubstructureScenario& substructure,

@@ -175,13 +175,14 @@ void run_to_the_end(
 
 int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
   std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
-  tables.push_back(test_layout());
+  std::ranges::move(test_tables(), std::back_inserter(tables));
   ProcessSurroundings process{scenario, options, Role::coordinator, tables};
   CoordinatorParticipant participant{scenario, process.surroundings()};
   wake_on_stop(process.transport().waker());
   run_to_the_end(participant, process, clock, scenario, [&] {
     const CoordinatorReport report = participant.report();
-    process.recorder().sink("test").append(test_row(scenario, report, exit_code_for(report.reason)));
+    write_test_tables(scenario, report, exit_code_for(report.reason),
+                      [&](std::string_view table) -> RowSink& { return process.recorder().sink(table); });
   });
   return exit_code_of(participant, process.recorder());
 }

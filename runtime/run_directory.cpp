@@ -6,11 +6,15 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <system_error>
 
+#include "coordinator/excitation/response_spectrum.hpp"
 #include "core/config_error.hpp"
+#include "mechanics/structure/vibration_modes.hpp"
 #include "runtime/version.hpp"
 
 namespace hybridtest {
@@ -92,33 +96,77 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
   return header;
 }
 
-TableLayout test_layout() {
-  return {"test",
-          {{"planned_steps", ""},
-           {"completed_steps", ""},
-           {"stop_reason", ""},
-           {"wall_time_s", "s"},
-           {"exit_code", ""},
-           {"step_wall_time_s", "s"},
-           {"ground_motion_peak_m_per_s2", "m/s2"},
-           {"ground_motion_points", ""},
-           {"ground_motion_duration_s", "s"}}};
-}
+namespace {
 
-std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code) {
+void write_test(const Scenario& scenario, const CoordinatorReport& report, int exit_code, RowSink& test) {
   // Step 0 is the initial state; it is not counted as a completed step.
   const Step taken = std::max<Step>(report.completed_steps - 1, 0);
   const bool is_paced = scenario.time.mode == CouplingMode::paced;
   const double step_wall_time_s = is_paced ? scenario.time.step_s * scenario.time.time_scale : 0.0;
-  return {static_cast<double>(scenario.time.last_step),
-          static_cast<double>(taken),
-          static_cast<double>(report.reason),
-          to_seconds(report.running_time),
-          static_cast<double>(exit_code),
-          step_wall_time_s,
-          scenario.ground_motion.peak_m_per_s2,
-          static_cast<double>(scenario.ground_motion.points),
-          scenario.ground_motion.duration_s};
+  test.append(std::array{static_cast<double>(scenario.time.last_step), static_cast<double>(taken),
+                         static_cast<double>(report.reason), to_seconds(report.running_time),
+                         static_cast<double>(exit_code), step_wall_time_s});
+}
+
+/// Over the standard periods, and at those of the structure.
+void write_spectra(const Scenario& scenario, RowSink& spectra) {
+  if (scenario.excitation.records.empty()) return;
+  const VibrationModes modes = vibration_modes(scenario.structure);
+  const std::vector<double> periods_s = spectrum_periods_s();
+  for (std::size_t k = 0; k < scenario.excitation.records.size(); ++k) {
+    const GroundMotion motion =
+        scenario.excitation.applied_motion(scenario.excitation.records[k], scenario.time.step_s);
+    const auto write = [&](Eigen::Index mode, double period_s) {
+      const SpectrumOrdinate at = spectrum_ordinate(motion, period_s, kSpectrumDamping);
+      spectra.append(std::array{static_cast<double>(k + 1), static_cast<double>(mode), at.period_s, at.displacement_m,
+                                at.velocity_m_per_s, at.pseudo_acceleration_m_per_s2});
+    };
+    for (const double period_s : periods_s) write(0, period_s);
+    for (Eigen::Index mode = 0; mode < std::min(modes.count(), kLowestModes); ++mode) {
+      if (std::isfinite(modes.period_s(mode))) write(mode + 1, modes.period_s(mode));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<TableLayout> test_tables() {
+  return {{"test",
+           {{"planned_steps", ""},
+            {"completed_steps", ""},
+            {"stop_reason", ""},
+            {"wall_time_s", "s"},
+            {"exit_code", ""},
+            {"step_wall_time_s", "s"}}},
+          {"ground_motions",
+           {{"record", ""},
+            {"peak_m_per_s2", "m/s2"},
+            {"points", ""},
+            {"duration_s", "s"},
+            {"factor", ""},
+            {"end_velocity_m_per_s", "m/s"},
+            {"end_displacement_m", "m"}}},
+          {"response_spectra",
+           {{"record", ""},
+            {"mode", ""},
+            {"period_s", "s"},
+            {"displacement_m", "m"},
+            {"velocity_m_per_s", "m/s"},
+            {"pseudo_acceleration_m_per_s2", "m/s2"}}}};
+}
+
+void write_test_tables(const Scenario& scenario, const CoordinatorReport& report, int exit_code,
+                       const std::function<RowSink&(std::string_view table)>& sink) {
+  write_test(scenario, report, exit_code, sink("test"));
+  RowSink& motions = sink("ground_motions");
+  for (std::size_t k = 0; k < scenario.excitation.records.size(); ++k) {
+    const GroundRecord& record = scenario.excitation.records[k];
+    motions.append(std::array{static_cast<double>(k + 1), record.facts.peak_m_per_s2,
+                              static_cast<double>(record.facts.points), record.facts.duration_s,
+                              record.factor_found.value_or(std::numeric_limits<double>::quiet_NaN()),
+                              record.end.velocity_m_per_s, record.end.displacement_m});
+  }
+  write_spectra(scenario, sink("response_spectra"));
 }
 
 }  // namespace hybridtest

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,8 +32,11 @@ void require_new_run(const std::filesystem::path& directory, std::string_view pa
 [[nodiscard]] RunFileHeader run_file_header(const Scenario& scenario, std::string_view participant, Role role,
                                             Incarnation incarnation);
 
-/// The table `test`, with one row, that the coordinator writes at the end.
-[[nodiscard]] TableLayout test_layout();
-[[nodiscard]] std::vector<double> test_row(const Scenario& scenario, const CoordinatorReport& report, int exit_code);
+/// The tables of the coordinator's file about the test as a whole, which it writes at the end: `test`, with one row;
+/// `ground_motions`, with a row for each; `response_spectra` of what was applied.
+[[nodiscard]] std::vector<TableLayout> test_tables();
+/// @param sink   of one of these tables.
+void write_test_tables(const Scenario& scenario, const CoordinatorReport& report, int exit_code,
+                       const std::function<RowSink&(std::string_view table)>& sink);
 
 }  // namespace hybridtest

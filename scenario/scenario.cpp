@@ -8,7 +8,6 @@
 #include <set>
 #include <span>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
 #include "coordinator/preflight/step_stability.hpp"
 #include "core/config/section.hpp"
 #include "core/input_file.hpp"
@@ -72,28 +71,6 @@ void read_timeouts(Section& root, TimeoutScenario& timeouts) {
   section.finish();
 }
 
-/// The keys that the degrees of freedom decide are read later.
-void read_excitation(Section& section, const std::filesystem::path& directory, Scenario& scenario) {
-  scenario.ground_motion_text = section.text("ground_motion");
-  const std::optional<std::filesystem::path> file = named_file(section, "ground_motion", directory);
-  GroundMotionOptions options;
-  options.scale = section.number("scale", kAnyNumber, 1.0);
-  if (section.has("dt_s")) options.dt_s = section.number("dt_s", kPositive);
-  if (section.has("unit")) {
-    options.unit = static_cast<AccelerationUnit>(section.choice("unit", {"g", "m_per_s2", "cm_per_s2"}));
-  }
-  if (!file) return;
-  scenario.ground_motion_file = *file;
-  scenario.files.push_back({.file = *file, .written = scenario.ground_motion_text, .is_digested = false});
-  try {
-    const GroundMotion motion = read_ground_motion(scenario.ground_motion_file, options);
-    scenario.ground_motion = motion.facts();
-    scenario.ground_acceleration_m_per_s2 = motion.sampled(scenario.time.step_s, scenario.time.last_step);
-  } catch (const ConfigError& error) {
-    section.error("ground_motion", error.what());
-  }
-}
-
 /// `{dof: …}`, with `relative_to` or without.
 std::vector<InterfaceDof> one_dof(Section& entry, const DofTable& table) {
   InterfaceDof interface { .dof = dof_position(entry, "dof", table) };
@@ -117,7 +94,8 @@ std::vector<InterfaceDof> matching_dofs(Section& entry, const DofTable& table) {
   return matching;
 }
 
-void read_interface(Section& section, const DofTable& table, SubstructureScenario& substructure) {
+void read_interface(Section& section, const DofTable& table, const ExcitationScenario& excitation,
+                    SubstructureScenario& substructure) {
   const std::vector<std::string>& dofs = table.names();
   std::vector<InterfaceDof> interface_dofs;
   std::set<std::string> names;
@@ -137,6 +115,7 @@ void read_interface(Section& section, const DofTable& table, SubstructureScenari
                              "most " +
                              std::to_string(kInterfaceNameLongest) + " letters: shorten the names");
       }
+      read_interface_support(entry, key, interface, excitation);
       interface_dofs.push_back(interface);
       substructure.interface_names.push_back(std::move(name));
     }
@@ -285,7 +264,7 @@ SubstructureScenario read_substructure(Section& section, Scenario& scenario, con
   if (substructure.id == kOperatorId) section.error("id", "'operator' stands for the person at the controls");
   const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
-  read_interface(section, table, substructure);
+  read_interface(section, table, scenario.excitation, substructure);
   if (is_numerical) {
     substructure.make_model =
         read_model(section.section("model"), named_interface(substructure, table), directory, scenario.files);
@@ -370,6 +349,17 @@ void check_trials(Section& integrator, const Scenario& scenario) {
                                  "integrator that commands each displacement once, such as alpha_operator_splitting, "
                                  "cr or kr_alpha");
     return;
+  }
+}
+
+/// The specimens of all sites get to their initial displacements without a jump and within their limits.
+void check_initial_ramps(const Section& excitation, const Scenario& scenario) {
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::experimental_site) continue;
+    const SiteLimits& limits = substructure.site.loop.limits;
+    check_initial_ramp(excitation, *scenario.excitation.free_vibration, {scenario.time.step_s, scenario.time.last_step},
+                       substructure.id, substructure.interface, limits.displacement_m, limits.velocity_m_per_s,
+                       scenario.time.time_scale);
   }
 }
 
@@ -458,15 +448,16 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   if (root.has("description")) static_cast<void>(root.text("description", ""));
   read_time(root.section("time"), scenario.time);
   Section excitation = root.section("excitation");
-  read_excitation(excitation, document.directory(), scenario);
 
   Section structure = root.section("structure");
   StructureReading reading = read_structure(structure, document.directory());
   scenario.dofs = reading.dofs.names();
   scenario.structure = std::move(reading.structure);
+  const TestSteps test{scenario.time.step_s, scenario.time.last_step};
+  scenario.excitation = read_excitation(excitation, reading.dofs, test, document.directory(), scenario.files);
   scenario.files.insert(scenario.files.end(), reading.files.begin(), reading.files.end());
-  scenario.structure.influence = read_influence(excitation, reading.dofs);
-  excitation.finish();
+  scenario.structure.influence = scenario.excitation.records.empty() ? uniform_influence(reading.dofs, 0)
+                                                                     : scenario.excitation.records.front().influence;
 
   Section integrator = root.section("integrator");
   scenario.integrator = read_integrator(integrator);
@@ -476,7 +467,8 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     scenario.substructures.push_back(read_substructure(section, scenario, reading.dofs, document.directory()));
   }
   const NumericalErrors errors = read_numerical_errors(root);
-  scenario.recorded_dofs = read_output(root, reading.dofs, interface_dofs(scenario, kAllRecordedUpTo));
+  scenario.recorded_dofs =
+      read_output(root, reading.dofs, interface_dofs(scenario, kAllRecordedUpTo), !scenario.excitation.forces.empty());
   for (SubstructureScenario& substructure : scenario.substructures) {
     substructure.recorded = recorded_interface(substructure, scenario.recorded_dofs);
   }
@@ -501,13 +493,22 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
     apply(errors, scenario);
   });
   document.throw_if_errors();
+  if (scenario.excitation.free_vibration) {
+    report_at(excitation.section("free_vibration"), [&] {
+      let_others_follow(*scenario.excitation.free_vibration, scenario.structure.initial_stiffness_n_per_m);
+      check_initial_ramps(excitation, scenario);
+    });
+    document.throw_if_errors();
+  }
   scenario.integrator_step_s = scenario.time.step_s * errors.step;
   if (!scenario.integrator.needs.initial_stiffness) {
     report_at(root.section("time"),
               [&] { require_stable_step(vibration_modes(scenario.structure, 0), scenario.integrator_step_s); });
   }
-  scenario.make_integrator = [structure = scenario.structure, make = scenario.integrator.make,
-                              step_s = scenario.integrator_step_s] { return make(structure, step_s, {}); };
+  scenario.make_integrator = [structure = scenario.structure, integrator = scenario.integrator,
+                              start = scenario.excitation.free_vibration, step_s = scenario.integrator_step_s] {
+    return begun_integrator(integrator, start, structure, step_s);
+  };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
   scenario.effective = document.effective();

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "coordinator/coordinator.hpp"
-#include "core/ground_motion_facts.hpp"
 #include "core/messages.hpp"
 #include "core/real_time_thread.hpp"
 #include "experimental_site/control_loop.hpp"
@@ -19,6 +18,7 @@
 #include "mechanics/structure/linear_structure.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/catalogue/integrators.hpp"
+#include "scenario/excitation_section.hpp"
 #include "scenario/loop_sections.hpp"
 #include "scenario/structure_section.hpp"
 
@@ -91,10 +91,7 @@ struct Scenario {
   std::vector<std::string> dofs;
   LinearStructure structure;                // initial stiffness assembled from its own and that of the substructures
   std::vector<Eigen::Index> recorded_dofs;  // rows of those in the coordinator's record, ascending
-  std::filesystem::path ground_motion_file;
-  std::string ground_motion_text;                    // as written in the scenario
-  GroundMotionFacts ground_motion;                   // scaled
-  std::vector<double> ground_acceleration_m_per_s2;  // at each step
+  ExcitationScenario excitation;
   IntegratorReading integrator;
   double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
   std::function<std::unique_ptr<Integrator>()> make_integrator;

@@ -110,25 +110,18 @@ DampingRule read_damping(Section section, std::size_t dofs) {
   return rule;
 }
 
-std::string no_such_dof(const std::string& address, const DofTable& dofs) {
-  if (const std::string why = dofs.why_gone(address); !why.empty()) {
-    return "the degree of freedom '" + address + "' " + why;
-  }
-  std::string what = "no degree of freedom '" + address + "'";
-  if (const auto nearest = nearest_name(address, dofs.names())) return what + "; did you mean '" + *nearest + "'?";
-  if (!dofs.has_directions()) return what;
-  return what + "; expected its name, node.direction such as '" + dofs.names().front() + "', or such as 'node 1 dof 1'";
-}
-
 /// HDF5 keeps the description of a table's columns in 64 KiB: of each its name, and some 24 bytes.
-void check_recordable(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& recorded) {
+void check_recordable(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& recorded,
+                      bool records_forces) {
   constexpr std::size_t kDescriptionMax_bytes = 64'000;
   constexpr std::size_t kBesideNames_bytes = 72 + 4 * 24;  // displacement_…_m and the other three columns
+  constexpr std::size_t kBesideForceName_bytes = 16 + 24;  // applied_force_…_n
   if (dofs.size() == 0) return;                            // reported
   std::size_t description_bytes = 0;
   for (const Eigen::Index row : recorded) {
     const std::string& name = dofs.names()[static_cast<std::size_t>(row)];
     description_bytes += 4 * name.size() + kBesideNames_bytes;
+    if (records_forces) description_bytes += name.size() + kBesideForceName_bytes;
     if (name.size() <= kDofNameLongest) continue;
     root.error("structure", "the degree of freedom '" + name + "' has a name of " + std::to_string(name.size()) +
                                 " letters; expected at most " + std::to_string(kDofNameLongest) + " in a recording");
@@ -216,33 +209,51 @@ StructureReading read_structure(Section section, const std::filesystem::path& di
   return reading;
 }
 
-Eigen::VectorXd read_influence(Section& excitation, const DofTable& dofs) {
-  const auto size = static_cast<Eigen::Index>(dofs.size());
-  if (const auto mapping = excitation.optional_section("influence")) {
-    Section influence = *mapping;
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
-    for (const std::string& key : influence.keys()) {
-      const double value = influence.number(key);
-      const std::optional<int> row = dofs.find(key);
-      if (row) values[*row] = value;
-      if (!row) influence.error(key, no_such_dof(key, dofs));
+std::string no_such_dof(const std::string& address, const DofTable& dofs) {
+  if (const std::string why = dofs.why_gone(address); !why.empty()) {
+    return "the degree of freedom '" + address + "' " + why;
+  }
+  std::string what = "no degree of freedom '" + address + "'";
+  if (const auto nearest = nearest_name(address, dofs.names())) return what + "; did you mean '" + *nearest + "'?";
+  if (!dofs.has_directions()) return what;
+  return what + "; expected its name, node.direction such as '" + dofs.names().front() + "', or such as 'node 1 dof 1'";
+}
+
+Eigen::VectorXd values_by_dof(Section mapping, const DofTable& dofs) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dofs.size()));
+  for (const std::string& key : mapping.keys()) {
+    const double value = mapping.number(key);
+    if (const std::optional<int> row = dofs.find(key)) {
+      values[*row] = value;
+    } else {
+      mapping.error(key, no_such_dof(key, dofs));
     }
-    influence.finish();
-    return values;
   }
-  if (!dofs.has_directions()) return Eigen::VectorXd::Ones(size);
-  const std::size_t direction = excitation.choice("direction", {kDirections.begin(), kDirections.end()}, "x");
-  const std::vector<int> rows = dofs.in_direction(direction);
-  if (rows.empty()) {
-    excitation.error("direction", "no degree of freedom has the direction " + std::string{kDirections.at(direction)} +
-                                      ": the ground motion would move nothing");
-  }
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
-  for (const int row : rows) values[row] = 1.0;
+  mapping.finish();
   return values;
 }
 
-std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& always) {
+Eigen::VectorXd uniform_influence(const DofTable& dofs, std::size_t direction) {
+  const auto size = static_cast<Eigen::Index>(dofs.size());
+  if (!dofs.has_directions()) return Eigen::VectorXd::Ones(size);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+  for (const int row : dofs.in_direction(direction)) values[row] = 1.0;
+  return values;
+}
+
+Eigen::VectorXd read_influence(Section& excitation, const DofTable& dofs) {
+  if (const auto mapping = excitation.optional_section("influence")) return values_by_dof(*mapping, dofs);
+  if (!dofs.has_directions()) return uniform_influence(dofs, 0);
+  const std::size_t direction = excitation.choice("direction", {kDirections.begin(), kDirections.end()}, "x");
+  if (dofs.in_direction(direction).empty()) {
+    excitation.error("direction", "no degree of freedom has the direction " + std::string{kDirections.at(direction)} +
+                                      ": the ground motion would move nothing");
+  }
+  return uniform_influence(dofs, direction);
+}
+
+std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& always,
+                                      bool records_forces) {
   std::set<Eigen::Index> rows{always.begin(), always.end()};
   if (auto output = root.optional_section("output")) {
     for (const std::string& pattern : output->names("degrees_of_freedom")) {
@@ -260,7 +271,7 @@ std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const
     }
   }
   std::vector<Eigen::Index> recorded{rows.begin(), rows.end()};
-  check_recordable(root, dofs, recorded);
+  check_recordable(root, dofs, recorded, records_forces);
   return recorded;
 }
 

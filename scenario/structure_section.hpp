@@ -32,14 +32,24 @@ struct StructureReading {
 /// Without a table of degrees of freedom and without the mapping, all by 1.
 [[nodiscard]] Eigen::VectorXd read_influence(config::Section& excitation, const DofTable& dofs);
 
+/// 1 at the degrees of freedom of a direction, as its position in kDirections; without a table of them, 1 at all.
+[[nodiscard]] Eigen::VectorXd uniform_influence(const DofTable& dofs, std::size_t direction);
+
+/// A mapping from degrees of freedom to numbers; 0 for those left out. Reports what is no degree of freedom.
+[[nodiscard]] Eigen::VectorXd values_by_dof(config::Section mapping, const DofTable& dofs);
+
+/// The message for an address that no degree of freedom has.
+[[nodiscard]] std::string no_such_dof(const std::string& address, const DofTable& dofs);
+
 /// Without the section `output`, as many degrees of freedom of a structure or of an interface are all recorded.
 inline constexpr std::size_t kAllRecordedUpTo = 100;
 
 /// Rows of the degrees of freedom that the coordinator records, in order: those of `output`, or without that section
 /// all of a structure of up to kAllRecordedUpTo, of a larger one 20 evenly over the table; and the ones in `always`.
+/// @param records_forces   a column more for each, the applied force.
 /// Reports more of them than the columns of a table hold, and names that are too long for a column.
 [[nodiscard]] std::vector<Eigen::Index> read_output(config::Section& root, const DofTable& dofs,
-                                                    const std::vector<Eigen::Index>& always);
+                                                    const std::vector<Eigen::Index>& always, bool records_forces);
 
 /// Row that the text at `key` addresses; reports an unknown one and returns 0.
 [[nodiscard]] int dof_position(config::Section& section, std::string_view key, const DofTable& dofs);

@@ -66,7 +66,8 @@ bool vibration_grows(const Scenario& scenario, const LinearStructure& structure,
         {coupled[i].interface.on_structure(coupled[i].stiffness_n_per_m), delay_s / scenario.time.step_s});
     prompt -= delayed.back().stiffness_n_per_m;
   }
-  return free_vibration_grows(*scenario.make_integrator(), prompt, delayed);
+  return free_vibration_grows(*scenario.integrator.make(scenario.structure, scenario.integrator_step_s, {}), prompt,
+                              delayed);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ struct SimulatedTest {
 };
 
 SimulatedTest simulated_test(const Scenario& scenario, const PartProgress& progress) {
-  StepsTable steps{Coordinator::steps_layout(scenario.recorded_names())};
+  StepsTable steps{CoordinatorParticipant::tables(scenario).front()};
   NoRecord nothing;
   SimulationObserver observer;
   observer.sink = [&](const std::string& participant, const TableLayout& table) -> RowSink& {

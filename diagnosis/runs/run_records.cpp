@@ -254,6 +254,38 @@ Recording read_recording(const std::filesystem::path& path, RecordingRole role, 
   return recording;
 }
 
+namespace {
+
+using StepColumn = std::function<std::vector<double>(const std::string&)>;
+
+Eigen::MatrixXd rows_of(const std::vector<std::string>& names, const StepColumn& column) {
+  Eigen::MatrixXd rows(std::ssize(names), std::ssize(column("step")));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::vector<double> values = column(names[i]);
+    rows.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>{values.data(), std::ssize(values)};
+  }
+  return rows;
+}
+
+/// A row for each ground motion, as Coordinator::steps_layout() names them.
+Eigen::MatrixXd recorded_ground_motions(const Scenario& scenario, const StepColumn& column) {
+  std::vector<std::string> names;
+  for (std::size_t k = 1; k <= scenario.excitation.records.size(); ++k) {
+    names.push_back("ground_acceleration_" + (k == 1 ? "" : std::to_string(k) + "_") + "m_per_s2");
+  }
+  return rows_of(names, column);
+}
+
+/// A row for each recorded degree of freedom; without columns where the test applies no forces.
+Eigen::MatrixXd recorded_applied_forces(const Scenario& scenario, const StepColumn& column) {
+  if (scenario.excitation.forces.empty()) return {};
+  std::vector<std::string> names;
+  for (const std::string& dof : scenario.recorded_names()) names.push_back("applied_force_" + dof + "_n");
+  return rows_of(names, column);
+}
+
+}  // namespace
+
 TestResponse recorded_response(const std::filesystem::path& run, const Scenario& scenario) {
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
   return response_of_steps(scenario, steps_of(coordinator));
@@ -267,11 +299,11 @@ TestResponse response_of_steps(const Scenario& scenario,
     const std::vector<double> values = column(name);
     return Eigen::RowVectorXd{Eigen::Map<const Eigen::RowVectorXd>{values.data(), std::ssize(values)}};
   };
-  const Eigen::RowVectorXd ground_m_per_s2 = row_of("ground_acceleration_m_per_s2");
+  const auto steps = std::ssize(column("step"));
   const std::vector<std::string> names = scenario.recorded_names();
   const auto dofs = std::ssize(names);
   for (Eigen::MatrixXd* signal : {&response.displacement_m, &response.velocity_m_per_s, &response.restoring_force_n}) {
-    signal->resize(dofs, ground_m_per_s2.size());
+    signal->resize(dofs, steps);
   }
   for (Eigen::Index i = 0; i < dofs; ++i) {
     const std::string& dof = names[static_cast<std::size_t>(i)];
@@ -279,8 +311,14 @@ TestResponse response_of_steps(const Scenario& scenario,
     response.velocity_m_per_s.row(i) = row_of("velocity_" + dof + "_m_per_s");
     response.restoring_force_n.row(i) = row_of("restoring_force_" + dof + "_n");
   }
-  const Eigen::VectorXd load_kg = scenario.structure.load_per_ground_acceleration_kg();
-  response.applied_force_n = load_kg(scenario.recorded_dofs) * ground_m_per_s2;
+  response.applied_force_n.setZero(dofs, steps);
+  const Eigen::MatrixXd ground_m_per_s2 = recorded_ground_motions(scenario, column);
+  for (std::size_t k = 0; k < scenario.excitation.records.size(); ++k) {
+    const Eigen::VectorXd load_kg = -(scenario.structure.mass_kg * scenario.excitation.records[k].influence);
+    response.applied_force_n += load_kg(scenario.recorded_dofs) * ground_m_per_s2.row(static_cast<Eigen::Index>(k));
+  }
+  const Eigen::MatrixXd forces_n = recorded_applied_forces(scenario, column);
+  if (forces_n.cols() > 0) response.applied_force_n += forces_n;
   return response;
 }
 
@@ -294,6 +332,9 @@ void require_same_test(const Scenario& scenario, const Scenario& ran) {
     return a.id == b.id && a.role == b.role && a.interface_names == b.interface_names;
   });
   if (!same) throw ConfigError{what + "the substructures or their interfaces differ; expected the same"};
+  if (scenario.excitation.records.size() != ran.excitation.records.size()) {
+    throw ConfigError{what + "the number of ground motions differs; expected the same"};
+  }
 }
 
 /// The forces of a numerical substructure, one column per step; nothing if a step is missing.
@@ -359,7 +400,7 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
 }
 
 /// Adds notes on differences of the configuration for which there is no effect.
-void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen::RowVectorXd& ground_m_per_s2,
+void note_differences(const Scenario& scenario, const Scenario& ran, const StructureRecording& recording,
                       std::vector<std::string>& notes) {
   if (scenario.integrator.text != ran.integrator.text) {
     notes.push_back(fmt::format("The integrator of the scenario is {}, that of the recorded test is {}.",
@@ -370,14 +411,18 @@ void note_differences(const Scenario& scenario, const Scenario& ran, const Eigen
                                 scenario.time.step_s, ran.time.step_s));
     return;
   }
-  const auto steps = std::min<Eigen::Index>(ground_m_per_s2.size(), std::ssize(scenario.ground_acceleration_m_per_s2));
-  const Eigen::Map<const Eigen::RowVectorXd> own{scenario.ground_acceleration_m_per_s2.data(), steps};
-  const double off = (own - ground_m_per_s2.head(steps)).norm();
-  if (off > tuning::kSameMotion * ground_m_per_s2.norm()) {
+  const Eigen::MatrixXd& ground_m_per_s2 = recording.ground_m_per_s2;
+  for (std::size_t k = 0; k < scenario.excitation.records.size(); ++k) {
+    const std::vector<double>& values = scenario.excitation.records[k].acceleration_m_per_s2;
+    const auto steps = std::min<Eigen::Index>(ground_m_per_s2.cols(), std::ssize(values));
+    const Eigen::Map<const Eigen::RowVectorXd> own{values.data(), steps};
+    const Eigen::RowVectorXd recorded = ground_m_per_s2.row(static_cast<Eigen::Index>(k)).head(steps);
+    const double off = (own - recorded).norm();
+    if (off <= tuning::kSameMotion * recorded.norm()) continue;
     notes.push_back(
-        fmt::format("The ground motion of the scenario differs from the recorded one by {:.3g} of its root mean "
+        fmt::format("The ground motion {} of the scenario differs from the recorded one by {:.3g} of its root mean "
                     "square. The recorded ground motion is used.",
-                    off / ground_m_per_s2.norm()));
+                    k + 1, off / recorded.norm()));
   }
 }
 
@@ -407,15 +452,20 @@ StructureRecord structure_record(const std::filesystem::path& run, const Scenari
   StructureRecord record;
   record.model.structure = scenario.structure;
   record.model.step_s = scenario.integrator_step_s;
-  record.model.make_integrator = [make = scenario.integrator.make](const LinearStructure& structure, double step_s) {
-    return make(structure, step_s, {});
+  record.model.make_integrator = [integrator = scenario.integrator, start = scenario.excitation.free_vibration](
+                                     const LinearStructure& structure, double step_s) {
+    return begun_integrator(integrator, start, structure, step_s);
   };
-  const std::vector<double> ground = coordinator.column("steps", "ground_acceleration_m_per_s2");
+  record.model.influence.resize(scenario.structure.size(), std::ssize(scenario.excitation.records));
+  for (std::size_t k = 0; k < scenario.excitation.records.size(); ++k) {
+    record.model.influence.col(static_cast<Eigen::Index>(k)) = scenario.excitation.records[k].influence;
+  }
   record.recording.step_s = ran.time.step_s;
-  record.recording.ground_m_per_s2 = Eigen::Map<const Eigen::RowVectorXd>{ground.data(), std::ssize(ground)};
+  record.recording.ground_m_per_s2 = recorded_ground_motions(ran, steps_of(coordinator));
+  record.recording.forces_n = recorded_applied_forces(ran, steps_of(coordinator));
   record.recording.displacement_m = response.displacement_m;
   record.recording.restoring_force_n = response.restoring_force_n;
-  note_differences(scenario, ran, record.recording.ground_m_per_s2, record.notes);
+  note_differences(scenario, ran, record.recording, record.notes);
   add_numerical_forces(run, scenario, ran, commanded_motion(ran, response), record);
   return record;
 }

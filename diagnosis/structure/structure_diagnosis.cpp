@@ -19,15 +19,16 @@ Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const 
                                           const StructureErrors& errors) {
   HYBRIDTEST_ASSERT(recording.displacement_m.rows() == model.structure.size() &&
                     recording.restoring_force_n.cols() == recording.steps() &&
-                    recording.ground_m_per_s2.size() == recording.steps());
+                    recording.ground_m_per_s2.cols() == recording.steps() &&
+                    recording.ground_m_per_s2.rows() == model.influence.cols());
   LinearStructure structure = model.structure;
   structure.mass_kg *= 1.0 + errors.mass;
   structure.damping_n_s_per_m *= 1.0 + errors.damping;
   const auto integrator = model.make_integrator(structure, model.step_s * (1.0 + errors.step));
-  const Eigen::VectorXd load_kg = structure.load_per_ground_acceleration_kg();
+  const Eigen::MatrixXd load_kg = -(structure.mass_kg * model.influence);
   Eigen::MatrixXd displacement_m(recording.displacement_m.rows(), recording.steps());
   Eigen::VectorXd force_n;
-  Eigen::VectorXd applied_n;
+  Eigen::VectorXd applied_n = Eigen::VectorXd::Zero(structure.size());
   for (Eigen::Index i = 0; i < recording.steps(); ++i) {
     force_n = recording.restoring_force_n.col(i);
     // If model and recording agree, this adds exactly zero.
@@ -35,7 +36,10 @@ Eigen::MatrixXd recomputed_displacement_m(const ComputedStructure& model, const 
       force_n +=
           (1.0 + errors.stiffness) * recording.modelled_numerical_force_n.col(i) - recording.numerical_force_n.col(i);
     }
-    applied_n = load_kg * recording.ground_m_per_s2[i];
+    applied_n.setZero();
+    // One after the other, as the coordinator adds them: the sum has the same bits.
+    for (Eigen::Index k = 0; k < load_kg.cols(); ++k) applied_n += load_kg.col(k) * recording.ground_m_per_s2(k, i);
+    if (recording.forces_n.cols() > 0) applied_n += recording.forces_n.col(i);
     integrator->advance(force_n, applied_n);
     displacement_m.col(i) = integrator->completed().displacement_m;
   }

@@ -16,17 +16,19 @@ namespace hybridtest {
 /// The part of a hybrid test that the coordinator computes, as described by the scenario of the user.
 struct ComputedStructure {
   LinearStructure structure;
-  double step_s = 0.0;  // of the integrator
+  Eigen::MatrixXd influence;  // iota of each ground motion, one column each
+  double step_s = 0.0;        // of the integrator
   std::function<std::unique_ptr<Integrator>(const LinearStructure& structure, double step_s)> make_integrator;
 };
 
 /// Input and output of that part in a test: one column per step; rows are degrees of freedom of the
 /// structure, positive as displacements are.
 struct StructureRecording {
-  double step_s = 0.0;                 // of the test
-  Eigen::RowVectorXd ground_m_per_s2;  // acceleration
-  Eigen::MatrixXd displacement_m;      // commanded
-  Eigen::MatrixXd restoring_force_n;   // of all substructures, as received, and of the elastic part
+  double step_s = 0.0;                // of the test
+  Eigen::MatrixXd ground_m_per_s2;    // acceleration, a row for each ground motion
+  Eigen::MatrixXd forces_n;           // applied besides; without columns where there are none
+  Eigen::MatrixXd displacement_m;     // commanded
+  Eigen::MatrixXd restoring_force_n;  // of all substructures, as received, and of the elastic part
   // Of the elastic part and the numerical substructures: as in the test, and as the user's scenario has them along
   // the recorded displacement. Both without columns where that was not recorded.
   Eigen::MatrixXd numerical_force_n;

@@ -101,6 +101,24 @@ struct StallSummary {
   double model_time_s = 0.0;  // [s] of the longest
 };
 
+/// Largest response of an oscillator with 5 % damping to what was applied, relative to the ground.
+struct SpectrumPoint {
+  int mode = 0;  // of the structure, from 1; 0: a period of the grid
+  double period_s = 0.0;
+  double displacement_m = 0.0;
+  double velocity_m_per_s = 0.0;
+  double pseudo_acceleration_m_per_s2 = 0.0;
+};
+
+struct GroundMotionSummary {
+  GroundMotionFacts facts;
+  std::optional<double> factor;  // that scaled it to a wanted peak or ordinate
+  // That the record leaves the ground with, integrated from rest.
+  double end_velocity_m_per_s = 0.0;
+  double end_displacement_m = 0.0;
+  std::vector<SpectrumPoint> spectrum;  // the periods of the grid, then those of the structure
+};
+
 /// The results of a test. All values in SI.
 struct RunSummary {
   std::string test_name;
@@ -122,8 +140,8 @@ struct RunSummary {
   std::optional<double> wall_time_s;
   std::optional<double> steps_per_second;
 
-  std::optional<GroundMotionFacts> ground_motion;  // none in the files of older versions
-  std::vector<Peak> peak_displacement_m;           // per structure degree of freedom
+  std::vector<GroundMotionSummary> ground_motions;  // none in the files of older versions
+  std::vector<Peak> peak_displacement_m;            // per structure degree of freedom
   std::vector<SubstructureSummary> substructures;
   std::vector<InterlockSummary> interlocks;
   std::vector<std::string> faults;  // the other events of severity fault, one sentence each

@@ -47,6 +47,44 @@ std::optional<Peak> peak_of(std::string dof, const std::vector<double>& values, 
   return peak;
 }
 
+/// The ground motions with the spectra of what was applied; none in the files of older versions.
+std::vector<GroundMotionSummary> ground_motions_of(const RunFileReader& file) {
+  constexpr std::string_view kMotions = "ground_motions";
+  constexpr std::string_view kSpectra = "response_spectra";
+  if (!file.has_table(kMotions)) return {};
+  const auto peak_m_per_s2 = file.column(kMotions, "peak_m_per_s2");
+  const auto points = file.column(kMotions, "points");
+  const auto duration_s = file.column(kMotions, "duration_s");
+  const auto factor = file.column(kMotions, "factor");
+  const auto end_velocity_m_per_s = file.column(kMotions, "end_velocity_m_per_s");
+  const auto end_displacement_m = file.column(kMotions, "end_displacement_m");
+  std::vector<GroundMotionSummary> motions(peak_m_per_s2.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    motions[i].facts = {
+        .peak_m_per_s2 = peak_m_per_s2[i], .points = static_cast<std::int64_t>(points[i]), .duration_s = duration_s[i]};
+    if (std::isfinite(factor[i])) motions[i].factor = factor[i];
+    motions[i].end_velocity_m_per_s = end_velocity_m_per_s[i];
+    motions[i].end_displacement_m = end_displacement_m[i];
+  }
+  if (!file.has_table(kSpectra)) return motions;
+  const auto record = file.column(kSpectra, "record");
+  const auto mode = file.column(kSpectra, "mode");
+  const auto period_s = file.column(kSpectra, "period_s");
+  const auto displacement_m = file.column(kSpectra, "displacement_m");
+  const auto velocity_m_per_s = file.column(kSpectra, "velocity_m_per_s");
+  const auto acceleration_m_per_s2 = file.column(kSpectra, "pseudo_acceleration_m_per_s2");
+  for (std::size_t row = 0; row < record.size(); ++row) {
+    if (!(record[row] >= 1.0 && record[row] <= static_cast<double>(motions.size()))) continue;
+    motions[static_cast<std::size_t>(record[row]) - 1].spectrum.push_back(
+        {.mode = static_cast<int>(mode[row]),
+         .period_s = period_s[row],
+         .displacement_m = displacement_m[row],
+         .velocity_m_per_s = velocity_m_per_s[row],
+         .pseudo_acceleration_m_per_s2 = acceleration_m_per_s2[row]});
+  }
+  return motions;
+}
+
 /// @param values   reads a column of the table.
 template <class Values>
 std::vector<Peak> peaks_of(const RunFileReader& file, std::string_view table, std::string_view quantity,
@@ -336,14 +374,10 @@ void Summariser::summarise_test() {
   const double completed = last_of(column_if_any(file, kTest, "completed_steps")).value_or(last_step);
   summary_.completed_steps = static_cast<std::int64_t>(completed);
 
-  if (const auto peak = last_of(column_if_any(file, kTest, "ground_motion_peak_m_per_s2"))) {
-    const auto points = last_of(column_if_any(file, kTest, "ground_motion_points")).value_or(0.0);
-    const auto duration_s = last_of(column_if_any(file, kTest, "ground_motion_duration_s")).value_or(0.0);
-    summary_.ground_motion = {
-        .peak_m_per_s2 = *peak, .points = static_cast<std::int64_t>(points), .duration_s = duration_s};
-    if (const std::string warning = ground_motion_warning(*summary_.ground_motion); !warning.empty()) {
-      summary_.remarks.push_back(warning);
-    }
+  summary_.ground_motions = ground_motions_of(file);
+  for (const GroundMotionSummary& motion : summary_.ground_motions) {
+    const std::string warning = ground_motion_warning(motion.facts);
+    if (!warning.empty()) summary_.remarks.push_back(warning);
   }
 
   const std::vector<double> wall_s = column_if_any(file, kSteps, "wall_time_s");

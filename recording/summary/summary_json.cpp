@@ -84,10 +84,24 @@ Json json(const SubstructureSummary& substructure) {
           {"loop_timing", substructure.loop_timing ? json(*substructure.loop_timing) : Json(nullptr)}};
 }
 
-Json json(const GroundMotionFacts& motion) {
-  return {{"peak_m_per_s2", number(motion.peak_m_per_s2)},
-          {"points", motion.points},
-          {"duration_s", number(motion.duration_s)}};
+Json json(const SpectrumPoint& point) {
+  return {{"mode", point.mode == 0 ? Json(nullptr) : Json(point.mode)},
+          {"period_s", number(point.period_s)},
+          {"displacement_m", number(point.displacement_m)},
+          {"velocity_m_per_s", number(point.velocity_m_per_s)},
+          {"pseudo_acceleration_m_per_s2", number(point.pseudo_acceleration_m_per_s2)}};
+}
+
+Json json(const GroundMotionSummary& motion) {
+  Json spectrum = Json::array();
+  for (const SpectrumPoint& point : motion.spectrum) spectrum.push_back(json(point));
+  return {{"peak_m_per_s2", number(motion.facts.peak_m_per_s2)},
+          {"points", motion.facts.points},
+          {"duration_s", number(motion.facts.duration_s)},
+          {"factor", optional(motion.factor)},
+          {"end_velocity_m_per_s", number(motion.end_velocity_m_per_s)},
+          {"end_displacement_m", number(motion.end_displacement_m)},
+          {"response_spectrum", {{"damping_ratio", kSpectrumDamping}, {"points", spectrum}}}};
 }
 
 Json json(const InterlockSummary& interlock) {
@@ -142,7 +156,7 @@ Json json(const RunSummary& summary) {
           {"model_time_s", number(summary.model_time_s)},
           {"wall_time_s", optional(summary.wall_time_s)},
           {"steps_per_second", optional(summary.steps_per_second)},
-          {"ground_motion", summary.ground_motion ? json(*summary.ground_motion) : Json(nullptr)},
+          {"ground_motions", list(summary.ground_motions)},
           {"peak_displacement", json(summary.peak_displacement_m, "displacement_m")},
           {"substructures", list(summary.substructures)},
           {"interlocks", list(summary.interlocks)},

@@ -64,6 +64,24 @@ void print_list(const char* title, const std::vector<std::string>& lines, std::o
   for (const std::string& line : lines) stream << "    " << line << '\n';
 }
 
+/// With the ordinates of its spectrum at the lowest periods of the structure.
+void print_ground_motions(const RunSummary& summary, std::ostream& stream) {
+  constexpr int kModesShown = 3;
+  for (std::size_t i = 0; i < summary.ground_motions.size(); ++i) {
+    const GroundMotionSummary& motion = summary.ground_motions[i];
+    stream << "  ground motion" << (summary.ground_motions.size() > 1 ? " " + std::to_string(i + 1) : "") << ": "
+           << ground_motion_text(motion.facts) << '\n';
+    std::string ordinates;
+    for (const SpectrumPoint& point : motion.spectrum) {
+      if (point.mode == 0 || point.mode > kModesShown) continue;
+      ordinates += (ordinates.empty() ? "" : "; ") + fixed(point.period_s, 3) +
+                   " s: " + fixed(point.pseudo_acceleration_m_per_s2 / kStandardGravity_m_per_s2, 3) + " g, " +
+                   fixed(point.displacement_m * kMillimetres, 1) + " mm";
+    }
+    if (!ordinates.empty()) stream << "    spectrum (5 %) at the periods of the structure: " << ordinates << '\n';
+  }
+}
+
 void print_head(const RunSummary& summary, std::ostream& stream) {
   std::string words = verdict(summary);
   int depth = 0;  // names and units in parentheses stay as they are
@@ -79,7 +97,7 @@ void print_head(const RunSummary& summary, std::ostream& stream) {
   if (summary.wall_time_s) stream << " in " << fixed(*summary.wall_time_s, 2) << " s";
   if (summary.steps_per_second) stream << ", " << fixed(*summary.steps_per_second, 0) << " steps/s";
   stream << '\n';
-  if (summary.ground_motion) stream << "  ground motion: " << ground_motion_text(*summary.ground_motion) << '\n';
+  print_ground_motions(summary, stream);
 }
 
 /// A limit's unit for people and its factor from SI.

@@ -6,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/force_history.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "core/assert.hpp"
 #include "core/config_error.hpp"
 
@@ -53,6 +54,18 @@ bool is_accepted(std::string_view text, const std::string& name, const GroundMot
   }
 }
 
+/// The same text as columns of forces.
+void read_as_forces(std::string_view text) {
+  try {
+    for (const TimeHistory& force : parse_force_history(text, "fuzz").histories) {
+      HYBRIDTEST_ASSERT(force.dt_s > 0.0 && force.start_s >= 0.0 && !force.values.empty());
+      HYBRIDTEST_ASSERT(std::ranges::all_of(force.values, [](double value) { return std::isfinite(value); }));
+    }
+  } catch (const ConfigError& error) {
+    HYBRIDTEST_ASSERT(!error.issues().empty() && error.issues().front().file == "fuzz");
+  }
+}
+
 }  // namespace
 
 bool fuzz_ground_motion(const std::uint8_t* bytes, std::size_t size) {
@@ -61,6 +74,7 @@ bool fuzz_ground_motion(const std::uint8_t* bytes, std::size_t size) {
   accepted |= is_accepted(text, "fuzz.AT2", {});
   accepted |= is_accepted(text, "fuzz", {.scale = -2.0, .unit = AccelerationUnit::g, .dt_s = 0.01});
   accepted |= is_accepted(text, "fuzz", {.scale = 1.0, .unit = AccelerationUnit::g, .dt_s = {}});
+  read_as_forces(text);
   return accepted;
 }
 

@@ -49,11 +49,12 @@ CoordinatorSettings settings(CouplingMode mode, Step last_step) {
   settings.substructures = {{"storey_1", Role::experimental_site, InterfaceMap{2, {{0}}}},
                             {"storey_2", Role::numerical_substructure, InterfaceMap{2, {{1, 0}}}}};
   settings.recorded_dofs = {0, 1};
-  settings.load_per_ground_acceleration_kg = two_storeys().load_per_ground_acceleration_kg();
+  GroundLoad ground{two_storeys().load_per_ground_acceleration_kg(), {}};
   for (Step step = 0; step <= last_step; ++step) {
-    settings.ground_acceleration_m_per_s2.push_back(
+    ground.acceleration_m_per_s2.push_back(
         2.0 * std::sin(3.0 * std::numbers::pi * RingCoupling::kStep_s * static_cast<double>(step)));
   }
+  settings.load = AppliedLoad{{std::move(ground)}, {}};
   return settings;
 }
 
@@ -102,7 +103,7 @@ ControlLoopSettings wide_limits(CouplingMode mode, double command_age_s) {
 }
 
 RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, double command_age_s)
-    : step_record_{width(Coordinator::steps_layout({"floor_1", "floor_2"})), kRows},
+    : step_record_{width(Coordinator::steps_layout({"floor_1", "floor_2"}, 1, false)), kRows},
       exchange_record_{width(Coordinator::exchanges_layout()), kRows},
       numerical_record_{width(NumericalNode::steps_layout({"floor_2"})), kRows},
       site_record_{width(SiteLink::steps_layout(1)), kRows},

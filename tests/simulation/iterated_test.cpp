@@ -53,7 +53,8 @@ TEST(Iterated, EqualsTheIntegratorInProcess) {
   const auto integrator = scenario.make_integrator();
   for (std::size_t step = 0; step < over_protocol_m.size(); ++step) {
     complete_step(*integrator, force_n,
-                  scenario.structure.load_per_ground_acceleration_kg() * scenario.ground_acceleration_m_per_s2[step]);
+                  scenario.structure.load_per_ground_acceleration_kg() *
+                      scenario.excitation.records.front().acceleration_m_per_s2[step]);
     columns.commit();
     ASSERT_EQ(integrator->completed().displacement_m[0], over_protocol_m[step]) << "step " << step;
   }

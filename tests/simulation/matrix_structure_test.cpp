@@ -110,9 +110,10 @@ TEST(MatrixStructure, FrameOfTenThousandEqualsItsMonolithicSolution) {
   WholeFrame frame{kStep_s / kSubsteps};
   const auto recorded = static_cast<Eigen::Index>(scenario.recorded_dofs.size());
   Eigen::MatrixXd expected_m = Eigen::MatrixXd::Zero(recorded, kSteps + 1);
+  const std::vector<double>& ground_m_per_s2 = scenario.excitation.records.front().acceleration_m_per_s2;
   for (int step = 0; step < kSteps; ++step) {
-    const double from = scenario.ground_acceleration_m_per_s2[static_cast<std::size_t>(step)];
-    const double to = scenario.ground_acceleration_m_per_s2[static_cast<std::size_t>(step) + 1];
+    const double from = ground_m_per_s2[static_cast<std::size_t>(step)];
+    const double to = ground_m_per_s2[static_cast<std::size_t>(step) + 1];
     for (int substep = 0; substep < kSubsteps; ++substep) {
       frame.step(from + (to - from) * substep / kSubsteps, from + (to - from) * (substep + 1) / kSubsteps);
     }

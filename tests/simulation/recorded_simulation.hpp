@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -35,9 +37,9 @@ class RecordedSimulation {
       return false;
     };
     const SimulationResult result = simulate(scenario_, settings, observer);
-    recorders_.at(std::string{kCoordinatorId})
-        ->sink("test")
-        .append(test_row(scenario_, result.coordinator, exit_code_for(result.coordinator.reason)));
+    Recorder& coordinator = *recorders_.at(std::string{kCoordinatorId});
+    write_test_tables(scenario_, result.coordinator, exit_code_for(result.coordinator.reason),
+                      [&](std::string_view table) -> RowSink& { return coordinator.sink(table); });
     for (auto& [id, recorder] : recorders_) {
       recorder->close();
       dropped_ += recorder->dropped();
@@ -49,7 +51,7 @@ class RecordedSimulation {
 
  private:
   void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
-    if (role == Role::coordinator) tables.push_back(test_layout());
+    if (role == Role::coordinator) std::ranges::move(test_tables(), std::back_inserter(tables));
     std::vector<RecordedTable> recorded;
     for (const TableLayout& table : tables) recorded.push_back({table, ring_rows_});
     recorders_[id] =

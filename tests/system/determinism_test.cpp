@@ -110,6 +110,31 @@ TEST_F(SameBits, ThreeSubstructuresMoveAsOneInProcess) {
   expect_same_table("coordinator", "steps", {"wall_time_s"});
 }
 
+/// Two ground motions, a force and a release from a pulled specimen. That the motion is right, tests/simulation shows.
+TEST_F(SameBits, EveryExcitationRunsAsItIsSimulated) {
+  const std::filesystem::path scenario = shipped_scenario("two_storey_one_site");
+  const std::vector<std::string> settings{
+      "--set", "time.duration_s=1.5", "--set",
+      "excitation={records: [{ground_motion: ground_motions/design_ec8_c.AT2, scale_to: {peak_g: 0.2}, baseline: "
+      "linear}, "
+      "{sweep: {amplitude_g: 0.02, from_hz: 1.0, to_hz: 4.0, duration_s: 0.5}, influence: {floor_2: 1.0}}], "
+      "forces: [{harmonic: {amplitude_n: 500.0, frequency_hz: 2.0}, dof: floor_1}], "
+      "free_vibration: {displacement_m: {floor_1: 0.005, floor_2: 0.01}, ramp_s: 0.6, hold_s: 0.4}}"};
+  StartedProgram run = start_run(scenario, "run", settings);
+  StartedProgram simulated = start_simulate(scenario, "simulated", settings);
+  ASSERT_THAT(run.wait(), ::testing::Optional(kExitCompleted)) << run.standard_error();
+  ASSERT_THAT(simulated.wait(), ::testing::Optional(kExitCompleted)) << simulated.standard_error();
+  const auto floor_m = recorded("run").column("coordinator", "steps", "displacement_floor_2_m");
+  ASSERT_EQ(floor_m.size(), 1501U);
+  EXPECT_EQ(floor_m.front(), 0.0);
+  EXPECT_EQ(floor_m[1000], 0.01);
+  EXPECT_NE(floor_m.back(), 0.01) << "released";
+  expect_same_table("coordinator", "steps", {"wall_time_s"});
+  expect_same_table("coordinator", "ground_motions");
+  expect_same_table("coordinator", "response_spectra");
+  expect_same_table("storey_1", "control");
+}
+
 TEST_P(Determinism, ControlSensorSeedChangesTheRecords) {
   // Shows that the comparison can fail: noise is part of what is compared.
   const std::filesystem::path scenario = shipped_scenario(GetParam().scenario);

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "validation/design_motion/baseline.hpp"

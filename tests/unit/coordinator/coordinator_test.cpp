@@ -85,8 +85,9 @@ class CoordinatorTest : public testing::Test {
     settings.substructures = {{"a", Role::experimental_site, InterfaceMap{1, {{0}}}},
                               {"b", Role::numerical_substructure, InterfaceMap{1, {{0}}}}};
     settings.recorded_dofs = {0};
-    settings.load_per_ground_acceleration_kg = Eigen::VectorXd::Constant(1, -3.0);
-    settings.ground_acceleration_m_per_s2.assign(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2);
+    settings.load = AppliedLoad{{{Eigen::VectorXd::Constant(1, -3.0),
+                                  std::vector<double>(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2)}},
+                                {}};
     settings.stop_on_recording_failure = stop_on_recording_failure;
     auto integrator = std::make_unique<CountingIntegrator>(1);
     integrator_ = integrator.get();
@@ -185,7 +186,7 @@ class CoordinatorTest : public testing::Test {
   RingPort<TestControl> control_out_{1024};
   RingPort<ForceMeasurement> measurements_{256};
   RingPort<DisplacementCommand> commands_{1024};
-  KeptRows steps_{Coordinator::steps_layout({"floor"})};
+  KeptRows steps_{Coordinator::steps_layout({"floor"}, 1, false)};
   KeptRows exchanges_{Coordinator::exchanges_layout()};
   Presence presence_{Identity{"coordinator", Role::coordinator, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
                      events_};

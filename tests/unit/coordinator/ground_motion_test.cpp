@@ -1,4 +1,4 @@
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

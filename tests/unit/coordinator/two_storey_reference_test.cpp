@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "tests/support/integration_methods.hpp"
 #include "tests/support/shared_data.hpp"

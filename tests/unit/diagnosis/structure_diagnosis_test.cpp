@@ -28,6 +28,7 @@ ComputedStructure two_storeys() {
   model.structure.initial_stiffness_n_per_m =
       Eigen::Matrix2d{{2 * kStorey_n_per_m, -kStorey_n_per_m}, {-kStorey_n_per_m, kStorey_n_per_m}}.sparseView();
   model.structure.influence = Eigen::Vector2d::Ones();
+  model.influence = model.structure.influence;
   model.step_s = kStep_s;
   model.make_integrator = [](const LinearStructure& structure, double step_s) -> std::unique_ptr<Integrator> {
     return std::make_unique<CentralDifference>(structure, step_s);
@@ -45,14 +46,14 @@ StructureRecording tested(const StructureErrors& errors, double second_mass_fact
   CentralDifference integrator{structure, kStep_s * (1.0 + errors.step)};
   StructureRecording recording;
   recording.step_s = kStep_s;
-  recording.ground_m_per_s2.resize(kSteps);
+  recording.ground_m_per_s2.resize(1, kSteps);
   for (Eigen::MatrixXd* signal : {&recording.displacement_m, &recording.restoring_force_n, &recording.numerical_force_n,
                                   &recording.modelled_numerical_force_n}) {
     signal->resize(2, kSteps);
   }
   for (Eigen::Index i = 0; i < kSteps; ++i) {
     const double time_s = static_cast<double>(i) * kStep_s;
-    recording.ground_m_per_s2[i] =
+    recording.ground_m_per_s2(0, i) =
         std::sin(2.0 * std::numbers::pi * 1.1 * time_s) + 0.7 * std::sin(2.0 * std::numbers::pi * 2.9 * time_s);
     const Eigen::Vector2d u_m = integrator.current().displacement_m;
     const double numerical_n = kStorey_n_per_m * (u_m[1] - u_m[0]);
@@ -62,7 +63,7 @@ StructureRecording tested(const StructureErrors& errors, double second_mass_fact
     recording.numerical_force_n.col(i) = (1.0 + errors.stiffness) * recording.modelled_numerical_force_n.col(i);
     recording.restoring_force_n.col(i) = recording.numerical_force_n.col(i) + Eigen::Vector2d{specimen_n, 0.0};
     integrator.advance(recording.restoring_force_n.col(i),
-                       structure.load_per_ground_acceleration_kg() * recording.ground_m_per_s2[i]);
+                       structure.load_per_ground_acceleration_kg() * recording.ground_m_per_s2(0, i));
   }
   return recording;
 }

@@ -27,7 +27,7 @@ TEST(CsvExport, WritesEveryTableWithUnitsInItsHeader) {
   run.write(directory.path());
   const auto out = directory / "csv";
   const auto written = export_csv(directory.path(), out);
-  ASSERT_EQ(written.size(), 10U) << "4 + 2 + 1 tables and the events of three files";
+  ASSERT_EQ(written.size(), 12U) << "6 + 2 + 1 tables and the events of three files";
   EXPECT_EQ(written.front(), out / "coordinator.events.csv");
 
   const auto control = lines_of(out / "storey_1.control.csv");

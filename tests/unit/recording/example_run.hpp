@@ -81,11 +81,23 @@ struct ExampleRun {
                             {"stop_reason", "-"},
                             {"wall_time_s", "s"},
                             {"exit_code", "-"},
-                            {"step_wall_time_s", "s"},
-                            {"ground_motion_peak_m_per_s2", "m/s2"},
-                            {"ground_motion_points", "-"},
-                            {"ground_motion_duration_s", "s"}}},
-                          {"table_of_tomorrow", {{"value", "-"}}}}};
+                            {"step_wall_time_s", "s"}}},
+                          {"table_of_tomorrow", {{"value", "-"}}},
+                          {"ground_motions",
+                           {{"record", "-"},
+                            {"peak_m_per_s2", "m/s2"},
+                            {"points", "-"},
+                            {"duration_s", "s"},
+                            {"factor", "-"},
+                            {"end_velocity_m_per_s", "m/s"},
+                            {"end_displacement_m", "m"}}},
+                          {"response_spectra",
+                           {{"record", "-"},
+                            {"mode", "-"},
+                            {"period_s", "s"},
+                            {"displacement_m", "m"},
+                            {"velocity_m_per_s", "m/s"},
+                            {"pseudo_acceleration_m_per_s2", "m/s2"}}}}};
     std::vector<double> steps;
     std::vector<double> exchanges;
     for (int i = 0; i <= coordinator_steps; ++i) {
@@ -104,9 +116,12 @@ struct ExampleRun {
     writer.append(0, steps);
     writer.append(1, exchanges);
     if (with_test_row) {
-      writer.append(2, std::vector{static_cast<double>(kSteps), static_cast<double>(coordinator_steps),
-                                   static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code),
-                                   step_wall_time_s, ground_peak_m_per_s2, 6201.0, 31.0});
+      writer.append(
+          2, std::vector{static_cast<double>(kSteps), static_cast<double>(coordinator_steps),
+                         static_cast<double>(stop_reason), 4.0, static_cast<double>(exit_code), step_wall_time_s});
+      writer.append(4, std::vector{1.0, ground_peak_m_per_s2, 6201.0, 31.0, 1.25, 0.002, -0.03});
+      writer.append(5, std::vector{1.0, 0.0, 0.5, 0.05, 0.6, 7.9});
+      writer.append(5, std::vector{1.0, 1.0, 0.75, 0.11, 0.9, 7.7});
     }
     writer.append_events(coordinator_events, std::vector<std::string>(coordinator_events.size(), "it happened"));
     writer.close();

@@ -228,16 +228,26 @@ TEST(RunSummary, TellsGroundMotionAndWarnsOfImplausiblePeak) {
   run.site_at_rest = true;
   const RunSummary plausible = summary_of(run);
   EXPECT_THAT(plausible.remarks, IsEmpty());
-  EXPECT_THAT(printed(plausible), HasSubstr("ground motion: peak 0.3569 g (3.5 m/s2), 6201 points, 31 s\n"));
+  EXPECT_THAT(printed(plausible), HasSubstr("ground motion: peak 0.3569 g (3.5 m/s2), 6201 points, 31 s\n"
+                                            "    spectrum (5 %) at the periods of the structure: 0.750 s: 0.785 g, "
+                                            "110.0 mm\n"));
   run.ground_peak_m_per_s2 = 0.09;
   EXPECT_THAT(summary_of(run).remarks, ElementsAre(HasSubstr("a peak of 0.009177 g, expected 0.01 to 3 g")));
   run.ground_peak_m_per_s2 = 34.0;
   EXPECT_THAT(summary_of(run).remarks, ElementsAre(HasSubstr("excitation.unit")));
   std::ostringstream stream;
   write_summary_json(summary_of(run), stream);
-  EXPECT_EQ(nlohmann::json::parse(stream.str()).at("ground_motion").at("points"), 6201);
+  const nlohmann::json motion = nlohmann::json::parse(stream.str()).at("ground_motions").at(0);
+  EXPECT_EQ(motion.at("points"), 6201);
+  EXPECT_EQ(motion.at("factor"), 1.25);
+  EXPECT_EQ(motion.at("end_displacement_m"), -0.03);
+  const nlohmann::json& spectrum = motion.at("response_spectrum");
+  EXPECT_EQ(spectrum.at("damping_ratio"), 0.05);
+  EXPECT_TRUE(spectrum.at("points").at(0).at("mode").is_null()) << "of the grid";
+  EXPECT_EQ(spectrum.at("points").at(1).at("mode"), 1);
+  EXPECT_EQ(spectrum.at("points").at(1).at("pseudo_acceleration_m_per_s2"), 7.7);
   run.with_test_row = false;
-  EXPECT_FALSE(summary_of(run).ground_motion.has_value());
+  EXPECT_TRUE(summary_of(run).ground_motions.empty());
 }
 
 TEST(RunSummary, NamesKilledSite) {

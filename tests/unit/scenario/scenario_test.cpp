@@ -27,8 +27,9 @@ TEST_F(ScenarioTest, ReadsAllValues) {
   EXPECT_EQ(scenario.name, "sound");
   EXPECT_EQ(scenario.time.mode, CouplingMode::lockstep);
   EXPECT_EQ(scenario.time.last_step, 100);
-  ASSERT_EQ(scenario.ground_acceleration_m_per_s2.size(), 101U);
-  EXPECT_DOUBLE_EQ(scenario.ground_acceleration_m_per_s2[25], 0.5) << "linear between the points of the motion";
+  ASSERT_EQ(scenario.excitation.records.front().acceleration_m_per_s2.size(), 101U);
+  EXPECT_DOUBLE_EQ(scenario.excitation.records.front().acceleration_m_per_s2[25], 0.5)
+      << "linear between the points of the motion";
   ASSERT_EQ(scenario.substructures.size(), 2U);
   const SubstructureScenario& site = scenario.substructures[0];
   EXPECT_EQ(site.role, Role::experimental_site);
@@ -270,7 +271,8 @@ TEST_F(ScenarioTest, DigestChangesWithEveryValue) {
 }
 
 TEST_F(ScenarioTest, GroundMotionIsToldAsScaled) {
-  const GroundMotionFacts motion = file_.read(kScenarioText, {"excitation.scale=-2.0"}).ground_motion;
+  const GroundMotionFacts motion =
+      file_.read(kScenarioText, {"excitation.scale=-2.0"}).excitation.records.front().facts;
   EXPECT_EQ(motion.peak_m_per_s2, 2.0);
   EXPECT_EQ(motion.points, 3);
   EXPECT_DOUBLE_EQ(motion.duration_s, 0.1);

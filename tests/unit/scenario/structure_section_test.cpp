@@ -179,7 +179,15 @@ TEST_F(StructureSection, RunDirectoryHoldsTheFiles) {
 
 /// What the scenario accepts, the file takes: as many names of this length as are accepted.
 TEST_F(StructureSection, RecordingHoldsTheDofsThatAreAccepted) {
-  for (const std::size_t length : {std::size_t{3}, std::size_t{12}, kDofNameLongest}) {
+  struct Case {
+    std::size_t length;
+    bool has_forces;
+    std::size_t at_least;
+  };
+  constexpr std::size_t kRecordsMax = 20;
+  for (const auto [length, has_forces, at_least] :
+       {Case{3, false, 170}, Case{12, false, 170}, Case{kDofNameLongest, false, 170}, Case{3, true, 170},
+        Case{kDofNameLongest, true, 150}}) {
     std::size_t accepted = 0;
     std::vector<std::string> names;
     for (const std::size_t count : {100U, 150U, 170U, 190U, 250U, 300U, 350U, 400U}) {
@@ -187,13 +195,15 @@ TEST_F(StructureSection, RecordingHoldsTheDofsThatAreAccepted) {
       for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::format("{:0{}}", i, length));
       config::Document tried = config::Document::parse("output: {degrees_of_freedom: [all]}", "limits");
       config::Section root = tried.root();
-      static_cast<void>(read_output(root, DofTable{names}, {}));
+      static_cast<void>(read_output(root, DofTable{names}, {}, has_forces));
       if (tried.has_errors()) break;
       accepted = count;
       const TemporaryDirectory directory;
-      EXPECT_NO_THROW((RunFileWriter{directory / "file.h5", {}, {Coordinator::steps_layout(names)}})) << count;
+      EXPECT_NO_THROW(
+          (RunFileWriter{directory / "file.h5", {}, {Coordinator::steps_layout(names, kRecordsMax, has_forces)}}))
+          << count;
     }
-    EXPECT_GE(accepted, 170U) << length;
+    EXPECT_GE(accepted, at_least) << length;
     EXPECT_LT(accepted, 400U) << length;
   }
 }

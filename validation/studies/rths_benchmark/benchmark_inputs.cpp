@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "core/config_error.hpp"
 
 namespace hybridtest::rths {

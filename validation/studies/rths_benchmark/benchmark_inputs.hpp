@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 #include "validation/studies/rths_benchmark/reference.hpp"
 
 namespace hybridtest::rths {

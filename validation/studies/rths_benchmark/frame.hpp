@@ -4,7 +4,7 @@
 #include <span>
 
 #include "compensation/transfer_system_model.hpp"
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 #include "validation/studies/rths_benchmark/constants.hpp"
 
 namespace hybridtest::rths {

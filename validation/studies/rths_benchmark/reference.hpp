@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 #include "validation/studies/rths_benchmark/constants.hpp"
 
 namespace hybridtest::rths {

@@ -5,7 +5,7 @@
 
 #include "compensation/force_compensator.hpp"
 #include "compensation/transfer_system_model.hpp"
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 #include "validation/studies/rths_benchmark/control_path.hpp"
 #include "validation/studies/rths_benchmark/criteria.hpp"
 #include "validation/studies/rths_benchmark/reference.hpp"

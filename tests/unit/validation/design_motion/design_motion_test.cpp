@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "coordinator/integrators/central_difference.hpp"
 #include "core/config_error.hpp"
 #include "validation/design_motion/baseline.hpp"

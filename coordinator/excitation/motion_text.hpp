@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 
 /// Lines, words, numbers and units of ground motion files, shared by the formats.
 namespace hybridtest::motion_text {
@@ -15,6 +15,9 @@ struct Line {
   std::string_view text;
   int number = 0;
 };
+
+/// Without the mark that some programs put before UTF-8 text.
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
 /// Splits at line feeds, at carriage returns before them, and at lone carriage returns.
 [[nodiscard]] std::vector<Line> split_lines(std::string_view text);

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/ground_motion/motion_text.hpp"
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/motion_text.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 
 namespace hybridtest {
 

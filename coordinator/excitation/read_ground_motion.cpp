@@ -1,10 +1,10 @@
-#include "coordinator/ground_motion/read_ground_motion.hpp"
+#include "coordinator/excitation/read_ground_motion.hpp"
 
 #include <cmath>
 
-#include "coordinator/ground_motion/at2_format.hpp"
-#include "coordinator/ground_motion/column_format.hpp"
-#include "coordinator/ground_motion/motion_text.hpp"
+#include "coordinator/excitation/at2_format.hpp"
+#include "coordinator/excitation/column_format.hpp"
+#include "coordinator/excitation/motion_text.hpp"
 #include "core/input_file.hpp"
 
 namespace hybridtest {
@@ -21,8 +21,7 @@ void check_options(const GroundMotionOptions& options, const std::string& name) 
 
 GroundMotion parse_ground_motion(std::string_view text, const std::string& name, const GroundMotionOptions& options) {
   check_options(options, name);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = motion_text::without_byte_order_mark(text);
   const auto lines = motion_text::split_lines(text);
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     motion_text::refuse(name, 1,

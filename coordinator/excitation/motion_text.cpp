@@ -1,4 +1,4 @@
-#include "coordinator/ground_motion/motion_text.hpp"
+#include "coordinator/excitation/motion_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -18,6 +18,11 @@ constexpr std::size_t kShownLengthMax = 60;
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
 }  // namespace
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
 
 std::vector<Line> split_lines(std::string_view text) {
   std::vector<Line> lines;

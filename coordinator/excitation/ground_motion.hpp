@@ -23,6 +23,7 @@ struct GroundMotion {
   /// The values at 0, step_s, 2 step_s … last_step step_s.
   /// @param step_s      positive. @param last_step   not negative.
   [[nodiscard]] std::vector<double> sampled(double step_s, std::int64_t last_step) const;
+  void multiply(double factor) noexcept;
 };
 
 }  // namespace hybridtest

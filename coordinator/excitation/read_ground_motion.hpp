@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "coordinator/ground_motion/ground_motion.hpp"
+#include "coordinator/excitation/ground_motion.hpp"
 #include "core/ground_motion_facts.hpp"
 
 namespace hybridtest {

@@ -1,4 +1,4 @@
-#include "coordinator/ground_motion/at2_format.hpp"
+#include "coordinator/excitation/at2_format.hpp"
 
 #include <algorithm>
 #include <cmath>
