@@ -24,6 +24,7 @@
 #include <stdexcept>
 
 #include "benchmarks/echo.hpp"
+#include "benchmarks/echo_payload.hpp"
 #include "benchmarks/peer_processes.hpp"
 #include "hybridtestPubSubTypes.h"
 
@@ -47,7 +48,7 @@ Qos quality() {
   qos.resource_limits().max_samples_per_instance = 16;
   qos.resource_limits().max_samples = 16 * kEchoPeers;
   qos.resource_limits().allocated_samples = 16 * kEchoPeers;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   qos.data_sharing().off();
   return qos;
 }
@@ -139,7 +140,7 @@ class Answerer : public dds::DataReaderListener {
 
  private:
   wire::DisplacementCommand command_;
-  wire::ForceMeasurement measurement_;
+  wire::ForceMeasurement measurement_ = echo_measurement_sample();
   dds::SampleInfo info_;
 };
 
@@ -234,7 +235,7 @@ std::vector<double> fast_dds_echo_us(const EchoSettings& settings) {
     ::usleep(10000);
   }
 
-  wire::DisplacementCommand command;
+  wire::DisplacementCommand command = echo_command_sample();
   std::vector<double> times_us;
   times_us.reserve(static_cast<std::size_t>(settings.samples));
   for (int i = 0; i < settings.warm_up + settings.samples; ++i) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "benchmarks/echo.hpp"
+#include "benchmarks/echo_payload.hpp"
 #include "benchmarks/peer_processes.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
@@ -30,7 +31,7 @@ void transport_echo_peer(const EchoSettings& settings, int index, int run) {
   const auto commands = transport->command_inbox(static_cast<SubstructureIndex>(index));
   const auto measurements = transport->measurement_outbox();
   DisplacementCommand command;
-  ForceMeasurement measurement;
+  ForceMeasurement measurement = echo_measurement();
   measurement.substructure = static_cast<SubstructureIndex>(index);
   while (true) {
     static_cast<void>(transport->waker().wait_until(Clock::time_point::max()));
@@ -59,9 +60,8 @@ std::vector<double> transport_echo_us(const EchoSettings& settings) {
     static_cast<void>(waker.wait_until(Clock::now() + std::chrono::milliseconds{100}));
   }
 
-  DisplacementCommand command;
+  DisplacementCommand command = echo_command();
   ForceMeasurement measurement;
-  command.point_count = 1;
   std::vector<double> times_us;
   times_us.reserve(static_cast<std::size_t>(settings.samples));
   for (int i = 0; i < settings.warm_up + settings.samples; ++i) {

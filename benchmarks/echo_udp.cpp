@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "benchmarks/echo.hpp"
+#include "benchmarks/echo_payload.hpp"
 #include "benchmarks/peer_processes.hpp"
 #include "hybridtest.h"
 
@@ -19,9 +20,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::size_t command_bytes() {
-  return wire::DisplacementCommand::getCdrSerializedSize(wire::DisplacementCommand{}) + 4;  // with encapsulation
+  return wire::DisplacementCommand::getCdrSerializedSize(echo_command_sample()) + 4;  // with encapsulation
 }
-std::size_t measurement_bytes() { return wire::ForceMeasurement::getCdrSerializedSize(wire::ForceMeasurement{}) + 4; }
+std::size_t measurement_bytes() { return wire::ForceMeasurement::getCdrSerializedSize(echo_measurement_sample()) + 4; }
 
 class LoopbackSocket {
  public:
