@@ -66,6 +66,7 @@ class DelayEstimator {
 
   /// The delay [s] of the whole loop.
   [[nodiscard]] double delay_s() const noexcept { return delay_s_; }
+  [[nodiscard]] const DelayLimits& limits() const noexcept { return limits_; }
   /// Back to what it was when new; the network latency is forgotten too.
   void reset() noexcept;
 
@@ -76,7 +77,6 @@ class DelayEstimator {
   /// What the estimator believes of the transfer system, network not included.
   void believe(double delay_s) noexcept { believed_s_ = delay_s; }
   [[nodiscard]] double believed_s() const noexcept { return believed_s_; }
-  [[nodiscard]] const DelayLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] double control_period_s() const noexcept { return control_period_s_; }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "core/config_error.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
+#include "launch/check_test.hpp"
 #include "launch/child_process.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
@@ -27,6 +28,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::filesystem::path directory;
   bool diagnose = false;
+  bool even_if_unstable = false;
   std::vector<std::string> remote;
   NetworkOptions network;
 };
@@ -79,6 +81,7 @@ int run(RunOptions options) {
   const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
   check_remote(options, scenario);
   if (options.diagnose) require_models(scenario);
+  require_stable_test(scenario, options.even_if_unstable);
   fast_dds::require_usable(options.network.settings());
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name);
   require_new_run(options.directory, kCoordinatorId);
@@ -123,6 +126,8 @@ void add_run_command(CLI::App& app, CommandAction& action) {
   command->add_option("--out", options->directory, "Run directory to create")->default_str("runs/<name>_<time>");
   command->add_flag("--diagnose", options->diagnose,
                     "After the test, diagnose every site against the `model` beside its rig; results in RUN/diagnosis");
+  command->add_flag("--even-if-unstable", options->even_if_unstable,
+                    "Run a test that `check` calls unstable although a rig of it is not simulated");
   command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->add_option("--remote", options->remote,
                       "Id of a substructure that you start on another machine; repeatable");

@@ -9,6 +9,7 @@
 #include "core/config_error.hpp"
 #include "core/event_text.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
+#include "launch/check_test.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
@@ -171,6 +172,7 @@ int simulate_scenario(SimulateOptions options) {
   const SimulationSettings settings = settings_from(options, scenario);
   require_simulable(scenario);
   if (options.diagnose) require_models(scenario);
+  require_stable_test(scenario, true);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);

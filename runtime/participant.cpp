@@ -30,25 +30,6 @@ CoordinatorSettings coordinator_settings(const Scenario& scenario) {
   return settings;
 }
 
-ControlLoopSettings loop_settings(const Scenario& scenario, const SubstructureScenario& substructure) {
-  ControlLoopSettings settings;
-  settings.mode = scenario.time.mode;
-  settings.dofs = static_cast<int>(substructure.interface.size());
-  settings.periods_per_step = substructure.site.periods_per_step;
-  settings.time_scale = scenario.time.time_scale;
-  settings.step_s = scenario.time.step_s * settings.time_scale;
-  const LoopScenario& loop = substructure.site.loop;
-  settings.limits = loop.limits;
-  settings.rules = loop.rules;
-  settings.tracking_window_s = loop.tracking_window_s;
-  settings.trajectory = loop.trajectory;
-  settings.ramp_in_s = loop.ramp_in_s;
-  settings.captures_zero_offsets = loop.captures_zero_offsets;
-  settings.returns_at_end = loop.returns_at_end;
-  settings.return_time_s = loop.return_time_s;
-  return settings;
-}
-
 }  // namespace
 
 Participant::Participant(const Scenario& scenario, std::string_view id, Role role,
@@ -104,7 +85,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
       reports_{kLoopQueue},
       signals_{1024},
       waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()} {
-  const ControlLoopSettings settings = loop_settings(scenario, substructure);
+  const ControlLoopSettings settings = control_loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
   rig_ = substructure.make_rig(control_period_s);
   if (!substructure.site.rig_tables.empty()) rig_->record_to(surroundings.sink);

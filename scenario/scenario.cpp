@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "compensation/no_force_compensation.hpp"
 #include "coordinator/preflight/step_stability.hpp"
 #include "core/config/section.hpp"
 #include "core/input_file.hpp"
@@ -167,11 +168,13 @@ std::vector<Reading> read_each(Section& section, std::string_view key, std::size
   return readings;
 }
 
-/// Of a site, beside its rig: checked before the test, used after it.
-void check_model(Section section, int dofs) {
+/// Of a site, beside its rig: checked before the test, used after it and, where the rig is elsewhere, in its place by
+/// the preflight.
+RigReading read_model_rig(Section section, int dofs) {
   if (section.has("type")) static_cast<void>(section.choice("type", {"simulated"}));
-  static_cast<void>(read_simulated_site(section, dofs, AbsentPart::ideal));
+  RigReading reading = read_simulated_rig(section, dofs, 0, AbsentPart::ideal);
   section.finish();
+  return reading;
 }
 
 std::vector<ForceDelay> force_delays(const RigReading& rig, std::span<const CompensatorReading> commands,
@@ -184,8 +187,31 @@ std::vector<ForceDelay> force_delays(const RigReading& rig, std::span<const Comp
     delay.remaining_s =
         delay.after_command_s - std::clamp(delay.after_command_s, forces[k].delay_s_min, forces[k].delay_s_max);
     delay.is_learnt = commands[k].learns_delay || forces[k].learns_delay;
+    if (forces[k].is_linear) continue;
+    delay.moved_s = delay.after_command_s - delay.remaining_s;
+    delay.further_s = forces[k].delay_s_max - delay.moved_s;
   }
   return delays;
+}
+
+SiteCompensation linear_compensation(const std::vector<CompensatorReading>& commands,
+                                     const std::vector<ForceCompensatorReading>& forces, double period_s,
+                                     LearntDelay learnt) {
+  const EstimateBound bound = learnt == LearntDelay::largest ? EstimateBound::largest : EstimateBound::smallest;
+  const bool is_initial = learnt == LearntDelay::initial;
+  SiteCompensation made;
+  for (const CompensatorReading& reading : commands) {
+    made.commands.push_back(is_initial || !reading.make_at ? reading.make(period_s, 0.0)
+                                                           : reading.make_at(period_s, bound));
+  }
+  for (const ForceCompensatorReading& reading : forces) {
+    if (!reading.is_linear) {
+      made.forces.push_back(std::make_unique<NoForceCompensation>());
+    } else {
+      made.forces.push_back(is_initial || !reading.make_at ? reading.make(period_s) : reading.make_at(period_s, bound));
+    }
+  }
+  return made;
 }
 
 TrackingExpectation tracking_expectation(const RigReading& rig, std::span<const ForceDelay> delays,
@@ -231,12 +257,17 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.rig_is_elsewhere = rig.is_elsewhere;
   site.rig_tables = std::move(rig.tables);
   site.specimen_stiffness_n_per_m = rig.stiffness_n_per_m;
+  site.rating = rig.rating;
+  site.displacement_noise_m = rig.displacement_noise_m;
+  site.force_noise_n = rig.force_noise_n;
   if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
     section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
   }
   substructure.make_rig = std::move(rig.make);
   site.has_model = section.has_optional("model");
-  if (site.has_model) check_model(section.section("model"), static_cast<int>(dofs));
+  if (site.has_model) {
+    substructure.make_model_rig = read_model_rig(section.section("model"), static_cast<int>(dofs)).make;
+  }
   site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
 
   const double site_step_s = time.step_s * time.time_scale;
@@ -251,6 +282,15 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
     for (const ForceCompensatorReading& compensator : forces) made.forces.push_back(compensator.make(period_s));
     return made;
   };
+  substructure.make_linear_rig = [make_linear = rig.make_linear, given = substructure.initial_stiffness_n_per_m](
+                                     double period_s, double displacement_m) {
+    return make_linear(period_s, displacement_m, given);
+  };
+  substructure.make_linear_compensation = [commands, forces](double period_s, LearntDelay learnt) {
+    return linear_compensation(commands, forces, period_s, learnt);
+  };
+  site.has_estimator = std::ranges::any_of(commands, [](const auto& reading) { return bool{reading.make_at}; }) ||
+                       std::ranges::any_of(forces, [](const auto& reading) { return bool{reading.make_at}; });
   site.loop = read_loop(section, time.mode, site_step_s,
                         tracking_expectation(rig, site.delays, site_step_s / site.periods_per_step));
   site.real_time = read_real_time(section, time.mode);
@@ -434,6 +474,25 @@ std::vector<std::string> Scenario::recorded_names() const {
 
 SubstructureIndex Scenario::index_of(const SubstructureScenario& substructure) const noexcept {
   return static_cast<SubstructureIndex>(&substructure - substructures.data());
+}
+
+ControlLoopSettings control_loop_settings(const Scenario& scenario, const SubstructureScenario& substructure) {
+  ControlLoopSettings settings;
+  settings.mode = scenario.time.mode;
+  settings.dofs = static_cast<int>(substructure.interface.size());
+  settings.periods_per_step = substructure.site.periods_per_step;
+  settings.time_scale = scenario.time.time_scale;
+  settings.step_s = scenario.time.step_s * settings.time_scale;
+  const LoopScenario& loop = substructure.site.loop;
+  settings.limits = loop.limits;
+  settings.rules = loop.rules;
+  settings.tracking_window_s = loop.tracking_window_s;
+  settings.trajectory = loop.trajectory;
+  settings.ramp_in_s = loop.ramp_in_s;
+  settings.captures_zero_offsets = loop.captures_zero_offsets;
+  settings.returns_at_end = loop.returns_at_end;
+  settings.return_time_s = loop.return_time_s;
+  return settings;
 }
 
 bool is_test_name(std::string_view name) noexcept { return name.size() <= kTestNameLongest && is_plain_name(name); }

@@ -18,6 +18,7 @@
 #include "mechanics/structure/linear_structure.hpp"
 #include "numerical_substructure/substructure_model.hpp"
 #include "scenario/catalogue/integrators.hpp"
+#include "scenario/catalogue/rig_rating.hpp"
 #include "scenario/excitation_section.hpp"
 #include "scenario/loop_sections.hpp"
 #include "scenario/structure_section.hpp"
@@ -46,7 +47,12 @@ struct ForceDelay {
   double after_command_s = 0.0;  // that the compensator of the command leaves; negative: ahead of the target
   double remaining_s = 0.0;      // that the compensator of the force leaves of it
   bool is_learnt = false;        // during the test: these are the values at its start
+  double moved_s = 0.0;          // what a force compensator that is not linear makes up for
+  double further_s = 0.0;        // how much more it could
 };
+
+/// A learnt delay, for the preflight.
+enum class LearntDelay { initial, smallest, largest };
 
 /// What an experimental substructure adds: the site.
 struct SiteScenario {
@@ -57,8 +63,12 @@ struct SiteScenario {
   std::string rig_type;
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
-  bool has_model = false;               // of the site, beside its rig: what a diagnosis of the run compares with
-  std::vector<ForceDelay> delays;       // one per interface degree of freedom
+  RigRating rating;
+  double displacement_noise_m = 0.0;  // standard deviations of the readings, where they are known
+  double force_noise_n = 0.0;         // likewise
+  bool has_model = false;             // of the site, beside its rig: what a diagnosis of the run compares with
+  std::vector<ForceDelay> delays;     // one per interface degree of freedom
+  bool has_estimator = false;         // a delay is estimated within bounds
   /// Stiffness of a simulated specimen over the interface, see RigReading. Empty when it is not known.
   std::function<Eigen::MatrixXd(double displacement_m)> specimen_stiffness_n_per_m;
 };
@@ -79,6 +89,11 @@ struct SubstructureScenario {
   /// @param control_period_s   in site time.
   std::function<std::unique_ptr<Rig>(double control_period_s)> make_rig;
   std::function<SiteCompensation(double control_period_s)> make_compensation;
+  std::function<std::unique_ptr<Rig>(double control_period_s)> make_model_rig;  // by `model`; empty without one
+  // The same for the preflight: linear, see RigReading::make_linear. Force compensators that are not linear are left
+  // out, see ForceDelay::moved_s.
+  std::function<std::unique_ptr<Rig>(double control_period_s, double displacement_m)> make_linear_rig;
+  std::function<SiteCompensation(double control_period_s, LearntDelay learnt)> make_linear_compensation;
 };
 
 /// A scenario file, read, checked and ready to be composed.
@@ -107,6 +122,10 @@ struct Scenario {
   [[nodiscard]] const SubstructureScenario* find(std::string_view id) const noexcept;
   [[nodiscard]] SubstructureIndex index_of(const SubstructureScenario& substructure) const noexcept;
 };
+
+/// Of a site, as the scenario says.
+[[nodiscard]] ControlLoopSettings control_loop_settings(const Scenario& scenario,
+                                                        const SubstructureScenario& substructure);
 
 /// Names of tests become names of folders and of DDS partitions.
 inline constexpr std::string_view kTestNameRule = "1 to 64 letters, digits, '_', '-' or '.', the first not a '.'";

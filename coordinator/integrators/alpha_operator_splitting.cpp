@@ -69,4 +69,10 @@ void AlphaOperatorSplitting::predict() noexcept {
   current_.acceleration_m_per_s2 = acceleration_;
 }
 
+void AlphaOperatorSplitting::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit(completed_.acceleration_m_per_s2);
+  visit(predicted_velocity_m_per_s_);
+}
+
 }  // namespace hybridtest

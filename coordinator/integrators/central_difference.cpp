@@ -56,4 +56,9 @@ void CentralDifference::advance(const Eigen::Ref<const Eigen::VectorXd>& restori
   difference_.swap(next_difference_);
 }
 
+void CentralDifference::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit(difference_);
+}
+
 }  // namespace hybridtest

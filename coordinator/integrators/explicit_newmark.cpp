@@ -38,4 +38,9 @@ void ExplicitNewmark::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring
   current_.acceleration_m_per_s2 = acceleration_;
 }
 
+void ExplicitNewmark::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit(half_step_velocity_);
+}
+
 }  // namespace hybridtest

@@ -113,4 +113,14 @@ void GeneralisedAlpha::place_command() noexcept {
       (displacement_before_m_ - 2.0 * begin_.displacement_m + end_.displacement_m) / (step_s_ * step_s_);
 }
 
+void GeneralisedAlpha::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit_motion(begin_, visit);
+  visit(balanced_);
+  visit(displacement_before_m_);
+  visit(predicted_displacement_m_);
+  visit(predicted_velocity_m_per_s_);
+  visit(constant_n_);
+}
+
 }  // namespace hybridtest

@@ -54,6 +54,7 @@ class GeneralisedAlpha final : public Integrator {
   [[nodiscard]] const MotionState& completed() const noexcept override { return completed_; }
   void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override;
+  void visit_state(const StateVisitor& visit) override;
 
  private:
   void start() noexcept;

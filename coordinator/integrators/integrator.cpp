@@ -20,6 +20,12 @@ Eigen::VectorXd given_or_zero(const Eigen::VectorXd& given, Eigen::Index size, c
 
 }  // namespace
 
+void visit_motion(MotionState& motion, const StateVisitor& visit) {
+  visit(motion.displacement_m);
+  visit(motion.velocity_m_per_s);
+  visit(motion.acceleration_m_per_s2);
+}
+
 MotionState starting_state(const InitialMotion& initial, Eigen::Index size) {
   return {.displacement_m = given_or_zero(initial.displacement_m, size, "displacement"),
           .velocity_m_per_s = given_or_zero(initial.velocity_m_per_s, size, "velocity"),

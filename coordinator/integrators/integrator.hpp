@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
 
 #include "mechanics/structure/linear_structure.hpp"
 
@@ -27,6 +28,8 @@ struct IntegratorNeeds {
   /// models, not specimens.
   bool tries_displacements = false;
 };
+
+using StateVisitor = std::function<void(Eigen::VectorXd& state)>;
 
 /// Time integration of M a + C v + r(u) = f, one restoring force per command.
 ///
@@ -55,6 +58,9 @@ class Integrator {
   /// @param restoring_force_n, applied_force_n   one entry per degree of freedom, of the current step.
   virtual void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                        const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept = 0;
+  /// Visits every vector that current() and later steps depend on, one entry per degree of freedom each, always in the
+  /// same order; all are zero at rest. With the same vectors, after as many steps, two integrators go on alike.
+  virtual void visit_state(const StateVisitor& visit) = 0;
 };
 
 /// Completes the current step: all its trials and its final command, whose force is the last one asked for.
@@ -73,6 +79,9 @@ struct InitialMotion {
   Eigen::VectorXd displacement_m;
   Eigen::VectorXd velocity_m_per_s;
 };
+
+/// Displacement, velocity and acceleration.
+void visit_motion(MotionState& motion, const StateVisitor& visit);
 
 /// The motion at step 0, its acceleration zero until the first restoring force is known.
 /// @throws ConfigError when sizes differ from `size` or numbers are not finite.

@@ -69,4 +69,10 @@ void KrAlpha::take_step() noexcept {
   mass_factor_.solve_in_place(completed_.acceleration_m_per_s2);
 }
 
+void KrAlpha::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit(memory_n_);
+  visit(late_velocity_m_per_s_);
+}
+
 }  // namespace hybridtest

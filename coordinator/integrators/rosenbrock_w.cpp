@@ -72,4 +72,12 @@ void RosenbrockW::second_stage() noexcept {
   current_.velocity_m_per_s = velocity_m_per_s_;
 }
 
+void RosenbrockW::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit(displacement_m_);
+  visit(velocity_m_per_s_);
+  visit(displacement_change_);
+  visit(velocity_change_);
+}
+
 }  // namespace hybridtest

@@ -115,8 +115,14 @@ CompensatorReading read_compensator(Section section) {
   const auto estimator_maker = read_optional_estimator(section);
   CompensatorReading reading = read_type(section, compensators(), "none");
   if (estimator_maker) {
-    reading.make = [make = reading.make, make_estimator = *estimator_maker](double period_s, double) {
+    const auto make = reading.make;
+    reading.make = [make, make_estimator = *estimator_maker](double period_s, double) {
       return std::make_unique<EstimatedDelayCompensation>(make(period_s, 0.0), make_estimator(period_s));
+    };
+    reading.make_at = [make, make_estimator = *estimator_maker](double period_s, EstimateBound bound) {
+      auto compensator = make(period_s, 0.0);
+      auto estimator = estimate_at(*make_estimator(period_s), bound, compensator.get(), period_s);
+      return std::make_unique<EstimatedDelayCompensation>(std::move(compensator), std::move(estimator));
     };
     reading.setting = {};
     reading.learns_delay = true;

@@ -6,6 +6,7 @@
 
 #include "compensation/compensator.hpp"
 #include "compensation/delay_setting.hpp"
+#include "scenario/catalogue/delay_estimators.hpp"
 #include "scenario/catalogue/part.hpp"
 
 namespace hybridtest {
@@ -16,6 +17,8 @@ struct CompensatorReading {
   double delay_s = 0.0;  // that it makes up for, at first
   DelaySetting setting = {};
   bool learns_delay = false;  // during the test
+  /// With an estimator: the same with its estimate at a bound. Empty without one.
+  std::function<std::unique_ptr<Compensator>(double control_period_s, EstimateBound bound)> make_at = {};
 };
 
 /// Every compensator on commands that a file can name.

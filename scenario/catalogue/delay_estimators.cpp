@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "compensation/delay_estimators/cross_correlation.hpp"
-#include "compensation/delay_estimators/fixed_delay.hpp"
 #include "compensation/delay_estimators/frequency_evaluation_index.hpp"
 #include "compensation/delay_estimators/recursive_least_squares.hpp"
 #include "compensation/delay_estimators/zero_crossing_slope.hpp"

@@ -1,5 +1,6 @@
 #include "scenario/catalogue/force_compensators.hpp"
 
+#include <type_traits>
 #include <utility>
 
 #include "compensation/estimated_delay_force_compensation.hpp"
@@ -44,7 +45,8 @@ PartType<ForceCompensatorReading> force_compensator(std::string name) {
     return ForceCompensatorReading{
         .make = [parameters](double period_s) { return std::make_unique<Part>(parameters, period_s); },
         .delay_s_min = range.low_s,
-        .delay_s_max = range.high_s};
+        .delay_s_max = range.high_s,
+        .is_linear = std::is_same_v<Part, PolynomialForce>};
   };
   return {std::move(name), read, describe<Part>};
 }
@@ -70,8 +72,14 @@ ForceCompensatorReading read_force_compensator(config::Section section) {
   const auto estimator_maker = read_optional_estimator(section);
   ForceCompensatorReading reading = read_type(section, force_compensators(), "none");
   if (!estimator_maker) return reading;
-  reading.make = [make = reading.make, make_estimator = *estimator_maker](double period_s) {
+  const auto make = reading.make;
+  reading.make = [make, make_estimator = *estimator_maker](double period_s) {
     return std::make_unique<EstimatedDelayForceCompensation>(make(period_s), make_estimator(period_s));
+  };
+  reading.make_at = [make, make_estimator = *estimator_maker](double period_s, EstimateBound bound) {
+    auto compensator = make(period_s);
+    auto estimator = estimate_at(*make_estimator(period_s), bound, compensator.get(), period_s);
+    return std::make_unique<EstimatedDelayForceCompensation>(std::move(compensator), std::move(estimator));
   };
   reading.learns_delay = true;
   return reading;

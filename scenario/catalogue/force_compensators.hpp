@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compensation/force_compensator.hpp"
+#include "scenario/catalogue/delay_estimators.hpp"
 #include "scenario/catalogue/part.hpp"
 
 namespace hybridtest {
@@ -15,6 +16,9 @@ struct ForceCompensatorReading {
   double delay_s_min = 0.0;
   double delay_s_max = 0.0;
   bool learns_delay = false;  // during the test
+  bool is_linear = true;      // false: it moves the force in time, as the displacements say
+  /// With an estimator: the same with its estimate at a bound. Empty without one.
+  std::function<std::unique_ptr<ForceCompensator>(double control_period_s, EstimateBound bound)> make_at = {};
 };
 
 /// Every compensator on forces that a file can name.

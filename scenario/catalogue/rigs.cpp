@@ -1,5 +1,6 @@
 #include "scenario/catalogue/rigs.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -13,8 +14,11 @@
 #include "experimental_site/geometry/rigid_beam.hpp"
 #include "experimental_site/geometry/transformed_rig.hpp"
 #include "experimental_site/rigs/replay_rig.hpp"
+#include "experimental_site/rigs/simulated_rig.hpp"
 #include "experimental_site/rigs/udp_port.hpp"
 #include "experimental_site/rigs/udp_rig.hpp"
+#include "plant/specimens/elastic_specimen.hpp"
+#include "plant/transfer_systems/delay.hpp"
 #include "scenario/catalogue/part.hpp"
 #include "scenario/catalogue/simulated_rig.hpp"
 #include "scenario/measurement_file.hpp"
@@ -66,6 +70,15 @@ RigReading read_replay_rig(Section& section, int actuators, const std::filesyste
   return reading;
 }
 
+/// Where the file says less than the rig's parts do.
+void narrow(Section& section, RigRating& rating) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  rating.displacement_m = std::min(rating.displacement_m, section.number("displacement_m", kPositive, kNone));
+  rating.velocity_m_per_s = std::min(rating.velocity_m_per_s, section.number("velocity_m_per_s", kPositive, kNone));
+  rating.force_n = std::min(rating.force_n, section.number("force_n", kPositive, kNone));
+  section.finish();
+}
+
 struct GeometryReading {
   Maker<SetupGeometry> make;
   int actuators = 0;
@@ -108,6 +121,25 @@ Eigen::MatrixXd stiffness_behind(const SetupGeometry& geometry, const Eigen::Mat
   return jacobian.transpose() * stiffness_n_per_m * jacobian;
 }
 
+/// Over the actuators, that of the degrees of freedom given; with more actuators than those, the smallest.
+Eigen::MatrixXd stiffness_of_actuators(const SetupGeometry& geometry, const Eigen::MatrixXd& stiffness_n_per_m) {
+  SiteMatrix jacobian{geometry.actuators(), geometry.dofs()};
+  geometry.derivative(SiteVector::Zero(geometry.dofs()), jacobian);
+  const Eigen::MatrixXd inverse = Eigen::MatrixXd{jacobian}.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd stiffness = inverse.transpose() * stiffness_n_per_m * inverse;
+  return 0.5 * (stiffness + stiffness.transpose());
+}
+
+/// A rig of which no more is known than how late it is.
+std::unique_ptr<Rig> late_rig(const std::vector<double>& delay_s, double period_s, const Eigen::MatrixXd& stiffness) {
+  std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
+  for (const double each_s : delay_s) {
+    transfer_systems.push_back(std::make_unique<Delay>(from_seconds(each_s), from_seconds(period_s)));
+  }
+  return std::make_unique<SimulatedRig>(std::move(transfer_systems), std::make_unique<ElasticSpecimen>(stiffness),
+                                        SensorNoise{}, from_seconds(period_s));
+}
+
 /// The rig, read in actuators, behind its geometry.
 RigReading behind(const GeometryReading& geometry, int dofs, RigReading rig) {
   // Each degree of freedom may hang on every actuator: the slowest counts.
@@ -118,6 +150,12 @@ RigReading behind(const GeometryReading& geometry, int dofs, RigReading rig) {
       return stiffness_behind(*geometry.make(), of_actuators(displacement_m));
     };
   }
+  rig.make_linear = [geometry, make_linear = std::move(rig.make_linear)](double period_s, double displacement_m,
+                                                                         const Eigen::MatrixXd& given) {
+    auto made = geometry.make();
+    auto actuators = make_linear(period_s, displacement_m, stiffness_of_actuators(*made, given));
+    return std::make_unique<TransformedRig>(std::move(actuators), std::move(made));
+  };
   rig.tables.push_back(TransformedRig::actuators_layout(geometry.actuators));
   rig.make = [geometry, make_rig = std::move(rig.make)](double period_s) {
     return std::make_unique<TransformedRig>(make_rig(period_s), geometry.make(), geometry.stroke_limit_m);
@@ -142,10 +180,18 @@ RigReading read_rig(Section section, int dofs, const std::filesystem::path& dire
   for (const RigType& type : types) names.push_back(type.name);
   const RigType& type = types[section.choice("type", names)];
 
+  std::optional<Section> rating = section.optional_section("rating");
   std::optional<GeometryReading> geometry;
   if (auto part = section.optional_section("geometry")) geometry = read_geometry(*part, dofs);
   RigReading reading = type.read(geometry ? geometry->actuators : dofs);
   reading.type = type.name;
+  if (geometry) reading.rating = {};  // of actuators, which the degrees of freedom are not
+  if (rating) narrow(*rating, reading.rating);
+  if (!reading.make_linear) {
+    reading.make_linear = [delay_s = reading.transfer_delay_s](double period_s, double, const Eigen::MatrixXd& given) {
+      return late_rig(delay_s, period_s, given);
+    };
+  }
   section.finish();
   return geometry ? behind(*geometry, dofs, std::move(reading)) : reading;
 }

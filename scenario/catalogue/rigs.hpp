@@ -10,6 +10,7 @@
 #include "core/config/section.hpp"
 #include "core/records.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "scenario/catalogue/rig_rating.hpp"
 
 namespace hybridtest {
 
@@ -21,8 +22,15 @@ struct RigReading {
   /// Stiffness over the actuators of a simulated specimen without its effects: the secant from rest to a displacement
   /// of this size at one actuator after the other. Empty when it is not known before the test.
   std::function<Eigen::MatrixXd(double displacement_m)> stiffness_n_per_m;
-  bool follows_commands = true;            // false: nothing there tracks a target
-  double silence_s_max = 0.0;              // for so long readings may fail to come without a fault
+  /// The same rig as a linear one without noise and effects, over the actuators: its transfer systems, and a specimen
+  /// of its own stiffness as above or, where that is not known, of the stiffness given.
+  std::function<std::unique_ptr<Rig>(double control_period_s, double displacement_m, const Eigen::MatrixXd& given)>
+      make_linear = {};
+  bool follows_commands = true;  // false: nothing there tracks a target
+  double silence_s_max = 0.0;    // for so long readings may fail to come without a fault
+  RigRating rating;
+  double displacement_noise_m = 0.0;       // standard deviations of the readings, where they are known
+  double force_noise_n = 0.0;              // likewise
   double displacement_resolution_m = 0.0;  // of coarse readings
   bool force_always_varies = true;         // false: a sound reading may be the same to the last bit during motion
   bool is_elsewhere = false;               // outside the process that makes it: not under simulated time

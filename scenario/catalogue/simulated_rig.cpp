@@ -3,6 +3,7 @@
 #include "scenario/catalogue/simulated_rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -34,6 +35,9 @@ void read_transfer_systems(Section& section, SimulatedSiteReading& site) {
     site.dofs[i].make_transfer_system = readings[i].make;
     site.dofs[i].removable_delay_s = readings[i].pure_delay_s;
     site.transfer_delay_s[i] = readings[i].delay_s;
+    site.rating.displacement_m = std::min(site.rating.displacement_m, readings[i].rating.displacement_m);
+    site.rating.velocity_m_per_s = std::min(site.rating.velocity_m_per_s, readings[i].rating.velocity_m_per_s);
+    site.rating.force_n = std::min(site.rating.force_n, readings[i].rating.force_n);
   }
 }
 
@@ -141,12 +145,15 @@ SimulatedSiteReading read_simulated_site(Section& section, int dofs, AbsentPart 
   return site;
 }
 
-RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_noise_stream) {
-  SimulatedSiteReading site = read_simulated_site(section, dofs, AbsentPart::refused);
+RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_noise_stream, AbsentPart absent) {
+  SimulatedSiteReading site = read_simulated_site(section, dofs, absent);
   site.dofs.front().noise.first_stream = first_noise_stream;
   RigReading reading;
   reading.type = "simulated";
   reading.transfer_delay_s = site.transfer_delay_s;
+  reading.rating = site.rating;
+  reading.displacement_noise_m = site.dofs.front().noise.displacement_noise_m;
+  reading.force_noise_n = site.dofs.front().noise.force_noise_n;
   reading.displacement_resolution_m = reading_step(site, EffectInterface::displacement_sensor);
   reading.force_always_varies = force_always_varies(site);
   if (has_whole_specimen(site)) {
@@ -154,6 +161,18 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
       return secant_stiffness(*make_specimen(site), displacement_m);
     };
   }
+  reading.make_linear = [site, own = reading.stiffness_n_per_m](double period_s, double displacement_m,
+                                                                const Eigen::MatrixXd& given) {
+    std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
+    for (const SiteModel& dof : site.dofs) {
+      transfer_systems.push_back(dof.make_transfer_system(period_s, delay_change_s(dof)));
+    }
+    Eigen::MatrixXd stiffness = own ? own(displacement_m) : given;
+    const double largest = stiffness.cwiseAbs().maxCoeff();
+    if (!(largest > 0.0 && std::isfinite(largest))) stiffness = given;
+    return std::make_unique<SimulatedRig>(std::move(transfer_systems), std::make_unique<ElasticSpecimen>(stiffness),
+                                          SensorNoise{}, from_seconds(period_s));
+  };
   reading.make = [site](double period_s) {
     std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
     std::vector<SimulatedRig::Effects> effects;

@@ -17,6 +17,7 @@ struct SimulatedSiteReading {
   std::vector<SiteModel> dofs;                                     // one per interface degree of freedom
   std::function<std::unique_ptr<Specimen>()> make_full_stiffness;  // of a specimen that couples them; else empty
   std::vector<double> transfer_delay_s;                            // at low frequency, of each actuator
+  RigRating rating;                                                // of the weakest actuator
 };
 
 /// What is meant where `transfer_system` or `specimen` are left out.
@@ -26,6 +27,7 @@ enum class AbsentPart { refused, ideal };
 
 /// The rest of a rig's section of `type: simulated`.
 /// @param first_noise_stream   two for each actuator from here on.
-[[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs, std::uint64_t first_noise_stream);
+[[nodiscard]] RigReading read_simulated_rig(config::Section& section, int dofs, std::uint64_t first_noise_stream,
+                                            AbsentPart absent = AbsentPart::refused);
 
 }  // namespace hybridtest

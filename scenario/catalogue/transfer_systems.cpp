@@ -58,7 +58,10 @@ TransferSystemReading read_servo_hydraulic(Section& section) {
   const double loop_s = p.piston_area_m2 / (p.proportional_gain_per_m * p.rated_flow_m3_per_s);
   const double rate_s = p.derivative_gain_s_per_m / p.proportional_gain_per_m;
   return {.make = [p](double period_s, double) { return std::make_unique<ServoHydraulic>(p, from_seconds(period_s)); },
-          .delay_s = std::max(0.0, loop_s - rate_s)};
+          .delay_s = std::max(0.0, loop_s - rate_s),
+          .rating = {.displacement_m = p.stroke_m,
+                     .velocity_m_per_s = p.rated_flow_m3_per_s / p.piston_area_m2,
+                     .force_n = p.supply_pressure_pa * p.piston_area_m2}};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "plant/transfer_systems/transfer_system.hpp"
 #include "scenario/catalogue/part.hpp"
+#include "scenario/catalogue/rig_rating.hpp"
 
 namespace hybridtest {
 
@@ -13,6 +14,7 @@ struct TransferSystemReading {
   std::function<std::unique_ptr<TransferSystem>(double period_s, double delay_change_s)> make;
   double delay_s = 0.0;       // at low frequency
   double pure_delay_s = 0.0;  // of it, without any lag
+  RigRating rating = {};      // of the actuator
 };
 
 /// Every transfer system that a file can name.

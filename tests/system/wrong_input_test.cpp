@@ -175,34 +175,6 @@ TEST_F(WrongInput, KeepsExistingRunDirectory) {
   EXPECT_EQ(text_of(recorded("run").file("coordinator")), before);
 }
 
-TEST_F(WrongInput, ShippedScenariosAreValid) {
-  for (const char* name :
-       {"two_storey_one_site", "two_storey_two_sites", "three_storey_base_isolated", "isolated_with_dampers"}) {
-    StartedProgram check = start_hybridtest({"check", shipped_scenario(name)}, "check");
-    EXPECT_THAT(check.wait(), Optional(kExitCompleted)) << check.standard_error();
-    EXPECT_THAT(check.standard_output(), AllOf(HasSubstr("critical delay"), HasSubstr("delay margin")));
-  }
-}
-
-TEST_F(WrongInput, CheckOfUnstableTestExitsWithTwo) {
-  const std::string scenario = shipped_scenario("two_storey_one_site");
-  const auto check = [&](const std::string& change) {
-    StartedProgram program = start_hybridtest({"check", scenario, "--set", change}, "check");
-    const auto code = program.wait();
-    return std::pair{code.value_or(-1), program.standard_output()};
-  };
-  const auto unstable = check("substructures[storey_1].compensator={type: none}");
-  EXPECT_EQ(unstable.first, kExitConfiguration);
-  EXPECT_THAT(unstable.second, HasSubstr("UNSTABLE: do not run this test with a specimen"));
-  const auto wrong_stiffness = check("substructures[storey_1].initial_stiffness_n_per_m=[[2.0]]");
-  EXPECT_EQ(wrong_stiffness.first, kExitConfiguration);
-  EXPECT_THAT(wrong_stiffness.second, AllOf(HasSubstr("WARNING: initial_stiffness_n_per_m is [[2]], but the simulated"),
-                                            Not(HasSubstr("stable at any delay"))));
-  const auto weak = check("excitation.scale=0.01");
-  EXPECT_EQ(weak.first, kExitCompleted) << "only warned of";
-  EXPECT_THAT(weak.second, HasSubstr("WARNING: the ground motion has a peak of"));
-}
-
 TEST_F(WrongInput, CheckAcceptsSiteFileAndListsItsErrors) {
   std::ofstream{directory() / "site.yaml"} << "specimen: {type: elastic, stiffness_n_per_m: 1.0e6}\n";
   StartedProgram check = start_hybridtest({"check", "site.yaml"}, "check");

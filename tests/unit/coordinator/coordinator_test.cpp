@@ -50,6 +50,9 @@ class CountingIntegrator final : public Integrator {
 
   int trials = 0;  // of each step
   int missing_after = -1;
+
+  void visit_state(const StateVisitor& visit) override { visit_motion(current_, visit); }
+
   double correction_m = 0.0;  // of the displacement once the force is known
   int advances = 0;
   int diverges_after = -1;

@@ -1,4 +1,4 @@
-#include "coordinator/preflight/critical_delay.hpp"
+#include "tests/support/critical_delay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "coordinator/integrators/central_difference.hpp"
-#include "coordinator/preflight/loop_transfer.hpp"
 #include "mechanics/structure/damping.hpp"
+#include "tests/support/loop_transfer.hpp"
 #include "tests/support/structures.hpp"
 
 namespace hybridtest {

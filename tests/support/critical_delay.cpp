@@ -1,4 +1,4 @@
-#include "coordinator/preflight/critical_delay.hpp"
+#include "tests/support/critical_delay.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "coordinator/preflight/loop_transfer.hpp"
+#include "tests/support/loop_transfer.hpp"
 #include "core/assert.hpp"
 
 namespace hybridtest {

@@ -3,22 +3,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "coordinator/preflight/coupled_loop.hpp"
 #include "coordinator/preflight/site_coupling.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
 
-/// Limit of stability of the coupled test.
-struct CriticalDelay {
-  double delay_s = 0.0;              // 0: unstable or undamped without any delay; infinite: stable with any delay
-  double frequency_rad_per_s = 0.0;  // of the motion at that limit; 0 where there is none
-};
-
-/// Largest structure for which it is computed: the eigenvalues of a full matrix of twice the size are needed, which
-/// takes some ten seconds then.
-inline constexpr Eigen::Index kCriticalDelaySizeMax = 300;
-
-/// Critical delay: the pure delay of the force of one site at which the coupled linear test becomes unstable.
+/// The reference of the preflight's figures, found by another method and without a step. Critical delay: the pure delay of the force of one site at which the coupled linear test becomes unstable.
 ///
 /// The equation of motion with the force of site s delayed by tau has the characteristic equation
 ///

@@ -1,4 +1,4 @@
-#include "coordinator/preflight/loop_transfer.hpp"
+#include "tests/support/loop_transfer.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
