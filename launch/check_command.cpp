@@ -2,7 +2,7 @@
 
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
-#include "launch/check_test.hpp"
+#include "launch/check_lines.hpp"
 #include "launch/commands.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/site_model_file.hpp"

@@ -6,7 +6,7 @@
 
 #include "core/config_error.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
-#include "launch/check_test.hpp"
+#include "launch/check_lines.hpp"
 #include "launch/child_process.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"

@@ -9,7 +9,7 @@
 #include "core/config_error.hpp"
 #include "core/event_text.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
-#include "launch/check_test.hpp"
+#include "launch/check_lines.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"

@@ -93,14 +93,15 @@ class StabilityAnalysis {
     loop_.emplace(std::move(structure), answers_);
   }
 
-  void run() {
-    for (std::size_t i = 0; i < test_.sites.size(); ++i) judge(i);
+  void run(StabilityFigures figures) {
+    for (std::size_t i = 0; i < test_.sites.size(); ++i) test_.sites[i].grows = grows_with(i, answers_[i]);
     std::vector<SiteAnswer> together = answers_;
     for (std::size_t i = 0; i < together.size(); ++i) {
       if (test_.sites[i].delay.is_learnt && test_.sites[i].grows) together[i] = prompt_[i];
     }
     loop_->set_answers(together);
     test_.grows = grows();
+    if (figures == StabilityFigures::verdict) return;
     const std::vector<bool> all(together.size(), true);
     test_.further = in_site_time(critical(all));
     for (std::size_t i = 0; i < together.size(); ++i) {
@@ -113,6 +114,7 @@ class StabilityAnalysis {
       if (site.further.delay_s > 0.0) site.further.delay_s += could_s;
     }
     noise();
+    for (std::size_t i = 0; i < test_.sites.size(); ++i) judge_alone(i);
   }
 
  private:
@@ -120,10 +122,14 @@ class StabilityAnalysis {
     return site_answer(scenario_, *site.site, learnt, push_m(*site.site));
   }
   [[nodiscard]] bool grows() { return loop_->growing_motions(std::vector<double>(prompt_.size(), 0.0)) > 0; }
-  [[nodiscard]] bool grows_with(std::size_t i, SiteAnswer answer) {
+  /// The other sites in time.
+  void place_alone(std::size_t i, SiteAnswer answer) {
     std::vector<SiteAnswer> answers = prompt_;
     answers[i] = std::move(answer);
     loop_->set_answers(std::move(answers));
+  }
+  [[nodiscard]] bool grows_with(std::size_t i, SiteAnswer answer) {
+    place_alone(i, std::move(answer));
     return grows();
   }
   [[nodiscard]] CriticalDelay critical(const std::vector<bool>& late) {
@@ -134,13 +140,12 @@ class StabilityAnalysis {
     return critical;
   }
 
-  void judge(std::size_t i) {
+  void judge_alone(std::size_t i) {
     SiteStability& site = test_.sites[i];
     std::vector<bool> late(prompt_.size(), false);
     late[i] = true;
-    static_cast<void>(grows_with(i, bare_answer(scenario_, *site.site, coupled_site(site).stiffness_n_per_m)));
+    place_alone(i, bare_answer(scenario_, *site.site, coupled_site(site).stiffness_n_per_m));
     site.critical = in_site_time(critical(late));
-    site.grows = grows_with(i, answers_[i]);
     if (!site.site->site.has_estimator) return;
     site.grows_at_smallest_estimate = grows_with(i, answer(site, LearntDelay::smallest));
     site.grows_at_largest_estimate = grows_with(i, answer(site, LearntDelay::largest));
@@ -181,7 +186,7 @@ bool TestStability::has_wrong_stiffness() const noexcept {
                              [](const SiteStability& site) { return site.stiffness_error > kStiffnessErrorMax; });
 }
 
-TestStability test_stability(const Scenario& scenario, const VibrationModes& modes) {
+TestStability test_stability(const Scenario& scenario, const VibrationModes& modes, StabilityFigures figures) {
   TestStability test;
   std::vector<CoupledSite> coupled;
   for (const SubstructureScenario& substructure : scenario.substructures) {
@@ -201,7 +206,7 @@ TestStability test_stability(const Scenario& scenario, const VibrationModes& mod
   for (std::size_t i = 0; i < test.sites.size(); ++i) {
     test.sites[i].stiffness_share = stiffness_share_by_mode(structure, modes_met, coupled[i]);
   }
-  if (!test.sites.empty()) StabilityAnalysis{scenario, modes, test}.run();
+  if (!test.sites.empty()) StabilityAnalysis{scenario, modes, test}.run(figures);
   return test;
 }
 

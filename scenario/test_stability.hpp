@@ -62,11 +62,15 @@ inline constexpr double kStiffnessTolerance = 0.1;
 /// By more than a factor of two the number is plainly wrong.
 inline constexpr double kStiffnessErrorMax = 0.5;
 
+/// Before a test its verdict alone is needed, which takes a tenth of the time.
+enum class StabilityFigures { verdict, all };
+
 /// The test is taken as a discrete linear system (CoupledLoop): the integrator at its step, the control loop of each
 /// site as it is (site_answer()), linear specimens. A simulated specimen has its secant stiffness from rest to a
 /// thousandth of the displacement limit, so that a friction that slides before that does not count as a stiff spring.
 /// One without force there (a gap) counts as not known and has `initial_stiffness_n_per_m`, as one elsewhere has.
 /// @param modes   of the scenario's structure; those that are not there are left out of the figures.
-[[nodiscard]] TestStability test_stability(const Scenario& scenario, const VibrationModes& modes);
+[[nodiscard]] TestStability test_stability(const Scenario& scenario, const VibrationModes& modes,
+                                           StabilityFigures figures = StabilityFigures::all);
 
 }  // namespace hybridtest

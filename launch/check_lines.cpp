@@ -1,4 +1,4 @@
-#include "launch/check_test.hpp"
+#include "launch/check_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -151,8 +151,9 @@ void judge_coupled_test(Judged& judged) {
 }
 
 void judge_stiffness(Judged& judged, const SiteStability& site) {
-  std::string found = "stiffness share of modes 1 to " + std::to_string(site.stiffness_share.size()) + ":";
-  for (const double share : site.stiffness_share) found += fmt::format(" {:.1f} %", 100.0 * share);
+  std::string found;
+  for (const double share : site.stiffness_share) found += fmt::format("{:.1f} % ", 100.0 * share);
+  found += fmt::format("of modes 1 to {}", site.stiffness_share.size());
   judged.report.add(CheckVerdict::pass, "stiffness share", found);
   if (site.stiffness_error <= kStiffnessTolerance) return;
   judged.report.add(
@@ -361,7 +362,8 @@ void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out) 
 }
 
 void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
-  const TestStability stability = test_stability(scenario, vibration_modes(scenario.structure));
+  const TestStability stability =
+      test_stability(scenario, vibration_modes(scenario.structure), StabilityFigures::verdict);
   if (!stability.is_unstable(scenario.integrator_step_s)) return;
   // Without a delay given, that of a rig elsewhere is not known, and the figures are not its own.
   const bool has_real_rig = std::ranges::any_of(stability.sites, [](const SiteStability& each) {
