@@ -9,6 +9,7 @@
 
 #include "compensation/no_compensation.hpp"
 #include "compensation/no_force_compensation.hpp"
+#include "core/config_error.hpp"
 #include "core/ring_port.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
 #include "plant/specimens/elastic_specimen.hpp"
@@ -25,6 +26,8 @@ constexpr int kWarmUpPeriods = 40'001;
 constexpr double kOver = 1e-7;
 constexpr double kSilence_s = 0.25;
 constexpr int kLongestPeriods = 200'000;
+/// Of the loop for one step; each runs some hundred control periods.
+constexpr int kMostTurns = 100'000;
 
 /// No limit acts.
 ControlLoopSettings unlimited(ControlLoopSettings settings) {
@@ -113,13 +116,17 @@ class LoopProbe {
     point.model_time_s = static_cast<double>(step_++) * settings_.step_s / settings_.time_scale;
     requests_.send(loop_request::Target{point});
     LoopReport report;
-    // The target of step 0 is where the path is: it takes one control period.
-    do static_cast<void>(loop_.advance(Instant{}));
-    while (!take_measurement(report));
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+      static_cast<void>(loop_.advance(Instant{}));
+      if (take_measurement(report)) return;
+    }
+    throw ConfigError{
+        "the control loop of a site stops answering while the preflight moves it by hundredths of a millimetre: its "
+        "transfer system or a compensator grows beyond all bounds by itself; check their parameters"};
   }
   bool take_measurement(LoopReport& report) {
     bool found = false;
-    while (reports_.take(report)) found = found || !std::holds_alternative<loop_report::Armed>(report);
+    while (reports_.take(report)) found = found || std::holds_alternative<StepMeasurement>(report);
     return found;
   }
 
