@@ -58,6 +58,11 @@ void ImplicitNewmark::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring
   }
 }
 
+void ImplicitNewmark::visit_state(const StateVisitor& visit) {
+  visit_motion(current_, visit);
+  visit_motion(completed_, visit);
+}
+
 void ImplicitNewmark::start() noexcept {
   completed_ = current_;
   unbalance_n_.noalias() -= damping_ * current_.velocity_m_per_s;

@@ -57,6 +57,8 @@ class ImplicitNewmark final : public Integrator {
   [[nodiscard]] double missing_m() const noexcept override { return missing_m_; }
   void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override;
+  /// At the first trial of a step.
+  void visit_state(const StateVisitor& visit) override;
 
  private:
   void start() noexcept;

@@ -68,6 +68,9 @@ Eigen::VectorXd commanded(const Integrator& integrator) {
 std::vector<Stage> stages_of(Integrator& integrator, const LinearStructure& structure, int commands_per_step) {
   const Eigen::Index size = structure.size();
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(size);
+  const auto known_n = [&](const MotionState& command) -> Eigen::VectorXd {
+    return structure.initial_stiffness_n_per_m * command.displacement_m;
+  };
   integrator.advance(none, none);  // the start, which differs from all other steps
   StatesOf states{integrator};
   const Eigen::Index count = states.size();
@@ -78,14 +81,19 @@ std::vector<Stage> stages_of(Integrator& integrator, const LinearStructure& stru
     for (Stage& stage : stages) {
       states.set_unit(entry);
       stage.output.col(entry) = commanded(integrator);
-      integrator.advance(structure.initial_stiffness_n_per_m * integrator.current().displacement_m, none);
+      complete_step(integrator, known_n, none);
       stage.transition.col(entry) = states.read();
     }
   }
   for (Eigen::Index coordinate = 0; coordinate < size; ++coordinate) {
     for (Stage& stage : stages) {
       states.set_zero();
-      integrator.advance(Eigen::VectorXd::Unit(size, coordinate), none);
+      complete_step(
+          integrator,
+          [&](const MotionState& command) -> Eigen::VectorXd {
+            return known_n(command) + Eigen::VectorXd::Unit(size, coordinate);
+          },
+          none);
       stage.input.col(coordinate) = states.read();
     }
   }
