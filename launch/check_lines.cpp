@@ -11,6 +11,7 @@
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/check_policy.hpp"
+#include "launch/excitation_text.hpp"
 #include "launch/predicted_peaks.hpp"
 #include "mechanics/structure/damping.hpp"
 #include "scenario/site_answer.hpp"
@@ -43,10 +44,12 @@ std::string written(const Eigen::MatrixXd& matrix) {
   return "[" + text + "]";
 }
 
-void judge_ground_motion(const Scenario& scenario, CheckReport& report) {
-  report.begin("ground motion " + scenario.ground_motion_text);
-  const std::string warning = ground_motion_warning(scenario.ground_motion);
-  report.add(caution_if(!warning.empty()), "record", ground_motion_text(scenario.ground_motion), warning);
+void judge_ground_motions(const Scenario& scenario, CheckReport& report) {
+  report.begin("excitation");
+  for (const GroundRecord& record : scenario.excitation.records) {
+    const std::string warning = ground_motion_warning(record.facts);
+    report.add(caution_if(!warning.empty()), "record", record.text + ": " + ground_motion_text(record.facts), warning);
+  }
 }
 
 /// A delay takes share * w * tau / 2 of the damping ratio of a mode (Horiuchi et al., 1999: -k tau / (2 m w)).
@@ -322,9 +325,10 @@ void judge_peak(CheckReport& report, const std::string& subject, double peak, do
 }  // namespace
 
 TestStability check_stability(const Scenario& scenario, CheckReport& report, std::FILE* out) {
-  judge_ground_motion(scenario, report);
-  print(report, out);
   const VibrationModes modes = vibration_modes(scenario.structure);
+  if (out != nullptr) fmt::print(out, "{}", excitation_text(scenario, modes));
+  judge_ground_motions(scenario, report);
+  if (!scenario.excitation.records.empty()) print(report, out);
   TestStability stability = test_stability(scenario, modes);
   Judged judged{scenario, modes, stability, damping_ratios(scenario.structure, modes), report};
   judge_modes(judged);
