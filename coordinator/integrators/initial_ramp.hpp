@@ -50,6 +50,8 @@ class InitialRamp final : public Integrator {
   [[nodiscard]] double missing_m() const noexcept override { return is_released() ? method_->missing_m() : 0.0; }
   void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
                const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept override;
+  /// That of the method; what is prescribed follows from the number of steps.
+  void visit_state(const StateVisitor& visit) override { method_->visit_state(visit); }
 
  private:
   [[nodiscard]] bool is_released() const noexcept { return step_ >= steps_.ramp + steps_.hold; }
