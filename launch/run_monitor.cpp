@@ -50,6 +50,7 @@ void RunMonitor::listen(Instant now) {
   Event event;
   while (events_->take(event)) {
     progress_.print(event);
+    if (event.code == EventCode::test_stopped && event.source == ParticipantId{kCoordinatorId}) test_was_ended_ = true;
     if (event.severity == Severity::fault || event.code == EventCode::test_stopped) telling_events_.push_back(event);
   }
 }
@@ -74,7 +75,7 @@ void RunMonitor::note_ends() {
   for (const auto& child : children_) {
     if (child->is_running()) continue;
     if (std::ranges::find(ends_, child->id(), &ProcessEnd::participant) != ends_.end()) continue;
-    const bool was_asked = stop_was_asked_ || !ends_.empty();
+    const bool was_asked = stop_was_asked_ || test_was_ended_ || !ends_.empty();
     ends_.push_back({.participant = child->id(),
                      .exit_code = *child->exit_code(),
                      .signal = child->signal(),

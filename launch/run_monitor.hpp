@@ -52,6 +52,7 @@ class RunMonitor final : public Node {
   bool is_armed_ = false;     // something may have moved
   bool has_started_ = false;
   bool stop_was_asked_ = false;
+  bool test_was_ended_ = false;  // by the coordinator, which may leave after the others
   bool is_done_ = false;
 };
 

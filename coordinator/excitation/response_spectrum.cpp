@@ -58,7 +58,10 @@ class OscillatorStep {
 }  // namespace
 
 SpectrumOrdinate spectrum_ordinate(const GroundMotion& motion, double period_s, double damping_ratio) {
-  const std::vector<double>& ground = motion.acceleration_m_per_s2;
+  std::span<const double> ground = motion.acceleration_m_per_s2;
+  // A long test after a short motion costs nothing: the free vibration is looked at below.
+  while (ground.size() > 1 && ground[ground.size() - 1] == 0.0 && ground[ground.size() - 2] == 0.0)
+    ground = ground.first(ground.size() - 1);
   const double omega = 2.0 * std::numbers::pi / period_s;
   const int parts = std::max(1, static_cast<int>(std::ceil(kStepsPerPeriod * motion.dt_s / period_s)));
   const double step_s = motion.dt_s / parts;

@@ -34,6 +34,15 @@ TEST(ResponseSpectrum, RectangularPulseFollowsClosedForm) {
   }
 }
 
+TEST(ResponseSpectrum, LongTestAfterTheMotionChangesNothing) {
+  GroundMotion pulse{.dt_s = 0.01, .start_s = 0.0, .acceleration_m_per_s2 = {0.0, 2.0, -1.0, 0.0}};
+  const SpectrumOrdinate alone = spectrum_ordinate(pulse, 3.0, 0.05);
+  pulse.acceleration_m_per_s2.resize(5000, 0.0);
+  const SpectrumOrdinate followed = spectrum_ordinate(pulse, 3.0, 0.05);
+  EXPECT_EQ(followed.displacement_m, alone.displacement_m);
+  EXPECT_EQ(followed.velocity_m_per_s, alone.velocity_m_per_s);
+}
+
 TEST(ResponseSpectrum, ResonanceReachesSteadyState) {
   constexpr double kPeriod_s = 0.8;
   constexpr double kRatio = 0.05;
