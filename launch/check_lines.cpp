@@ -365,23 +365,37 @@ void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out) 
   print(report, out);
 }
 
-void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
+namespace {
+
+/// In words; empty for a stable test.
+std::string instability(const Scenario& scenario) try {
   const TestStability stability =
       test_stability(scenario, vibration_modes(scenario.structure), StabilityFigures::verdict);
-  if (!stability.is_unstable(scenario.integrator_step_s)) return;
-  // Without a delay given, that of a rig elsewhere is not known, and the figures are not its own.
-  const bool has_real_rig = std::ranges::any_of(stability.sites, [](const SiteStability& each) {
-    return each.site->site.rig_is_elsewhere && each.delay.transfer_s > 0.0;
+  if (!stability.is_unstable(scenario.integrator_step_s)) return {};
+  std::string who;
+  for (const SiteStability& site : stability.sites) {
+    if (site.is_unstable()) who += (who.empty() ? "" : ", ") + site.site->id;
+  }
+  if (who.empty()) who = "all sites together";
+  return "the coupled test is UNSTABLE (" + who + "): a motion will grow until an interlock ends it";
+} catch (const ConfigError& error) {  // of the specimens in place of the stiffness that is given for them
+  return error.what();
+}
+
+/// Without a delay given, that of a rig elsewhere is not known, and the figures are not its own.
+bool has_known_rig_elsewhere(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.substructures, [](const SubstructureScenario& each) {
+    return each.site.rig_is_elsewhere &&
+           std::ranges::any_of(each.site.delays, [](const ForceDelay& delay) { return delay.transfer_s > 0.0; });
   });
-  const std::string who = [&] {
-    std::string ids;
-    for (const SiteStability& site : stability.sites) {
-      if (site.is_unstable()) ids += (ids.empty() ? "" : ", ") + site.site->id;
-    }
-    return ids.empty() ? std::string{"all sites together"} : ids;
-  }();
-  const std::string found = "the coupled test is UNSTABLE (" + who + "): a motion will grow until an interlock ends it";
-  if (has_real_rig && !even_if_unstable) {
+}
+
+}  // namespace
+
+void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
+  const std::string found = instability(scenario);
+  if (found.empty()) return;
+  if (!even_if_unstable && has_known_rig_elsewhere(scenario)) {
     throw ConfigError{scenario.file.string() + ": " + found + ". `hybridtest check " + scenario.file.string() +
                       "` says what to change; --even-if-unstable runs it all the same"};
   }
