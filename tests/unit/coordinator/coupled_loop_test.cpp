@@ -140,7 +140,7 @@ TEST(CoupledLoop, StaticDeflectionsStandForTheModesLeftOut) {
   lowest.frequency_rad_per_s.conservativeResize(kKept);
   lowest.shapes.conservativeResize(Eigen::NoChange, kKept);
   const std::vector<CoupledSite> sites{site_at(InterfaceMap{120, {{0}}}, 4.0e8)};
-  const auto& method = test::explicit_methods()[0];
+  const auto method = test::explicit_methods()[0];
   CoupledLoop whole = loop_of(structure, all, sites, method, 2e-3);
   CoupledLoop reduced = loop_of(structure, lowest, sites, method, 2e-3);
   const double reference_s = whole.critical_delay({true}, 0.5).delay_s;
