@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,7 +125,7 @@ TEST_F(ExcitationTest, TwoDirectionsAreTheSumOfEachAlone) {
   const std::string a = "{ground_motion: a.txt, influence: {first: 1.0}}";
   const std::string b = "{ground_motion: b.txt, influence: {second: 1.0}, start_s: 0.3}";
   for (const char* dof : {"first", "second"}) {
-    const auto both = displacement_m(coupled("{records: [" + a + ", " + b + "]}", 4.0), dof);
+    const auto both = displacement_m(coupled(fmt::format("{{records: [{}, {}]}}", a, b), 4.0), dof);
     auto sum = displacement_m(coupled(a, 4.0), dof);
     const auto other = displacement_m(coupled(b, 4.0), dof);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other[i];

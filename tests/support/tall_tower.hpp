@@ -39,7 +39,7 @@ inline std::filesystem::path write_scenario(const std::filesystem::path& directo
   std::string laws;
   for (int storey = 0; storey < storeys; ++storey) laws += storey == 0 ? "1.0e8" : ", 1.0e8";
   std::ofstream{directory / "motion.csv"} << "time_s,acceleration_m_per_s2\n0,0\n0.05,1\n0.1,0\n0.15,0\n";
-  const std::filesystem::path file = directory / (stiffness + ".yaml");
+  std::filesystem::path file = directory / (stiffness + ".yaml");
   std::ofstream{file} << "schema: hybridtest/1\nname: tower\n"
                          "time: {mode: lockstep, step_s: 0.002, duration_s: 1.0}\n"
                          "excitation: {ground_motion: motion.csv}\n"
