@@ -58,8 +58,8 @@ class NumericalNode final : public Node {
   StopReason requested_stop_ = StopReason::none;
   CommandPoint last_point_;  // the last one answered
   std::uint16_t last_iteration_ = 0;
-  Step last_step_ = kNoStep;  // the last one whose state the model has
-  bool is_tried_ = false;     // the model holds a trial
+  Step last_step_ = kNoStep;     // the last one whose state the model has
+  bool is_tried_ = false;        // the model holds a trial
   DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
   InterfaceVector force_n_;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "tests/support/loop_transfer.hpp"
 #include "core/assert.hpp"
+#include "tests/support/loop_transfer.hpp"
 
 namespace hybridtest {
 namespace {

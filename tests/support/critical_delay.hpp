@@ -9,7 +9,8 @@
 
 namespace hybridtest {
 
-/// The reference of the preflight's figures, found by another method and without a step. Critical delay: the pure delay of the force of one site at which the coupled linear test becomes unstable.
+/// The reference of the preflight's figures, found by another method and without a step. Critical delay: the pure delay
+/// of the force of one site at which the coupled linear test becomes unstable.
 ///
 /// The equation of motion with the force of site s delayed by tau has the characteristic equation
 ///
