@@ -155,8 +155,8 @@ class Draw {
 };
 
 bool same(const InterfaceVector& a, const InterfaceVector& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  if (a.size() != b.size() || a.size() == 0) return a.size() == b.size();
+  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 template <class Message>
