@@ -32,17 +32,17 @@ constexpr double kUnanswered = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
+Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSource> source, Presence& presence,
                          CoordinatorPorts ports, CoordinatorRecord record)
     : settings_{std::move(settings)},
-      integrator_{std::move(integrator)},
+      source_{std::move(source)},
       presence_{presence},
       ports_{ports},
       record_{record},
       ledger_{settings_.substructures.size()},
       commands_(settings_.substructures.size()),
-      restoring_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())},
-      applied_force_n_{Eigen::VectorXd::Zero(integrator_->current().displacement_m.size())} {
+      restoring_force_n_{Eigen::VectorXd::Zero(source_->current().displacement_m.size())},
+      applied_force_n_{Eigen::VectorXd::Zero(source_->current().displacement_m.size())} {
   HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSubstructures);
   HYBRIDTEST_ASSERT(settings_.load.covers(settings_.last_step, restoring_force_n_.size()));
   HYBRIDTEST_ASSERT(settings_.stiffness_n_per_m.size() == 0 ||
@@ -147,6 +147,8 @@ void Coordinator::settle(Instant now) noexcept {
 }
 
 void Coordinator::assemble(Instant now) noexcept {
+  const bool has_source = source_->awaited(now).empty();
+  tell_events(now);
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     if (peer == nullptr || peer->status.state != LifecycleState::refused) continue;
@@ -154,7 +156,7 @@ void Coordinator::assemble(Instant now) noexcept {
     begin_stop(now, StopReason::refused, substructure.id);
     return;
   }
-  if (everyone_is(LifecycleState::ready)) {
+  if (everyone_is(LifecycleState::ready) && has_source) {
     for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
       ledger_.bind(static_cast<SubstructureIndex>(i),
                    presence_.find(settings_.substructures[i].id)->status.incarnation);
@@ -194,12 +196,12 @@ void Coordinator::start(Instant now) noexcept {
   started_ = now;
   step_completed_ = now;
   step_due_ = now;
-  open_command(now);
 }
 
 void Coordinator::run(Instant now) noexcept {
   watch_participants(now);
   while (phase_ == Phase::running) {
+    if (!command_is_open_ && !open_next(now)) return;
     if (!command_is_sent_) {
       if (is_paused_ || now < step_due_) return;
       for (std::size_t i = 0; i < commands_.size(); ++i) send_command(static_cast<SubstructureIndex>(i), now);
@@ -263,6 +265,13 @@ void Coordinator::watch_participants(Instant now) noexcept {
       begin_stop(now, StopReason::participant_lost, slow->id);
       return;
     }
+    // Nor is it where the program that leads has not asked for the next force.
+    if ((peer->status.faults | kRecording) == (FaultFlags::command_age | kRecording) && phase_ == Phase::running &&
+        !command_is_open_) {
+      report(now, Severity::fault, EventCode::opensees_silent, {}, {to_seconds(now - step_completed_), 0.0});
+      begin_stop(now, StopReason::opensees_lost, kOpenSeesId);
+      return;
+    }
     if (has_other_fault || is_leaving) {
       begin_stop(now, has_other_fault ? StopReason::interlock : StopReason::interrupted, substructure.id);
       return;
@@ -293,23 +302,53 @@ void Coordinator::watch_pace(Instant now) noexcept {
          {taken_s, step_s});
 }
 
+void Coordinator::tell_events(Instant now) noexcept {
+  while (const std::optional<LeadEvent> event = source_->take_event()) {
+    report(now, Severity::warning, event->code, event->subject, event->values);
+  }
+}
+
+bool Coordinator::open_next(Instant now) noexcept {
+  const NextMotion next = source_->next(now);
+  tell_events(now);
+  switch (next) {
+    case NextMotion::command: break;
+    case NextMotion::none: record_step(now); return false;
+    case NextMotion::end: {
+      const LeadEnd end = source_->end();
+      const LeadEvent& event = end.event;
+      if (event.code != EventCode::none) report(now, Severity::fault, event.code, event.subject, event.values);
+      begin_stop(now, end.reason, end.reason == StopReason::completed ? ParticipantId{} : ParticipantId{kOpenSeesId});
+      return false;
+    }
+  }
+  if (!source_->current().displacement_m.allFinite()) {
+    presence_.raise(FaultFlags::not_finite);
+    begin_stop(now, StopReason::not_finite, kCoordinatorId);
+    return false;
+  }
+  open_command(now);
+  return true;
+}
+
 void Coordinator::open_command(Instant now) noexcept {
-  const MotionState& current = integrator_->current();
+  const MotionState& current = source_->current();
   const Step step = completed_steps_;
-  const auto iteration = static_cast<std::uint16_t>(integrator_->iteration());
+  const auto iteration = static_cast<std::uint16_t>(source_->iteration());
   ledger_.open(step, iteration, now);
+  command_is_open_ = true;
   command_is_sent_ = false;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
     const InterfaceMap& interface = settings_.substructures[i].interface;
     if (iteration == 0) {
       // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
-      if (step > 0) fill_rates(interface, integrator_->completed(), command.points[0]);
+      if (step > 0) fill_rates(interface, source_->completed(), command.points[0]);
       std::rotate(command.points.begin(), command.points.end() - 1, command.points.end());
     }
     fill_point(interface, step, current, command.points[0]);
     command.iteration = iteration;
-    command.is_trial = integrator_->is_trial();
+    command.is_trial = source_->is_trial();
     // The history is for sites; of a wide interface it would make each command four times as large.
     const Step points = interface.size() <= kMaxSiteDofs ? kCommandPoints : 1;
     command.point_count = static_cast<std::uint8_t>(std::min(step + 1, points));
@@ -347,9 +386,10 @@ void Coordinator::complete_command(Instant now) noexcept {
     settings_.load.forces_at(ledger_.step(), forces_n_);
     applied_force_n_ += forces_n_;
   }
-  const bool was_trial = integrator_->is_trial();
-  if (!was_trial) iterations_ = integrator_->iteration();
-  integrator_->advance(restoring_force_n_, applied_force_n_);
+  const bool was_trial = source_->is_trial();
+  if (!was_trial) iterations_ = source_->iteration();
+  command_is_open_ = false;
+  source_->advance(restoring_force_n_, applied_force_n_);
   if (was_trial) {
     go_on_trying(now);
   } else {
@@ -369,22 +409,17 @@ bool Coordinator::collect_forces(Instant now) noexcept {
       return false;
     }
     interface.add_to_structure(force_n, restoring_force_n_);
+    source_->take_force(static_cast<SubstructureIndex>(i), force_n);
   }
   add_elastic_force();
   return true;
 }
 
 void Coordinator::go_on_trying(Instant now) noexcept {
-  if (!integrator_->current().displacement_m.allFinite()) {
-    presence_.raise(FaultFlags::not_finite);
-    begin_stop(now, StopReason::not_finite, kCoordinatorId);
-  } else if (const double missing_m = integrator_->missing_m(); missing_m != 0.0) {
-    report(now, Severity::fault, EventCode::no_equilibrium, {},
-           {static_cast<double>(integrator_->iteration()), missing_m});
-    begin_stop(now, StopReason::no_equilibrium, kCoordinatorId);
-  } else {
-    open_command(now);
-  }
+  const double missing_m = source_->missing_m();
+  if (missing_m == 0.0 || !source_->current().displacement_m.allFinite()) return;
+  report(now, Severity::fault, EventCode::no_equilibrium, {}, {static_cast<double>(source_->iteration()), missing_m});
+  begin_stop(now, StopReason::no_equilibrium, kCoordinatorId);
 }
 
 void Coordinator::complete_step(Instant now) noexcept {
@@ -397,28 +432,20 @@ void Coordinator::complete_step(Instant now) noexcept {
     begin_stop(now, StopReason::completed);
     return;
   }
-  if (!integrator_->current().displacement_m.allFinite()) {
-    presence_.raise(FaultFlags::not_finite);
-    record_step(now);
-    begin_stop(now, StopReason::not_finite, kCoordinatorId);
-    return;
-  }
-  if (settings_.mode == CouplingMode::paced) {
-    // A step is sent one step ahead of its own time and not earlier. Lost time is not made up for.
-    step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
-    if (step == 0) step_due_ = now;
-  }
-  open_command(now);
+  if (settings_.mode != CouplingMode::paced) return;
+  // A step is sent one step ahead of its own time and not earlier. Lost time is not made up for.
+  step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
+  if (step == 0) step_due_ = now;
 }
 
 void Coordinator::add_elastic_force() noexcept {
   if (settings_.stiffness_n_per_m.nonZeros() == 0) return;
-  restoring_force_n_.noalias() += settings_.stiffness_n_per_m * integrator_->current().displacement_m;
+  restoring_force_n_.noalias() += settings_.stiffness_n_per_m * source_->current().displacement_m;
 }
 
 void Coordinator::record_step(Instant now) noexcept {
   if (std::exchange(recorded_steps_, completed_steps_) == completed_steps_) return;
-  const MotionState& completed = integrator_->completed();
+  const MotionState& completed = source_->completed();
   const auto step = completed_steps_ - 1;
   std::size_t next = 0;
   row_[next++] = static_cast<double>(step);
@@ -494,6 +521,10 @@ void Coordinator::end_unassembled(Instant now, LifecycleState wanted) noexcept {
     report(now, Severity::fault, EventCode::participant_missing, substructure.id);
     if (first.empty()) first = substructure.id;
   }
+  if (const ParticipantId awaited = source_->awaited(now); !awaited.empty()) {
+    report(now, Severity::fault, EventCode::opensees_missing, awaited);
+    if (first.empty()) first = kOpenSeesId;
+  }
   begin_stop(now, StopReason::not_assembled, first);
 }
 
@@ -512,6 +543,7 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
     case Phase::assembling: return std::min(presence_wake, phase_began_ + settings_.discovery_timeout);
     case Phase::arming: return std::min(presence_wake, control_repeat_due_);
     case Phase::running: {
+      if (!command_is_open_) return std::min(presence_wake, source_->wake());
       if (is_paused_) return presence_wake;
       return std::min(presence_wake, command_is_sent_ ? repeat_due_ : std::max(step_due_, now));
     }

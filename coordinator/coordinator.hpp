@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coordinator/excitation/applied_load.hpp"
-#include "coordinator/integrators/integrator.hpp"
+#include "coordinator/motion_source.hpp"
 #include "coordinator/step_ledger.hpp"
 #include "core/messages.hpp"
 #include "core/node.hpp"
@@ -30,7 +30,7 @@ struct CoordinatorSettings {
   double step_s = 0.0;
   double duration_s = 0.0;
   double time_scale = 1.0;  // paced: wall time over model time
-  Step last_step = 0;       // the test has the steps 0 .. last_step
+  Step last_step = 0;       // the test has the steps 0 .. last_step; a program that leads ends it earlier
   std::vector<CoupledSubstructure> substructures;
   /// Of the elastic part, which the coordinator computes by itself, n x n. Empty without one.
   Eigen::SparseMatrix<double> stiffness_n_per_m;
@@ -70,11 +70,11 @@ struct CoordinatorReport {
 
 /// The integration coordinator. It waits for the participants, arms and starts them, and steps the
 /// structure through the test. In each step it sends one command to every substructure and
-/// takes one force from it, several where the integrator iterates. It ends the test after the last step or at the first
-/// fault.
+/// takes one force from it, several where the source of motion iterates. It ends the test after the last step or at the
+/// first fault.
 class Coordinator final : public Node {
  public:
-  Coordinator(CoordinatorSettings settings, std::unique_ptr<Integrator> integrator, Presence& presence,
+  Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSource> source, Presence& presence,
               CoordinatorPorts ports, CoordinatorRecord record);
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -105,6 +105,10 @@ class Coordinator final : public Node {
   void stop(Instant now) noexcept;
 
   void watch_participants(Instant now) noexcept;
+  /// Opens the next command, if the source has one.
+  /// @return false when it has none yet or the test ends.
+  [[nodiscard]] bool open_next(Instant now) noexcept;
+  void tell_events(Instant now) noexcept;
   void open_command(Instant now) noexcept;
   void send_command(SubstructureIndex substructure, Instant now) noexcept;
   void repeat_unanswered(Instant now) noexcept;
@@ -134,7 +138,7 @@ class Coordinator final : public Node {
   static void fill_rates(const InterfaceMap& interface, const MotionState& motion, CommandPoint& point) noexcept;
 
   CoordinatorSettings settings_;
-  std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<MotionSource> source_;
   Presence& presence_;
   CoordinatorPorts ports_;
   CoordinatorRecord record_;
@@ -146,7 +150,8 @@ class Coordinator final : public Node {
   std::vector<DisplacementCommand> commands_;  // newest one per substructure, with its history
   ForceMeasurement measurement_;               // the one being taken
   Instant repeat_due_ = kNever;
-  Instant step_due_{};  // paced: earliest time to send the commands of the open step
+  Instant step_due_{};            // paced: earliest time to send the commands of the open step
+  bool command_is_open_ = false;  // the source has given one
   bool command_is_sent_ = false;
   bool is_paused_ = false;
   StopReason requested_stop_ = StopReason::none;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "core/client_fault.hpp"
 #include "core/rig_fault.hpp"
 
 namespace hybridtest {
@@ -142,6 +143,23 @@ std::string describe(const Event& event) {
              " m. A substructure is stiffer or more strongly damped than its initial stiffness says, or yields too far "
              "in a "
              "step: shorten the step, or raise iterations_max or tolerance_m";
+    case EventCode::opensees_missing:
+      return "OpenSees has not connected its element for " + subject +
+             "; look at the port of the element, and at the end of opensees.log";
+    case EventCode::opensees_refused:
+      return "refused a client at the element of " + subject + ": " +
+             std::string{describe(code_of<ClientFault>(event.values[0]))};
+    case EventCode::opensees_lost:
+      return "lost OpenSees at the element of " + subject + ": " +
+             std::string{describe(code_of<ClientFault>(event.values[0]))};
+    case EventCode::opensees_silent:
+      return "OpenSees has asked for nothing for " + number(event.values[0]) +
+             " s; look whether its process still runs, or give it more time (coordinator.silence_s)";
+    case EventCode::opensees_iterates:
+      return "OpenSees asked for a second displacement of " + subject +
+             " in one step; a specimen cannot go back. Use an analysis that moves once a step, such as Newmark with "
+             "Linear, AlphaOS or CentralDifference, or set coordinator.allow_iterations: true where each trial may "
+             "be imposed";
   }
   return "unknown event";
 }

@@ -24,7 +24,7 @@ struct TestEnd {
 };
 
 /// All of them, one row per StopReason; docs/ends.md describes each.
-inline constexpr std::array<TestEnd, 13> kTestEnds{{
+inline constexpr std::array<TestEnd, 15> kTestEnds{{
     {StopReason::none, "none", "end unknown", kExitEndedEarly},
     {StopReason::completed, "completed", "completed", kExitCompleted},
     {StopReason::interrupted, "interrupted", "stopped by the operator", kExitEndedEarly},
@@ -38,6 +38,8 @@ inline constexpr std::array<TestEnd, 13> kTestEnds{{
     {StopReason::emergency_stop, "emergency_stop", "ended by an emergency stop", kExitEndedEarly},
     {StopReason::participant_failed, "participant_failed", "never started: a participant failed", kExitConfiguration},
     {StopReason::no_equilibrium, "no_equilibrium", "ended: no equilibrium in a step", kExitEndedEarly},
+    {StopReason::opensees_lost, "opensees_lost", "ended: OpenSees was lost", kExitEndedEarly},
+    {StopReason::opensees_iterates, "opensees_iterates", "ended: OpenSees iterates on a specimen", kExitEndedEarly},
 }};
 
 /// @return the row of `none` for a number that is no reason.

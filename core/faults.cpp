@@ -65,6 +65,11 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::answer_overdue: return "answer_overdue";
     case EventCode::test_stalled: return "test_stalled";
     case EventCode::no_equilibrium: return "no_equilibrium";
+    case EventCode::opensees_missing: return "opensees_missing";
+    case EventCode::opensees_refused: return "opensees_refused";
+    case EventCode::opensees_lost: return "opensees_lost";
+    case EventCode::opensees_silent: return "opensees_silent";
+    case EventCode::opensees_iterates: return "opensees_iterates";
   }
   return "unknown";
 }

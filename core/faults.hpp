@@ -65,6 +65,8 @@ enum class StopReason : std::uint8_t {
   emergency_stop,
   participant_failed,  // a participant could not start
   no_equilibrium,      // a step that the integrator iterates found none
+  opensees_lost,       // that leads: its connection closed, or it asks for nothing
+  opensees_iterates,   // that leads: several trials in a step, with a specimen
 };
 
 enum class EventCode : std::uint16_t {
@@ -98,6 +100,11 @@ enum class EventCode : std::uint16_t {
   answer_overdue,     // subject: who; values[0]: time since the command was sent [s]
   test_stalled,       // subject: who answered last; values: time without a new step [s], wall time of a step [s]
   no_equilibrium,     // values: trials, last correction [m]
+  opensees_missing,   // that leads; subject: the substructure whose element has not connected
+  opensees_refused,   // a client of an element; subject: the substructure; values[0]: ClientFault
+  opensees_lost,      // subject: the substructure of the element; values[0]: ClientFault
+  opensees_silent,    // values[0]: time without a question [s]
+  opensees_iterates,  // subject: the substructure that was to move again
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

@@ -25,6 +25,8 @@ inline constexpr int kMaxSignalSamples = 32;
 using ParticipantId = FixedText<48>;
 /// The id of the coordinator of every test.
 inline constexpr std::string_view kCoordinatorId = "coordinator";
+/// Stands for an OpenSees that leads, where an event names who ended it.
+inline constexpr std::string_view kOpenSeesId = "opensees";
 /// Stands for the person who stops a test, where an event names who ended it.
 inline constexpr std::string_view kOperatorId = "operator";
 using ScenarioDigest = std::array<std::uint8_t, 32>;  // SHA-256 of the effective scenario

@@ -301,6 +301,7 @@ SubstructureScenario read_substructure(Section& section, Scenario& scenario, con
   SubstructureScenario substructure;
   substructure.id = plain_name(section, "id", ParticipantId::kCapacity);
   if (substructure.id == kCoordinatorId) section.error("id", "'coordinator' is taken by the coordinator itself");
+  if (substructure.id == kOpenSeesId) section.error("id", "'opensees' stands for an OpenSees that leads");
   if (substructure.id == kOperatorId) section.error("id", "'operator' stands for the person at the controls");
   const bool is_numerical = section.choice("kind", {"numerical", "experimental"}) == 0;
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
@@ -497,17 +498,42 @@ ControlLoopSettings control_loop_settings(const Scenario& scenario, const Substr
 
 bool is_test_name(std::string_view name) noexcept { return name.size() <= kTestNameLongest && is_plain_name(name); }
 
-Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  config::Document document = config::Document::load(file, with_sites_in_place(file, overrides));
-  Section root = document.root();
-  Scenario scenario;
-  scenario.file = file;
-  static_cast<void>(root.choice("schema", {"hybridtest/1"}));
-  scenario.name = plain_name(root, "name", kTestNameLongest);
-  if (root.has("description")) static_cast<void>(root.text("description", ""));
-  read_time(root.section("time"), scenario.time);
-  Section excitation = root.section("excitation");
+namespace {
 
+std::vector<Section> read_substructures(Section& root, const config::Document& document, const DofTable& table,
+                                        Scenario& scenario) {
+  std::vector<Section> substructures = root.sections("substructures");
+  for (Section& section : substructures) {
+    scenario.substructures.push_back(read_substructure(section, scenario, table, document.directory()));
+  }
+  return substructures;
+}
+
+/// What is recorded, and the limits of time: the end of a scenario.
+void read_rest(Section& root, const DofTable& table, Scenario& scenario) {
+  scenario.recorded_dofs =
+      read_output(root, table, interface_dofs(scenario, kAllRecordedUpTo), !scenario.excitation.forces.empty());
+  for (SubstructureScenario& substructure : scenario.substructures) {
+    substructure.recorded = recorded_interface(substructure, scenario.recorded_dofs);
+  }
+  read_timeouts(root, scenario.timeouts);
+  Section recording = root.section_or_empty("recording");
+  scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
+  recording.finish();
+  root.finish();
+}
+
+void try_out_all(const config::Document& document, const std::vector<Section>& sections, Scenario& scenario) {
+  document.throw_if_errors();
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    report_at(sections[i], [&] { try_out(scenario, scenario.substructures[i]); });
+  }
+  document.throw_if_errors();
+}
+
+/// A test whose coordinator integrates the structure.
+void read_integrated(const config::Document& document, Section& root, Scenario& scenario) {
+  Section excitation = root.section("excitation");
   Section structure = root.section("structure");
   StructureReading reading = read_structure(structure, document.directory());
   scenario.dofs = reading.dofs.names();
@@ -517,33 +543,16 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   scenario.files.insert(scenario.files.end(), reading.files.begin(), reading.files.end());
   scenario.structure.influence = scenario.excitation.records.empty() ? uniform_influence(reading.dofs, 0)
                                                                      : scenario.excitation.records.front().influence;
-
   Section integrator = root.section("integrator");
   scenario.integrator = read_integrator(integrator);
 
-  std::vector<Section> substructures = root.sections("substructures");
-  for (Section& section : substructures) {
-    scenario.substructures.push_back(read_substructure(section, scenario, reading.dofs, document.directory()));
-  }
+  const std::vector<Section> substructures = read_substructures(root, document, reading.dofs, scenario);
   const NumericalErrors errors = read_numerical_errors(root);
-  scenario.recorded_dofs =
-      read_output(root, reading.dofs, interface_dofs(scenario, kAllRecordedUpTo), !scenario.excitation.forces.empty());
-  for (SubstructureScenario& substructure : scenario.substructures) {
-    substructure.recorded = recorded_interface(substructure, scenario.recorded_dofs);
-  }
-  read_timeouts(root, scenario.timeouts);
-  Section recording = root.section_or_empty("recording");
-  scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
-  recording.finish();
-  root.finish();
+  read_rest(root, reading.dofs, scenario);
   check_substructures(root, scenario);
   check_trials(integrator, scenario);
-  document.throw_if_errors();
+  try_out_all(document, substructures, scenario);
 
-  for (std::size_t i = 0; i < substructures.size(); ++i) {
-    report_at(substructures[i], [&] { try_out(scenario, scenario.substructures[i]); });
-  }
-  document.throw_if_errors();
   report_at(structure, [&] {
     scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
     scenario.structure.damping_n_s_per_m.resize(scenario.structure.size(), scenario.structure.size());
@@ -570,6 +579,74 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   };
   report_at(integrator, [&] { static_cast<void>(scenario.make_integrator()); });
   document.throw_if_errors();
+}
+
+/// Each substructure has one element, which has the degrees of freedom of its interface.
+void check_elements(Section& root, const Scenario& scenario) {
+  Section section = root.section("coordinator");
+  std::set<std::string> known;
+  for (const LedElementScenario& element : scenario.opensees->elements) {
+    const SubstructureScenario* substructure = scenario.find(element.substructure);
+    if (substructure == nullptr) {
+      section.error("elements", "there is no substructure '" + element.substructure + "'");
+    } else if (!known.insert(element.substructure).second) {
+      section.error("elements", "two elements for the substructure '" + element.substructure + "', expected one");
+    } else {
+      for (const InterfaceDof& dof : substructure->interface.dofs()) {
+        for (const int row : {dof.dof, dof.relative_to}) {
+          if (row == InterfaceDof::kGround) continue;
+          const std::string& name = scenario.dofs[static_cast<std::size_t>(row)];
+          if (std::ranges::find(element.dofs, name) != element.dofs.end()) continue;
+          section.error("elements", "the interface of '" + element.substructure + "' has the degree of freedom '" +
+                                        name + "', its element has not");
+        }
+      }
+    }
+  }
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (known.contains(substructure.id)) continue;
+    section.error("elements", "no element for the substructure '" + substructure.id + "'");
+  }
+}
+
+/// A test whose coordinator asks OpenSees for each displacement. The structure is in OpenSees: here it has neither mass
+/// nor load.
+void read_led(const config::Document& document, Section& root, Scenario& scenario) {
+  const DofTable table{scenario.opensees->dofs};
+  scenario.dofs = table.names();
+  const auto size = std::ssize(scenario.dofs);
+  for (auto* matrix : {&scenario.structure.mass_kg, &scenario.structure.damping_n_s_per_m}) matrix->resize(size, size);
+  scenario.structure.degrees_of_freedom = scenario.dofs;
+  scenario.structure.influence = Eigen::VectorXd::Zero(size);
+  scenario.integrator_step_s = scenario.time.step_s;
+  for (const char* key : {"structure", "excitation", "integrator"}) {
+    if (root.has(key)) root.error(key, "is in the model of OpenSees, which leads (coordinator.type); leave it out");
+  }
+  const std::vector<Section> substructures = read_substructures(root, document, table, scenario);
+  read_rest(root, table, scenario);
+  check_substructures(root, scenario);
+  check_elements(root, scenario);
+  try_out_all(document, substructures, scenario);
+  scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);
+}
+
+}  // namespace
+
+Scenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  config::Document document = config::Document::load(file, with_sites_in_place(file, overrides));
+  Section root = document.root();
+  Scenario scenario;
+  scenario.file = file;
+  static_cast<void>(root.choice("schema", {"hybridtest/1"}));
+  scenario.name = plain_name(root, "name", kTestNameLongest);
+  if (root.has("description")) static_cast<void>(root.text("description", ""));
+  read_time(root.section("time"), scenario.time);
+  scenario.opensees = read_opensees_lead(root, document.directory(), scenario.files);
+  if (scenario.opensees) {
+    read_led(document, root, scenario);
+  } else {
+    read_integrated(document, root, scenario);
+  }
   scenario.effective = document.effective();
   scenario.digest = digest_of(scenario);
   return scenario;

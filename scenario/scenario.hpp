@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "scenario/catalogue/rig_rating.hpp"
 #include "scenario/excitation_section.hpp"
 #include "scenario/loop_sections.hpp"
+#include "scenario/opensees_section.hpp"
 #include "scenario/structure_section.hpp"
 
 namespace hybridtest {
@@ -108,8 +110,10 @@ struct Scenario {
   std::vector<Eigen::Index> recorded_dofs;  // rows of those in the coordinator's record, ascending
   ExcitationScenario excitation;
   IntegratorReading integrator;
-  double integrator_step_s = 0.0;  // that of the test, but for the effect `step_mismatch`
-  std::function<std::unique_ptr<Integrator>()> make_integrator;
+  double integrator_step_s = 0.0;                                // that of the test, but for the effect `step_mismatch`
+  std::function<std::unique_ptr<Integrator>()> make_integrator;  // empty where OpenSees leads
+  /// OpenSees leads: structure, excitation and integrator are in its model, and here the structure has no mass.
+  std::optional<OpenSeesLeadScenario> opensees;
   std::vector<SubstructureScenario> substructures;
   std::vector<NamedFile> files;  // that it names, but those of rigs and models
   std::string effective;         // with defaults filled in

@@ -4,16 +4,10 @@
 #include <Eigen/SparseCore>
 #include <functional>
 
+#include "coordinator/motion_source.hpp"
 #include "mechanics/structure/linear_structure.hpp"
 
 namespace hybridtest {
-
-/// Motion of the whole structure at one step, one entry per degree of freedom.
-struct MotionState {
-  Eigen::VectorXd displacement_m;
-  Eigen::VectorXd velocity_m_per_s;
-  Eigen::VectorXd acceleration_m_per_s2;
-};
 
 /// What a method needs besides the mass, the damping and the measured forces.
 struct IntegratorNeeds {
@@ -36,28 +30,12 @@ using StateVisitor = std::function<void(Eigen::VectorXd& state)>;
 /// At step i the integrator commands a displacement and waits for its force r_i. advance(r_i, f_i)
 /// completes step i and moves to step i + 1, unless the command was a trial: then the next command belongs to step i
 /// too. Sizes are fixed at construction; advance() allocates nothing.
-class Integrator {
+class Integrator : public MotionSource {
  public:
-  virtual ~Integrator() = default;
-
-  /// The command that waits for its restoring force. The displacement is the command; velocity and
-  /// acceleration are predictions. At step 0 the initial state.
-  [[nodiscard]] virtual const MotionState& current() const noexcept = 0;
   /// The step before, with velocity and acceleration in equilibrium, M a + C v + r = f. The
   /// displacement is the one commanded, unless the method corrects it: then r is the measured force
   /// plus the initial stiffness times the correction. Not valid before the first advance().
-  [[nodiscard]] virtual const MotionState& completed() const noexcept = 0;
-  /// Trials of the step before the current command.
-  [[nodiscard]] virtual int iteration() const noexcept { return 0; }
-  /// Whether the current command is only tried: its force is wanted, from the state at the end of the step before, and
-  /// the state stays there.
-  [[nodiscard]] virtual bool is_trial() const noexcept { return false; }
-  /// By how much the current command, which is no trial, still misses equilibrium because no more trials are allowed
-  /// [m]; 0 when it does not.
-  [[nodiscard]] virtual double missing_m() const noexcept { return 0.0; }
-  /// @param restoring_force_n, applied_force_n   one entry per degree of freedom, of the current step.
-  virtual void advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n,
-                       const Eigen::Ref<const Eigen::VectorXd>& applied_force_n) noexcept = 0;
+  [[nodiscard]] const MotionState& completed() const noexcept override = 0;
   /// Visits every vector that current() and later steps depend on, one entry per degree of freedom each, always in the
   /// same order; all are zero at rest. With the same vectors, after as many steps, two integrators go on alike.
   virtual void visit_state(const StateVisitor& visit) = 0;

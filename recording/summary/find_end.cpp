@@ -15,7 +15,10 @@ Codes causes_of(StopReason reason) {
     case StopReason::coordinator_lost: return {EventCode::coordinator_lost};
     case StopReason::not_finite: return {EventCode::measurement_not_finite};
     case StopReason::no_equilibrium: return {EventCode::no_equilibrium};
-    case StopReason::not_assembled: return {EventCode::participant_missing};
+    case StopReason::opensees_lost: return {EventCode::opensees_lost, EventCode::opensees_silent};
+    case StopReason::opensees_iterates: return {EventCode::opensees_iterates};
+    case StopReason::not_assembled:
+      return {EventCode::participant_missing, EventCode::opensees_refused, EventCode::opensees_missing};
     case StopReason::refused:
       return {EventCode::digest_mismatch, EventCode::second_coordinator, EventCode::duplicate_id};
     case StopReason::recording_failed: return {EventCode::recording_failed, EventCode::records_dropped};
@@ -69,6 +72,8 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::interlock:
     case StopReason::not_finite:
     case StopReason::no_equilibrium:
+    case StopReason::opensees_lost:
+    case StopReason::opensees_iterates:
     case StopReason::refused:
     case StopReason::recording_failed:
     case StopReason::emergency_stop: return false;

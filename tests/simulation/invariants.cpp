@@ -192,6 +192,8 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::coordinator_lost:
     case StopReason::not_finite:
     case StopReason::no_equilibrium:
+    case StopReason::opensees_lost:
+    case StopReason::opensees_iterates:
     case StopReason::refused:
     case StopReason::emergency_stop:
     case StopReason::participant_failed:

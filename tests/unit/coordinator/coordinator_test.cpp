@@ -19,9 +19,9 @@ constexpr double kStep_s = 0.01;
 constexpr double kGround_m_per_s2 = 2.0;
 
 /// Moves by one millimetre a step, so that what it was given can be read off.
-class CountingIntegrator final : public Integrator {
+class CountingSource final : public MotionSource {
  public:
-  explicit CountingIntegrator(Eigen::Index dofs) {
+  explicit CountingSource(Eigen::Index dofs) {
     current_.displacement_m = current_.velocity_m_per_s = current_.acceleration_m_per_s2 = Eigen::VectorXd::Zero(dofs);
     completed_ = current_;
   }
@@ -50,8 +50,6 @@ class CountingIntegrator final : public Integrator {
 
   int trials = 0;  // of each step
   int missing_after = -1;
-
-  void visit_state(const StateVisitor& visit) override { visit_motion(current_, visit); }
 
   double correction_m = 0.0;  // of the displacement once the force is known
   int advances = 0;
@@ -92,10 +90,10 @@ class CoordinatorTest : public testing::Test {
                                   std::vector<double>(static_cast<std::size_t>(last_step) + 1, kGround_m_per_s2)}},
                                 {}};
     settings.stop_on_recording_failure = stop_on_recording_failure;
-    auto integrator = std::make_unique<CountingIntegrator>(1);
-    integrator_ = integrator.get();
+    auto source = std::make_unique<CountingSource>(1);
+    source_ = source.get();
     coordinator_ = std::make_unique<Coordinator>(
-        settings, std::move(integrator), presence_,
+        settings, std::move(source), presence_,
         CoordinatorPorts{announcements_, control_in_, control_out_, measurements_, commands_},
         CoordinatorRecord{steps_, exchanges_});
     for (std::size_t i = 0; i < 2; ++i) {
@@ -194,7 +192,7 @@ class CoordinatorTest : public testing::Test {
   Presence presence_{Identity{"coordinator", Role::coordinator, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
                      events_};
   std::array<Substructure, 2> substructures_;
-  CountingIntegrator* integrator_ = nullptr;
+  CountingSource* source_ = nullptr;
   std::unique_ptr<Coordinator> coordinator_;
   Instant now_{};
   std::vector<Event> told_;
@@ -244,7 +242,7 @@ TEST_F(CoordinatorTest, ArmsWhenAllAreReadyAndStartsWhenAllAreArmed) {
 
 TEST_F(CoordinatorTest, AsksForTrialsBeforeTheFinalDisplacement) {
   make();
-  integrator_->trials = 2;
+  source_->trials = 2;
   start();
   for (std::uint16_t iteration = 0; iteration <= 2; ++iteration) {
     const auto commands = take_commands();
@@ -270,7 +268,7 @@ TEST_F(CoordinatorTest, AsksForTrialsBeforeTheFinalDisplacement) {
 
 TEST_F(CoordinatorTest, RepeatsATrialThatIsNotAnswered) {
   make();
-  integrator_->trials = 1;
+  source_->trials = 1;
   start();
   static_cast<void>(take_commands());
   answer(0, 0);
@@ -285,8 +283,8 @@ TEST_F(CoordinatorTest, RepeatsATrialThatIsNotAnswered) {
 
 TEST_F(CoordinatorTest, EndsWithoutEquilibrium) {
   make();
-  integrator_->trials = 3;
-  integrator_->missing_after = 2;
+  source_->trials = 3;
+  source_->missing_after = 2;
   start();
   for (std::uint16_t iteration = 0; iteration < 2; ++iteration) {
     answer(0, 0, 1.0, 0, iteration);
@@ -359,7 +357,7 @@ TEST_F(CoordinatorTest, CompletesEveryStepOnceAndInOrder) {
   }
   EXPECT_EQ(reason(), StopReason::completed);
   EXPECT_EQ(completed(), 6);
-  EXPECT_EQ(integrator_->advances, 6);
+  EXPECT_EQ(source_->advances, 6);
   ASSERT_EQ(steps_.size(), 6U);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(steps_.at(i, steps_.column("step")), static_cast<double>(i));
@@ -384,7 +382,7 @@ TEST_F(CoordinatorTest, AddsTheForceOfTheElasticPart) {
   for (std::size_t i = 0; i < 6; ++i) {
     const double displacement_m = steps_.at(i, steps_.column("displacement_floor_m"));
     EXPECT_DOUBLE_EQ(displacement_m, 0.001 * static_cast<double>(i));
-    // The integrator of this test hands on as velocity the restoring force that it is given.
+    // The source of this test hands on as velocity the restoring force that it is given.
     EXPECT_EQ(steps_.at(i, steps_.column("velocity_floor_m_per_s")), 30.0 + 2.0e4 * displacement_m);
     EXPECT_EQ(steps_.at(i, steps_.column("restoring_force_floor_n")), 30.0 + 2.0e4 * displacement_m);
   }
@@ -403,7 +401,7 @@ TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {
     EXPECT_EQ(point.step, 5 - i);
     EXPECT_DOUBLE_EQ(point.displacement_m[0], 0.001 * static_cast<double>(5 - i));
     EXPECT_DOUBLE_EQ(point.model_time_s, kStep_s * static_cast<double>(5 - i));
-    // Final velocity once the step is complete; this integrator gives the restoring force for it.
+    // Final velocity once the step is complete; this source gives the restoring force for it.
     EXPECT_EQ(point.velocity_m_per_s[0], i > 0 ? 30.0 : 0.0);
   }
   EXPECT_EQ(commands[0].point_count, 1);
@@ -411,7 +409,7 @@ TEST_F(CoordinatorTest, CommandCarriesPreviousSteps) {
 
 TEST_F(CoordinatorTest, CorrectionIsRecordedAndNotCommanded) {
   make();
-  integrator_->correction_m = 0.0004;
+  source_->correction_m = 0.0004;
   start();
   answer_five_steps();
   const auto commands = take_commands();
@@ -513,7 +511,7 @@ TEST_F(CoordinatorTest, NonFiniteForceEndsTest) {
   answer(1, 0, std::numeric_limits<double>::quiet_NaN());
   advance();
   EXPECT_EQ(reason(), StopReason::not_finite);
-  EXPECT_EQ(integrator_->advances, 0);
+  EXPECT_EQ(source_->advances, 0);
   EXPECT_EQ(subjects(EventCode::measurement_not_finite), (std::multiset<std::string>{"b"}));
   EXPECT_EQ(exchanges_.size(), 2U) << "the exchange that ended the test is on record";
 }
@@ -530,12 +528,12 @@ TEST_F(CoordinatorTest, WrongForceVectorSizeEndsTest) {
   measurements_.send(measurement);
   advance();
   EXPECT_EQ(reason(), StopReason::not_finite);
-  EXPECT_EQ(integrator_->advances, 0);
+  EXPECT_EQ(source_->advances, 0);
 }
 
 TEST_F(CoordinatorTest, NonFiniteMotionEndsTest) {
   make();
-  integrator_->diverges_after = 3;
+  source_->diverges_after = 3;
   start();
   for (Step step = 0; step < 5; ++step) {
     answer(0, step);

@@ -1,0 +1,21 @@
+#include "core/client_fault.hpp"
+
+namespace hybridtest {
+
+std::string_view describe(ClientFault fault) noexcept {
+  switch (fault) {
+    case ClientFault::unknown: break;
+    case ClientFault::closed:
+      return "its connection closed before its model had ended; look at the end of opensees.log";
+    case ClientFault::address: return "it comes from another address than coordinator.from";
+    case ClientFault::occupied: return "the element has a client already; give each genericClient a port of its own";
+    case ClientFault::other_protocol: return "it does not speak the protocol of genericClient";
+    case ClientFault::other_size:
+      return "its number of degrees of freedom differs from that of the element in the scenario "
+             "(coordinator.elements)";
+    case ClientFault::other_message: return "it sent a message that the protocol of genericClient has not";
+  }
+  return "it gives no reason";
+}
+
+}  // namespace hybridtest

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace hybridtest {
+
+/// Why a client of an element was refused or lost. Sent as a number: new reasons go to the end.
+enum class ClientFault : std::uint8_t {
+  unknown,
+  closed,          // the connection, without 99
+  address,         // not the one that may connect
+  occupied,        // the element has a client
+  other_protocol,  // its first message is not that of genericClient
+  other_size,      // of the element, in degrees of freedom
+  other_message,   // an action that the protocol has not
+};
+
+/// For messages, such as "its connection closed before its model had ended".
+[[nodiscard]] std::string_view describe(ClientFault fault) noexcept;
+
+}  // namespace hybridtest
