@@ -193,6 +193,11 @@ class Simulation {
 }  // namespace
 
 void require_simulable(const Scenario& scenario) {
+  if (scenario.opensees) {
+    throw ConfigError{scenario.name +
+                      ": OpenSees leads this test; it runs outside this process and cannot follow simulated time; use "
+                      "`hybridtest run`"};
+  }
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (!substructure.site.rig_is_elsewhere) continue;
     throw ConfigError{"the rig of " + substructure.id + " is of type " + substructure.site.rig_type +

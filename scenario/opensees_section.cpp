@@ -25,7 +25,7 @@ LedElementScenario read_element(Section section) {
 
 void read_start(Section& section, const std::filesystem::path& directory, std::vector<NamedFile>& files,
                 OpenSeesLeadScenario& lead) {
-  const bool has_script = section.has("script");
+  const bool has_script = section.has_optional("script");
   if (section.boolean("started_by_hand", !has_script)) {
     if (has_script) section.error("script", "with started_by_hand: true nothing starts it; leave one of the two out");
     return;

@@ -620,7 +620,7 @@ void read_led(const config::Document& document, Section& root, Scenario& scenari
   scenario.structure.influence = Eigen::VectorXd::Zero(size);
   scenario.integrator_step_s = scenario.time.step_s;
   for (const char* key : {"structure", "excitation", "integrator"}) {
-    if (root.has(key)) root.error(key, "is in the model of OpenSees, which leads (coordinator.type); leave it out");
+    if (root.has_optional(key)) root.error(key, "is in the model of OpenSees, which leads (coordinator.type); leave it out");
   }
   const std::vector<Section> substructures = read_substructures(root, document, table, scenario);
   read_rest(root, table, scenario);

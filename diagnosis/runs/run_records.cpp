@@ -430,6 +430,11 @@ void note_differences(const Scenario& scenario, const Scenario& ran, const Struc
 
 StructureRecord structure_record(const std::filesystem::path& run, const Scenario& scenario) {
   const Scenario ran = read_scenario(run / "scenario.yaml", {});
+  if (ran.opensees || scenario.opensees) {
+    throw RecordingError{run.string() +
+                         ": OpenSees led this test, and its model of the structure is not known here: the structure "
+                         "cannot be recomputed. The sites can be diagnosed (--site)"};
+  }
   require_same_test(scenario, ran);
   for (const Scenario* tried : {&scenario, &ran}) {
     if (!tried->integrator.needs.tries_displacements) continue;
