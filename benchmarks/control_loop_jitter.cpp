@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/child_process.hpp"
+#include "core/child_process.hpp"
 #include "recording/run_file_reader.hpp"
 
 namespace hybridtest::benchmarks {
@@ -121,7 +121,8 @@ class Run {
 
  private:
   void start(const std::string& id, const std::filesystem::path& program, const std::vector<std::string>& arguments) {
-    children_.push_back(std::make_unique<ChildProcess>(id, program, arguments, out_ / (id + ".log")));
+    children_.push_back(std::make_unique<ChildProcess>(
+        id, ChildStart{.program = program, .arguments = arguments, .log_file = out_ / (id + ".log")}));
   }
   [[nodiscard]] std::vector<std::string> with_id(const char* id) const {
     std::vector<std::string> arguments = shared_;

@@ -16,7 +16,7 @@
 
 #include "benchmarks/echo.hpp"
 #include "benchmarks/latency_report.hpp"
-#include "launch/child_process.hpp"
+#include "core/child_process.hpp"
 #include "recording/run_file_reader.hpp"
 
 namespace hybridtest::benchmarks {
@@ -39,8 +39,9 @@ std::vector<double> coupled_step_us(int steps, unsigned domain) {
       "--loopback-only"};
   std::vector<std::unique_ptr<ChildProcess>> children;
   const auto start = [&](const char* id, const char* program, std::vector<std::string> its_arguments) {
-    children.push_back(
-        std::make_unique<ChildProcess>(id, programs / program, its_arguments, out / (std::string{id} + ".log")));
+    children.push_back(std::make_unique<ChildProcess>(id, ChildStart{.program = programs / program,
+                                                                     .arguments = std::move(its_arguments),
+                                                                     .log_file = out / (std::string{id} + ".log")}));
   };
   start("coordinator", "coordinator", arguments);
   for (const char* id : {"storey_1", "storey_2"}) {

@@ -4,10 +4,10 @@
 #include <deque>
 #include <fstream>
 
+#include "core/child_process.hpp"
 #include "core/config_error.hpp"
 #include "diagnosis/runs/diagnose_run.hpp"
 #include "launch/check_lines.hpp"
-#include "launch/child_process.hpp"
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
@@ -51,8 +51,10 @@ std::vector<std::unique_ptr<ChildProcess>> start_processes(const RunOptions& opt
   const auto start = [&](std::string_view id, Role role) {
     std::vector<std::string> arguments = shared;
     if (role != Role::coordinator) arguments.insert(arguments.end(), {"--id", std::string{id}});
-    children.push_back(std::make_unique<ChildProcess>(std::string{id}, programs / name(role), arguments,
-                                                      options.directory / (std::string{id} + ".log")));
+    children.push_back(std::make_unique<ChildProcess>(
+        std::string{id}, ChildStart{.program = programs / name(role),
+                                    .arguments = arguments,
+                                    .log_file = options.directory / (std::string{id} + ".log")}));
   };
   start(kCoordinatorId, Role::coordinator);
   for (const SubstructureScenario& substructure : scenario.substructures) {

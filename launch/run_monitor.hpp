@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/child_process.hpp"
 #include "core/node.hpp"
-#include "launch/child_process.hpp"
 #include "recording/summary/process_end.hpp"
 #include "runtime/progress.hpp"
 #include "scenario/scenario.hpp"

@@ -7,7 +7,7 @@
 
 #include "recording/recorder_thread.hpp"
 #include "recording/run_file_reader.hpp"
-#include "tests/unit/recording/child_process.hpp"
+#include "tests/unit/recording/forked_child.hpp"
 #include "tests/unit/recording/run_file_fixture.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
@@ -81,7 +81,7 @@ bool survives_full_disk(const std::filesystem::path& path, const std::string& re
 
 TEST(Recorder, CountsRowsLostToFileSizeLimit) {
   const TemporaryDirectory directory;
-  ChildProcess child{[&](const ChildProcess& self) {
+  ForkedChild child{[&](const ForkedChild& self) {
     ::signal(SIGXFSZ, SIG_IGN);
     self.report(survives_full_disk(directory / "a.h5", "File too large") ? 1 : 2);
   }};
@@ -91,7 +91,7 @@ TEST(Recorder, CountsRowsLostToFileSizeLimit) {
 
 TEST(Recorder, CountsRowsLostToFullDisk) {
   const TemporaryDirectory directory;
-  ChildProcess child{[&](const ChildProcess& self) {
+  ForkedChild child{[&](const ForkedChild& self) {
     // A file system of 256 KiB that only this child sees.
     const bool mounted = ::unshare(CLONE_NEWNS) == 0 &&
                          ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&

@@ -9,7 +9,7 @@
 
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
-#include "tests/unit/recording/child_process.hpp"
+#include "tests/unit/recording/forked_child.hpp"
 #include "tests/unit/recording/run_file_fixture.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
@@ -28,7 +28,7 @@ void append_rows(RunFileWriter& writer, std::size_t first, std::size_t count) {
 bool program_runs(const std::string& command) { return std::system((command + " > /dev/null 2>&1").c_str()) == 0; }
 
 /// Writes rows for ever, reporting how many are flushed.
-void write_for_ever(const ChildProcess& child, const std::filesystem::path& path) {
+void write_for_ever(const ForkedChild& child, const std::filesystem::path& path) {
   RunFileWriter writer{path, example_header(), {example_layout()}};
   // A number of rows that is no divisor of a chunk, so that chunks are always partly filled.
   for (std::size_t rows = 0;; rows += 777) {
@@ -138,7 +138,7 @@ TEST(RunFileWriter, ReaderRejectsOtherFiles) {
 TEST(RunFileWriter, AnotherProcessReadsTheFileWhileItGrows) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
-  ChildProcess child{[&](const ChildProcess& self) {
+  ForkedChild child{[&](const ForkedChild& self) {
     RunFileWriter writer{path, example_header(), {example_layout()}};
     for (std::size_t rows = 0; rows < 20'000; rows += 5000) {
       append_rows(writer, rows, 5000);
@@ -169,7 +169,7 @@ TEST(RunFileWriter, KilledWriterKeepsRowsUpToLastFlush) {
   for (const int flushes : {1, 3, 20, 150}) {
     const TemporaryDirectory directory;
     const auto path = directory / "a.h5";
-    ChildProcess child{[&](const ChildProcess& self) { write_for_ever(self, path); }};
+    ForkedChild child{[&](const ForkedChild& self) { write_for_ever(self, path); }};
     std::uint64_t flushed = 0;
     for (int i = 0; i < flushes; ++i) flushed = child.hear();
     child.kill_now();
@@ -195,7 +195,7 @@ TEST(RunFileWriter, OtherToolsOpenAKilledFileAfterRepairOnly) {
   if (!program_runs("h5dump --version")) GTEST_SKIP() << "h5dump (Debian: hdf5-tools) is not installed";
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
-  ChildProcess child{[&](const ChildProcess& self) { write_for_ever(self, path); }};
+  ForkedChild child{[&](const ForkedChild& self) { write_for_ever(self, path); }};
   for (int i = 0; i < 30; ++i) (void)child.hear();
   child.kill_now();
   EXPECT_FALSE(program_runs("h5dump -H " + path.string())) << "control: the kill left its mark";
@@ -207,7 +207,7 @@ TEST(RunFileWriter, OtherToolsOpenAKilledFileAfterRepairOnly) {
 TEST(RunFileWriter, OpenFileIsNeitherRepairedNorReplaced) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
-  ChildProcess child{[&](const ChildProcess& self) {
+  ForkedChild child{[&](const ForkedChild& self) {
     RunFileWriter writer{path, example_header(), {example_layout()}};
     append_rows(writer, 0, 100);
     writer.flush();
@@ -256,7 +256,7 @@ TEST(RunFileWriter, FullDiskKeepsRowsUpToLastFlush) {
   for (const rlim_t bytes_max : {20'000U, 60'000U, 100'001U, 500'000U}) {
     const TemporaryDirectory directory;
     const auto path = directory / "a.h5";
-    ChildProcess child{[&](const ChildProcess& self) {
+    ForkedChild child{[&](const ForkedChild& self) {
       const std::uint64_t flushed = write_until_refused(path, bytes_max);
       // The file opens in the process that failed to write it, too.
       const RunFileReader reader{path};

@@ -12,8 +12,8 @@
 #include "core/rig_fault.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
-#include "tests/unit/recording/child_process.hpp"
 #include "tests/unit/recording/example_run.hpp"
+#include "tests/unit/recording/forked_child.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 
 namespace hybridtest {
@@ -257,7 +257,7 @@ TEST(RunSummary, NamesKilledSite) {
   run.exit_code = kExitEndedEarly;
   run.write_coordinator(directory / "coordinator.h5");
   run.write_numerical(directory / "storey_2.h5");
-  ChildProcess site{[&](const ChildProcess& self) {
+  ForkedChild site{[&](const ForkedChild& self) {
     RunFileWriter writer{directory / "storey_1.h5", ExampleRun::header("storey_1", Role::experimental_site),
                          ExampleRun::site_tables()};
     run.append_site(writer);

@@ -10,10 +10,10 @@
 namespace hybridtest {
 
 /// A forked child; the test communicates with it through a pair of pipes, so that no one waits for a fixed time.
-class ChildProcess {
+class ForkedChild {
  public:
   template <class Body>
-  explicit ChildProcess(Body&& body) {
+  explicit ForkedChild(Body&& body) {
     if (::pipe(to_child_) != 0 || ::pipe(from_child_) != 0) std::abort();
     id_ = ::fork();
     if (id_ == 0) {
@@ -22,14 +22,14 @@ class ChildProcess {
     }
     ::close(from_child_[1]);
   }
-  ~ChildProcess() {
+  ~ForkedChild() {
     if (id_ > 0) kill_now();
     ::close(to_child_[0]);
     ::close(to_child_[1]);
     ::close(from_child_[0]);
   }
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
+  ForkedChild(const ForkedChild&) = delete;
+  ForkedChild& operator=(const ForkedChild&) = delete;
 
   // In the child.
   void report(std::uint64_t number) const { (void)!::write(from_child_[1], &number, sizeof number); }

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace hybridtest {
+
+/// The OpenSees that is started: the one that the scenario names, else the one that the environment variable
+/// HYBRIDTEST_OPENSEES names, else `OpenSees` in PATH. OpenSees is not part of this software.
+/// @param program   `program` of the scenario: a path, or a name that PATH has; empty: not given.
+/// @return its absolute path.
+/// @throws ConfigError where there is none.
+[[nodiscard]] std::filesystem::path find_opensees(const std::string& program);
+
+}  // namespace hybridtest
