@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "core/client_fault.hpp"
 #include "core/stall.hpp"
 
 namespace hybridtest {
@@ -63,6 +64,10 @@ Instant Coordinator::advance(Instant now) noexcept {
   take_control_messages(now);
   if (requested_stop_ != StopReason::none)
     begin_stop(now, std::exchange(requested_stop_, StopReason::none), kOperatorId);
+  if (std::exchange(lead_has_left_, false) && phase_ < Phase::stopping) {
+    report(now, Severity::fault, EventCode::opensees_lost, kOpenSeesId, {static_cast<double>(ClientFault::closed), 0.0});
+    begin_stop(now, phase_ == Phase::running ? StopReason::opensees_lost : StopReason::participant_failed, kOpenSeesId);
+  }
   if (presence_.is_duplicate() && phase_ != Phase::done && phase_ != Phase::stopping) {
     report(now, Severity::fault, EventCode::second_coordinator);
     reason_ = StopReason::refused;

@@ -81,6 +81,8 @@ class Coordinator final : public Node {
 
   /// Ends the test safely, as Ctrl-C does, at the next advance().
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
+  /// The process of the OpenSees that leads has ended, and will not connect again.
+  void lead_has_left() noexcept { lead_has_left_ = true; }
 
   [[nodiscard]] bool is_done() const noexcept { return phase_ == Phase::done; }
   [[nodiscard]] CoordinatorReport report() const noexcept;
@@ -155,6 +157,7 @@ class Coordinator final : public Node {
   bool command_is_sent_ = false;
   bool is_paused_ = false;
   StopReason requested_stop_ = StopReason::none;
+  bool lead_has_left_ = false;
   StopReason reason_ = StopReason::none;
   Step completed_steps_ = 0;
   Step recorded_steps_ = 0;

@@ -150,6 +150,9 @@ std::string describe(const Event& event) {
       return "refused a client at the element of " + subject + ": " +
              std::string{describe(code_of<ClientFault>(event.values[0]))};
     case EventCode::opensees_lost:
+      if (event.subject == ParticipantId{kOpenSeesId}) {
+        return "OpenSees ended before its model had; look at the end of opensees.log";
+      }
       return "lost OpenSees at the element of " + subject + ": " +
              std::string{describe(code_of<ClientFault>(event.values[0]))};
     case EventCode::opensees_silent:

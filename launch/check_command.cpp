@@ -43,9 +43,13 @@ int check(const CheckOptions& options) {
     std::fflush(out);
   }
   CheckReport report{scenario.name};
-  const TestStability stability = check_stability(scenario, report, out);
-  // An unstable test has no peaks but those of its interlocks.
-  if (!options.is_quick && !stability.is_unstable(scenario.integrator_step_s)) check_peaks(scenario, report, out);
+  if (scenario.opensees) {
+    check_led_test(scenario, report, out);
+  } else {
+    const TestStability stability = check_stability(scenario, report, out);
+    // An unstable test has no peaks but those of its interlocks.
+    if (!options.is_quick && !stability.is_unstable(scenario.integrator_step_s)) check_peaks(scenario, report, out);
+  }
   if (out != nullptr) report.print_verdict(out);
   if (!options.json.empty()) report.write_json(options.json);
   return report.worst() == CheckVerdict::fail ? kExitConfiguration : kExitCompleted;

@@ -10,6 +10,7 @@
 #include "coordinator/preflight/integrator_response.hpp"
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
+#include "core/opensees_program.hpp"
 #include "launch/check_policy.hpp"
 #include "launch/excitation_text.hpp"
 #include "launch/predicted_peaks.hpp"
@@ -166,22 +167,15 @@ void judge_stiffness(Judged& judged, const SiteStability& site) {
       "correct the scenario: damping, energy error and the stability limit of the step come from its number");
 }
 
-void judge_delay(Judged& judged, const SiteStability& site) {
-  const ForceDelay& delay = site.delay;
-  const bool is_finite = std::isfinite(site.critical.delay_s);
-  judged.report.add(CheckVerdict::pass, "critical delay",
-                    is_finite ? fmt::format("{:.3f} ms, at {:.2f} Hz, without compensators",
-                                            1e3 * site.critical.delay_s, hertz(site.critical.frequency_rad_per_s))
-                              : "none: stable at any delay");
+/// @param use   of the critical delay by what remains.
+void add_delay(CheckReport& report, const SubstructureScenario& site, const ForceDelay& delay, double use) {
   const double command_s = delay.transfer_s - delay.after_command_s;
   const double force_s = delay.after_command_s - delay.remaining_s;
-  if (site.site->site.rig_is_elsewhere && delay.transfer_s == 0.0) {
-    judged.report.add(CheckVerdict::caution, "delay of the rig", "not known: counts as none",
-                      "measure it and give rig.transfer_delay_s; the figures below are those of a rig in time");
+  if (site.site.rig_is_elsewhere && delay.transfer_s == 0.0) {
+    report.add(CheckVerdict::caution, "delay of the rig", "not known: counts as none",
+               "measure it and give rig.transfer_delay_s; the figures below are those of a rig in time");
   }
-  const double use =
-      is_finite && site.critical.delay_s > 0.0 ? std::abs(delay.remaining_s) / site.critical.delay_s : 0.0;
-  judged.report.add(
+  report.add(
       caution_if(use > kPolicy.delay_use), "delay",
       fmt::format(
           "{:.3f} ms of the transfer system at low frequency, {:.3f} ms compensated by the command, {:.3f} ms by "
@@ -189,6 +183,17 @@ void judge_delay(Judged& judged, const SiteStability& site) {
           1e3 * delay.transfer_s, 1e3 * command_s, 1e3 * force_s, 1e3 * delay.remaining_s),
       use > kPolicy.delay_use ? fmt::format("set delay_s of its compensator nearer to {:.4g} s", delay.transfer_s)
                               : "");
+}
+
+void judge_delay(Judged& judged, const SiteStability& site) {
+  const ForceDelay& delay = site.delay;
+  const bool is_finite = std::isfinite(site.critical.delay_s);
+  judged.report.add(CheckVerdict::pass, "critical delay",
+                    is_finite ? fmt::format("{:.3f} ms, at {:.2f} Hz, without compensators",
+                                            1e3 * site.critical.delay_s, hertz(site.critical.frequency_rad_per_s))
+                              : "none: stable at any delay");
+  add_delay(judged.report, *site.site, delay,
+            is_finite && site.critical.delay_s > 0.0 ? std::abs(delay.remaining_s) / site.critical.delay_s : 0.0);
 }
 
 void judge_margin(Judged& judged, const SiteStability& site) {
@@ -260,45 +265,45 @@ std::string use_of_rating(double limit, double rating) {
 }
 
 /// Limits inside what the rig can do; and what is not checked.
-void judge_limits(Judged& judged, const SiteStability& site) {
-  const SiteScenario& known = site.site->site;
+void judge_limits(CheckReport& report, const SiteScenario& known) {
   const SiteLimits& limits = known.loop.limits;
   const bool exceeds = limits.displacement_m > known.rating.displacement_m ||
                        limits.velocity_m_per_s > known.rating.velocity_m_per_s || limits.force_n > known.rating.force_n;
-  judged.report.add(
-      caution_if(exceeds), "limits",
-      fmt::format("{:.4g} m ({}), {:.4g} m/s ({}), {:.4g} N ({})", limits.displacement_m,
-                  use_of_rating(limits.displacement_m, known.rating.displacement_m), limits.velocity_m_per_s,
-                  use_of_rating(limits.velocity_m_per_s, known.rating.velocity_m_per_s), limits.force_n,
-                  use_of_rating(limits.force_n, known.rating.force_n)),
-      exceeds ? "bring the limits inside the rating: beyond it the rig does not follow" : "");
-  judged.report.add(
-      caution_if(!limits.tracking_error_m), "tracking error",
-      limits.tracking_error_m ? fmt::format("at most {:.4g} mm", 1e3 * *limits.tracking_error_m) : "not checked",
-      limits.tracking_error_m ? "" : "give limits.tracking_error_m");
-  judged.report.add(caution_if(!limits.stuck_samples), "stuck sensors",
-                    limits.stuck_samples
-                        ? fmt::format("{} equal readings of {} after {:.4g} mm of motion", *limits.stuck_samples,
-                                      limits.stuck_judges_force ? "displacement or force" : "displacement",
-                                      1e3 * limits.stuck_while_moving_m)
-                        : "not checked",
-                    limits.stuck_samples ? "" : "give interlocks.stuck_sensor");
+  report.add(caution_if(exceeds), "limits",
+             fmt::format("{:.4g} m ({}), {:.4g} m/s ({}), {:.4g} N ({})", limits.displacement_m,
+                         use_of_rating(limits.displacement_m, known.rating.displacement_m), limits.velocity_m_per_s,
+                         use_of_rating(limits.velocity_m_per_s, known.rating.velocity_m_per_s), limits.force_n,
+                         use_of_rating(limits.force_n, known.rating.force_n)),
+             exceeds ? "bring the limits inside the rating: beyond it the rig does not follow" : "");
+  report.add(caution_if(!limits.tracking_error_m), "tracking error",
+             limits.tracking_error_m ? fmt::format("at most {:.4g} mm", 1e3 * *limits.tracking_error_m) : "not checked",
+             limits.tracking_error_m ? "" : "give limits.tracking_error_m");
+  report.add(caution_if(!limits.stuck_samples), "stuck sensors",
+             limits.stuck_samples
+                 ? fmt::format("{} equal readings of {} after {:.4g} mm of motion", *limits.stuck_samples,
+                               limits.stuck_judges_force ? "displacement or force" : "displacement",
+                               1e3 * limits.stuck_while_moving_m)
+                 : "not checked",
+             limits.stuck_samples ? "" : "give interlocks.stuck_sensor");
 }
 
-void judge_site(Judged& judged, const SiteStability& site) {
-  const SiteScenario& known = site.site->site;
-  const Scenario& scenario = judged.scenario;
-  judged.report.begin("site " + site.site->id);
-  judged.report.add(
+void begin_site(CheckReport& report, const Scenario& scenario, const SubstructureScenario& site) {
+  const SiteScenario& known = site.site;
+  report.begin("site " + site.id);
+  report.add(
       CheckVerdict::pass, "control rate",
       fmt::format("{} rig, {:.6g} Hz requested, {:.6g} Hz used ({} per step)", known.rig_type, known.control_rate_hz,
                   known.periods_per_step / (scenario.time.step_s * scenario.time.time_scale), known.periods_per_step));
+}
+
+void judge_site(Judged& judged, const SiteStability& site) {
+  begin_site(judged.report, judged.scenario, *site.site);
   judge_stiffness(judged, site);
   judge_delay(judged, site);
   judge_margin(judged, site);
   judge_estimate(judged, site);
   judge_noise(judged, site);
-  judge_limits(judged, site);
+  judge_limits(judged.report, site.site->site);
 }
 
 void print(const CheckReport& report, std::FILE* out) {
@@ -322,50 +327,27 @@ void judge_peak(CheckReport& report, const std::string& subject, double peak, do
                  : "scale the excitation down (excitation.scale), test slower (time_scale), or take a larger rig");
 }
 
-}  // namespace
-
-TestStability check_stability(const Scenario& scenario, CheckReport& report, std::FILE* out) {
-  const VibrationModes modes = vibration_modes(scenario.structure);
-  if (out != nullptr) fmt::print(out, "{}", excitation_text(scenario, modes));
-  judge_ground_motions(scenario, report);
-  if (!scenario.excitation.records.empty()) print(report, out);
-  TestStability stability = test_stability(scenario, modes);
-  Judged judged{scenario, modes, stability, damping_ratios(scenario.structure, modes), report};
-  judge_modes(judged);
-  print(report, out);
-  judge_step(judged);
-  print(report, out);
-  judge_coupled_test(judged);
-  if (!stability.sites.empty()) print(report, out);
-  for (const SiteStability& site : stability.sites) {
-    judge_site(judged, site);
-    print(report, out);
-  }
-  return stability;
-}
-
-void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out) {
-  const PredictedTest test = predicted_test(scenario);
-  report.begin("predicted test");
-  if (test.reason == StopReason::completed) {
-    report.add(CheckVerdict::pass, "end", "simulated to its end");
+void judge_lead(const OpenSeesLeadScenario& lead, CheckReport& report) {
+  report.begin("OpenSees leads");
+  if (lead.script.empty()) {
+    report.add(CheckVerdict::pass, "start", "by hand; its elements connect from " + lead.client_address);
   } else {
-    std::string found = fmt::format("{} after {:.4g} s of model time", test_end(test.reason).verdict, test.end_s);
-    for (const std::string& fault : test.faults) found += "; " + fault;
-    report.add(CheckVerdict::fail, "end", found, "see the lines above and the peaks below for the cause");
+    try {
+      report.add(CheckVerdict::pass, "start", find_opensees(lead.program).string() + " " + lead.script.string());
+    } catch (const ConfigError& error) {
+      report.add(CheckVerdict::fail, "start", error.what(), "install OpenSees, or give coordinator.program");
+    }
   }
-  for (const SitePeaks& site : test.sites) {
-    const SiteLimits& limits = site.site->site.loop.limits;
-    const RigRating& rating = site.site->site.rating;
-    report.add(CheckVerdict::pass, site.site->id, "by " + site.rig);
-    judge_peak(report, "  displacement", site.displacement_m, limits.displacement_m, rating.displacement_m, "m");
-    judge_peak(report, "  velocity", site.velocity_m_per_s, limits.velocity_m_per_s, rating.velocity_m_per_s, "m/s");
-    judge_peak(report, "  force", site.force_n, limits.force_n, rating.force_n, "N");
+  for (const LedElementScenario& element : lead.elements) {
+    std::string dofs;
+    for (const std::string& dof : element.dofs) dofs += (dofs.empty() ? "" : ", ") + dof;
+    report.add(CheckVerdict::pass, "element",
+               fmt::format("port {} of {}: {} ({})", element.port, lead.listen_address, element.substructure, dofs));
   }
-  print(report, out);
+  report.add(CheckVerdict::caution, "critical delay", "not known: mass and damping are in the model of OpenSees",
+             "keep what remains of each site's delay well below 2 x damping ratio / (angular frequency x stiffness "
+             "share of the site), in each mode");
 }
-
-namespace {
 
 /// In words; empty for a stable test.
 std::string instability(const Scenario& scenario) try {
@@ -392,7 +374,61 @@ bool has_known_rig_elsewhere(const Scenario& scenario) {
 
 }  // namespace
 
+TestStability check_stability(const Scenario& scenario, CheckReport& report, std::FILE* out) {
+  const VibrationModes modes = vibration_modes(scenario.structure);
+  if (out != nullptr) fmt::print(out, "{}", excitation_text(scenario, modes));
+  judge_ground_motions(scenario, report);
+  if (!scenario.excitation.records.empty()) print(report, out);
+  TestStability stability = test_stability(scenario, modes);
+  Judged judged{scenario, modes, stability, damping_ratios(scenario.structure, modes), report};
+  judge_modes(judged);
+  print(report, out);
+  judge_step(judged);
+  print(report, out);
+  judge_coupled_test(judged);
+  if (!stability.sites.empty()) print(report, out);
+  for (const SiteStability& site : stability.sites) {
+    judge_site(judged, site);
+    print(report, out);
+  }
+  return stability;
+}
+
+void check_led_test(const Scenario& scenario, CheckReport& report, std::FILE* out) {
+  judge_lead(*scenario.opensees, report);
+  print(report, out);
+  for (const SubstructureScenario& site : scenario.substructures) {
+    if (site.role != Role::experimental_site) continue;
+    begin_site(report, scenario, site);
+    for (const ForceDelay& delay : site.site.delays) add_delay(report, site, delay, 0.0);
+    judge_limits(report, site.site);
+    print(report, out);
+  }
+}
+
+void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out) {
+  const PredictedTest test = predicted_test(scenario);
+  report.begin("predicted test");
+  if (test.reason == StopReason::completed) {
+    report.add(CheckVerdict::pass, "end", "simulated to its end");
+  } else {
+    std::string found = fmt::format("{} after {:.4g} s of model time", test_end(test.reason).verdict, test.end_s);
+    for (const std::string& fault : test.faults) found += "; " + fault;
+    report.add(CheckVerdict::fail, "end", found, "see the lines above and the peaks below for the cause");
+  }
+  for (const SitePeaks& site : test.sites) {
+    const SiteLimits& limits = site.site->site.loop.limits;
+    const RigRating& rating = site.site->site.rating;
+    report.add(CheckVerdict::pass, site.site->id, "by " + site.rig);
+    judge_peak(report, "  displacement", site.displacement_m, limits.displacement_m, rating.displacement_m, "m");
+    judge_peak(report, "  velocity", site.velocity_m_per_s, limits.velocity_m_per_s, rating.velocity_m_per_s, "m/s");
+    judge_peak(report, "  force", site.force_n, limits.force_n, rating.force_n, "N");
+  }
+  print(report, out);
+}
+
 void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
+  if (scenario.opensees) return;  // the structure is not known here
   const std::string found = instability(scenario);
   if (found.empty()) return;
   if (!even_if_unstable && has_known_rig_elsewhere(scenario)) {

@@ -15,6 +15,7 @@ Codes causes_of(StopReason reason) {
     case StopReason::coordinator_lost: return {EventCode::coordinator_lost};
     case StopReason::not_finite: return {EventCode::measurement_not_finite};
     case StopReason::no_equilibrium: return {EventCode::no_equilibrium};
+    case StopReason::participant_failed: return {EventCode::opensees_lost};
     case StopReason::opensees_lost: return {EventCode::opensees_lost, EventCode::opensees_silent};
     case StopReason::opensees_iterates: return {EventCode::opensees_iterates};
     case StopReason::not_assembled:
@@ -25,8 +26,7 @@ Codes causes_of(StopReason reason) {
     case StopReason::none:
     case StopReason::completed:
     case StopReason::interrupted:
-    case StopReason::emergency_stop:
-    case StopReason::participant_failed: return {};
+    case StopReason::emergency_stop: return {};
   }
   return {};
 }
