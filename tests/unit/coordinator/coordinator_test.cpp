@@ -44,6 +44,21 @@ class CountingSource final : public MotionSource {
     if (++advances == diverges_after) current_.displacement_m[0] = std::numeric_limits<double>::infinity();
   }
 
+  [[nodiscard]] ParticipantId awaited(Instant) noexcept override { return awaits; }
+  [[nodiscard]] NextMotion next(Instant) noexcept override { return asks; }
+  [[nodiscard]] LeadEnd end() const noexcept override { return ends; }
+  [[nodiscard]] std::optional<LeadEvent> take_event() noexcept override { return std::exchange(tells, std::nullopt); }
+  void take_force(SubstructureIndex substructure, const InterfaceVector& force_n) noexcept override {
+    forces_n[substructure] = force_n[0];
+  }
+
+  // What a program that leads does.
+  ParticipantId awaits;
+  NextMotion asks = NextMotion::command;
+  LeadEnd ends;
+  std::optional<LeadEvent> tells;
+  std::array<double, 2> forces_n{};  // by substructure
+
   [[nodiscard]] int iteration() const noexcept override { return iteration_; }
   [[nodiscard]] bool is_trial() const noexcept override { return iteration_ < trials; }
   [[nodiscard]] double missing_m() const noexcept override { return missing_; }
@@ -543,6 +558,86 @@ TEST_F(CoordinatorTest, NonFiniteMotionEndsTest) {
   EXPECT_EQ(reason(), StopReason::not_finite);
   EXPECT_EQ(steps_.size(), 3U);
   for (const DisplacementCommand& command : take_commands()) EXPECT_TRUE(command.newest().displacement_m.allFinite());
+}
+
+TEST_F(CoordinatorTest, ArmsWhenTheProgramThatLeadsIsThere) {
+  make();
+  source_->awaits = "b";
+  source_->tells = LeadEvent{EventCode::opensees_refused, "a", {1.0, 0.0}};
+  advance();
+  advance(milliseconds{300});
+  say_both(LifecycleState::ready);
+  advance();
+  EXPECT_TRUE(take_control().empty());
+  EXPECT_EQ(subjects(EventCode::opensees_refused), (std::multiset<std::string>{"a"}));
+  source_->awaits = {};
+  advance();
+  ASSERT_EQ(take_control().size(), 1U);
+}
+
+TEST_F(CoordinatorTest, MissingProgramThatLeadsIsNamed) {
+  make();
+  source_->awaits = "b";
+  advance();
+  advance(milliseconds{300});
+  for (int s = 0; s < 31; ++s) {
+    say_both(LifecycleState::ready);
+    advance(seconds{1});
+  }
+  EXPECT_EQ(reason(), StopReason::not_assembled);
+  EXPECT_EQ(subjects(EventCode::opensees_missing), (std::multiset<std::string>{"b"}));
+  EXPECT_TRUE(subjects(EventCode::participant_missing).empty());
+}
+
+TEST_F(CoordinatorTest, WaitsForTheNextQuestionAndRecordsMeanwhile) {
+  make();
+  start();
+  take_commands();
+  source_->asks = NextMotion::none;
+  answer(0, 0, 10.0);
+  answer(1, 0, 20.0);
+  advance();
+  EXPECT_TRUE(take_commands().empty());
+  EXPECT_EQ(steps_.size(), 1U) << "a step that is complete is not kept back";
+  EXPECT_EQ(source_->forces_n, (std::array{10.0, 20.0}));
+  source_->asks = NextMotion::command;
+  advance();
+  EXPECT_EQ(take_commands().size(), 2U);
+}
+
+TEST_F(CoordinatorTest, EndsWithTheProgramThatLeads) {
+  make();
+  start();
+  source_->asks = NextMotion::end;
+  source_->ends = {StopReason::opensees_iterates, {EventCode::opensees_iterates, "a", {}}};
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  EXPECT_EQ(reason(), StopReason::opensees_iterates);
+  EXPECT_EQ(subjects(EventCode::opensees_iterates), (std::multiset<std::string>{"a"}));
+  EXPECT_EQ(subjects(EventCode::test_stopped), (std::multiset<std::string>{"opensees"}));
+}
+
+TEST_F(CoordinatorTest, ProgramThatLeavesBeforeTheStartEndsTest) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  coordinator_->lead_has_left();
+  advance();
+  EXPECT_EQ(reason(), StopReason::participant_failed);
+}
+
+TEST_F(CoordinatorTest, OverdueCommandIsBlamedOnTheProgramThatLeads) {
+  make();
+  start();
+  source_->asks = NextMotion::none;
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  say(0, LifecycleState::running, FaultFlags::command_age);
+  advance();
+  EXPECT_EQ(reason(), StopReason::opensees_lost);
+  EXPECT_EQ(subjects(EventCode::opensees_silent).size(), 1U);
 }
 
 TEST_F(CoordinatorTest, LosesSubstructureWhenLeaseExpires) {
