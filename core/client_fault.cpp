@@ -13,6 +13,10 @@ std::string_view describe(ClientFault fault) noexcept {
     case ClientFault::other_size:
       return "its number of degrees of freedom differs from that of the element in the scenario "
              "(coordinator.elements)";
+    case ClientFault::short_messages:
+      return "its messages are too short for the element; give genericClient a larger -dataSize, at least 3 n + 2 and "
+             "n x n "
+             "for n degrees of freedom";
     case ClientFault::other_message: return "it sent a message that the protocol of genericClient has not";
   }
   return "it gives no reason";

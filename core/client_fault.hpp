@@ -13,6 +13,7 @@ enum class ClientFault : std::uint8_t {
   occupied,        // the element has a client
   other_protocol,  // its first message is not that of genericClient
   other_size,      // of the element, in degrees of freedom
+  short_messages,  // too few doubles in each for the element (-dataSize)
   other_message,   // an action that the protocol has not
 };
 

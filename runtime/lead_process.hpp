@@ -24,7 +24,8 @@ class LeadProcess {
   /// How it ended, with the end of its log; empty while it runs.
   [[nodiscard]] std::string end_text() const;
   /// Ends it after the test.
-  /// @param is_completed   it may finish its script within `limit`; otherwise it is ended at once: it waits for an answer
+  /// @param is_completed   it may finish its script within `limit`; otherwise it is ended at once: it waits for an
+  /// answer
   ///                       that will not come.
   /// @return what the users should know; empty when there is nothing.
   [[nodiscard]] std::string finish(bool is_completed, Duration limit);

@@ -1,6 +1,11 @@
 #include "runtime/participant.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
+
+#include "coordinator/opensees/generic_client_server.hpp"
+#include "coordinator/opensees/opensees_lead.hpp"
 
 namespace hybridtest {
 namespace {
@@ -24,8 +29,48 @@ CoordinatorSettings coordinator_settings(const Scenario& scenario) {
   settings.stiffness_n_per_m = scenario.structure.stiffness_n_per_m;
   settings.recorded_dofs = scenario.recorded_dofs;
   settings.load = scenario.excitation.load(scenario.structure);
+  if (scenario.opensees) settings.last_step = std::numeric_limits<Step>::max();  // its model ends the test
   for (const SubstructureScenario& substructure : scenario.substructures) {
     settings.substructures.push_back({substructure.id, substructure.role, substructure.interface});
+  }
+  return settings;
+}
+
+/// Of names of degrees of freedom.
+std::vector<Eigen::Index> rows_of(const Scenario& scenario, const std::vector<std::string>& names) {
+  std::vector<Eigen::Index> rows;
+  for (const std::string& name : names) rows.push_back(std::ranges::find(scenario.dofs, name) - scenario.dofs.begin());
+  return rows;
+}
+
+/// The elements of an OpenSees that leads, over sockets.
+std::unique_ptr<ElementPort> serve_elements(const Scenario& scenario, Waker& waker) {
+  std::vector<ServedElement> elements;
+  for (const LedElementScenario& led : scenario.opensees->elements) {
+    const SubstructureScenario& substructure = *scenario.find(led.substructure);
+    const std::vector<Eigen::Index> rows = rows_of(scenario, led.dofs);
+    const Eigen::MatrixXd stiffness = substructure.interface.on_structure(substructure.initial_stiffness_n_per_m);
+    elements.push_back({led.port,
+                        {.stiffness_n_per_m = stiffness(rows, rows),
+                         .damping_n_s_per_m = led.damping_n_s_per_m.asDiagonal(),
+                         .mass_kg = led.mass_kg.asDiagonal()}});
+  }
+  return std::make_unique<GenericClientServer>(scenario.opensees->listen_address, scenario.opensees->client_address,
+                                               std::move(elements), [&waker] { waker.signal(); });
+}
+
+OpenSeesLeadSettings lead_settings(const Scenario& scenario) {
+  OpenSeesLeadSettings settings;
+  settings.structure_size = std::ssize(scenario.dofs);
+  settings.allow_iterations = scenario.opensees->allow_iterations;
+  settings.silence = scenario.opensees->silence;
+  settings.can_revert = std::ranges::all_of(scenario.substructures, [](const SubstructureScenario& substructure) {
+    return substructure.role == Role::numerical_substructure;
+  });
+  for (const LedElementScenario& led : scenario.opensees->elements) {
+    const SubstructureScenario& substructure = *scenario.find(led.substructure);
+    settings.elements.push_back(
+        {scenario.index_of(substructure), substructure.id, rows_of(scenario, led.dofs), substructure.interface});
   }
   return settings;
 }
@@ -46,16 +91,26 @@ CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const P
       control_out_{surroundings.transport.control_outbox()},
       measurements_{surroundings.transport.measurement_inbox()},
       commands_{surroundings.transport.command_outbox(static_cast<std::uint16_t>(scenario.substructures.size()))} {
+  std::unique_ptr<MotionSource> source;
+  if (scenario.opensees) {
+    elements_ = serve_elements(scenario, surroundings.transport.waker());
+    source = std::make_unique<OpenSeesLead>(lead_settings(scenario), *elements_, surroundings.sink("opensees"));
+  } else {
+    source = scenario.make_integrator();
+  }
   coordinator_ = std::make_unique<Coordinator>(
-      coordinator_settings(scenario), scenario.make_integrator(), presence_,
+      coordinator_settings(scenario), std::move(source), presence_,
       CoordinatorPorts{*announcements_, *control_in_, *control_out_, *measurements_, *commands_},
       CoordinatorRecord{surroundings.sink("steps"), surroundings.sink("exchanges")});
 }
 
 std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario) {
-  return {Coordinator::steps_layout(scenario.recorded_names(), scenario.excitation.records.size(),
-                                    !scenario.excitation.forces.empty()),
-          Coordinator::exchanges_layout()};
+  std::vector<TableLayout> tables{
+      Coordinator::steps_layout(scenario.recorded_names(), scenario.excitation.records.size(),
+                                !scenario.excitation.forces.empty()),
+      Coordinator::exchanges_layout()};
+  if (scenario.opensees) tables.push_back(OpenSeesLead::trials_layout());
+  return tables;
 }
 
 NumericalParticipant::NumericalParticipant(const Scenario& scenario, const SubstructureScenario& substructure,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/coordinator.hpp"
+#include "coordinator/opensees/element_port.hpp"
 #include "core/exit_code.hpp"
 #include "core/node.hpp"
 #include "core/presence.hpp"
@@ -51,12 +52,16 @@ class Participant {
 
 class CoordinatorParticipant final : public Participant {
  public:
+  /// Where OpenSees leads, its elements can connect from here on.
+  /// @throws ConfigError when a port of them cannot be listened on.
   CoordinatorParticipant(const Scenario& scenario, const ParticipantSurroundings& surroundings);
 
   [[nodiscard]] Node& node() noexcept override { return *coordinator_; }
   [[nodiscard]] bool is_done() const noexcept override { return coordinator_->is_done(); }
   [[nodiscard]] StopReason stop_reason() const noexcept override { return coordinator_->report().reason; }
   void request_stop(StopReason reason) noexcept override { coordinator_->request_stop(reason); }
+  /// See Coordinator::lead_has_left().
+  void lead_has_left() noexcept { coordinator_->lead_has_left(); }
   [[nodiscard]] CoordinatorReport report() const noexcept { return coordinator_->report(); }
 
   [[nodiscard]] static std::vector<TableLayout> tables(const Scenario& scenario);
@@ -66,6 +71,7 @@ class CoordinatorParticipant final : public Participant {
   std::unique_ptr<Outbox<TestControl>> control_out_;
   std::unique_ptr<Inbox<ForceMeasurement>> measurements_;
   std::unique_ptr<Outbox<DisplacementCommand>> commands_;
+  std::unique_ptr<ElementPort> elements_;  // where OpenSees leads
   std::unique_ptr<Coordinator> coordinator_;
 };
 

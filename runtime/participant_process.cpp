@@ -18,6 +18,7 @@
 #include "runtime/event_log.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
+#include "runtime/lead_process.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
@@ -158,15 +159,19 @@ int exit_code_of(const Participant& participant, const Recorder& recorder) {
   return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
 }
 
+/// @param meanwhile    called after each advance() of the node.
 /// @param at_the_end   called before the recording is closed, for its last rows.
 void run_to_the_end(
     Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, const Scenario& scenario,
-    const std::function<void()>& at_the_end = [] {}) {
+    const std::function<void(Instant)>& meanwhile = [](Instant) {}, const std::function<void()>& at_the_end = [] {}) {
   RecorderThread recording{process.recorder()};
   Housekeeping housekeeping{participant, process, scenario.time.mode == CouplingMode::lockstep};
   run_until(
       participant.node(), process.transport().waker(), clock, [&] { return participant.is_done(); },
-      [&](Instant now) { housekeeping(now); });
+      [&](Instant now) {
+        housekeeping(now);
+        meanwhile(now);
+      });
   process.write_events();
   // The tool that sent an emergency stop may discover this participant only now; it then hears that it obeyed.
   if (participant.stop_reason() == StopReason::emergency_stop) rest_until(clock, clock.now() + kLinger);
@@ -179,8 +184,20 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
   ProcessSurroundings process{scenario, options, Role::coordinator, tables};
   CoordinatorParticipant participant{scenario, process.surroundings()};
   wake_on_stop(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario, [&] {
+  std::optional<LeadProcess> lead;
+  if (scenario.opensees) lead.emplace(*scenario.opensees, options.run_directory);
+  const auto watch_lead = [&](Instant now) {
+    if (!lead || participant.report().reason != StopReason::none || !lead->has_left(now)) return;
+    process.print(lead->end_text());
+    participant.lead_has_left();
+  };
+  run_to_the_end(participant, process, clock, scenario, watch_lead, [&] {
     const CoordinatorReport report = participant.report();
+    if (lead) {
+      const bool is_completed = report.reason == StopReason::completed;
+      if (const std::string told = lead->finish(is_completed, scenario.timeouts.stop); !told.empty())
+        process.print(told);
+    }
     write_test_tables(scenario, report, exit_code_for(report.reason),
                       [&](std::string_view table) -> RowSink& { return process.recorder().sink(table); });
   });
@@ -224,11 +241,13 @@ void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings
         ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
         "real_time.allow_degraded: true to start without them"};
   }
-  run_to_the_end(participant, process, clock, scenario, [&] {
-    loop.stop();
-    record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
-                       process.recorder().sink("loop_start_lateness"));
-  });
+  run_to_the_end(
+      participant, process, clock, scenario, [](Instant) {},
+      [&] {
+        loop.stop();
+        record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
+                           process.recorder().sink("loop_start_lateness"));
+      });
 }
 
 int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
