@@ -22,4 +22,6 @@ std::filesystem::path find_opensees(const std::string& program) {
                     "); expected the path of OpenSees, or its name in PATH"};
 }
 
+void limit_opensees_threads() { setenv("OPENBLAS_NUM_THREADS", "1", 0); }
+
 }  // namespace hybridtest

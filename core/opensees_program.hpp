@@ -12,4 +12,9 @@ namespace hybridtest {
 /// @throws ConfigError where there is none.
 [[nodiscard]] std::filesystem::path find_opensees(const std::string& program);
 
+/// Sets OPENBLAS_NUM_THREADS to 1 for processes started from here on, unless it is set. The matrices of a step are
+/// small: the threads of OpenBLAS gain nothing and, on a machine with other work, wait for each other a hundred times
+/// as long as they compute. Call it before there are threads.
+void limit_opensees_threads();
+
 }  // namespace hybridtest

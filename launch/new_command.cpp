@@ -69,6 +69,14 @@ std::string text_of_new(const NewOptions& options, std::string text, const std::
   return text;
 }
 
+/// @throws ConfigError for a scenario whose ground motion is in the model of an OpenSees that leads.
+fs::path motion_of(const fs::path& shipped, const std::string& name) {
+  const Scenario scenario = read_scenario(shipped, {});
+  if (!scenario.excitation.records.empty()) return scenario.excitation.records.front().file;
+  throw ConfigError{"--from " + name + ": has no ground motion of its own; copy its folder " +
+                    shipped.parent_path().string() + " with the files that its model reads"};
+}
+
 int make_new(const NewOptions& options) {
   const fs::path folder = options.folder.has_filename() ? options.folder : options.folder.parent_path();
   const std::string name = folder.filename().string();
@@ -84,7 +92,7 @@ int make_new(const NewOptions& options) {
   }
   const fs::path shipped = shipped_scenario(options.from);
   if (options.motion) static_cast<void>(read_ground_motion(*options.motion, motion_options(options)));
-  const fs::path motion = options.motion ? *options.motion : read_scenario(shipped, {}).excitation.records.front().file;
+  const fs::path motion = options.motion ? *options.motion : motion_of(shipped, options.from);
   const fs::path motion_path = fs::path{"ground_motions"} / motion.filename();
   const std::string text =
       text_of_new(options, read_input_file(shipped, std::size_t{4} << 20U, "a scenario"), name, motion_path.string());

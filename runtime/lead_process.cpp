@@ -21,6 +21,7 @@ constexpr std::size_t kLogLines = 10;
 LeadProcess::LeadProcess(const OpenSeesLeadScenario& lead, const std::filesystem::path& run_directory) {
   if (lead.script.empty()) return;
   const std::filesystem::path directory = std::filesystem::absolute(run_directory);
+  limit_opensees_threads();
   setenv("HYBRIDTEST_RUN_DIRECTORY", directory.c_str(), 1);
   ChildStart start;
   start.program = find_opensees(lead.program);

@@ -51,6 +51,12 @@ TEST_F(New, FolderOfEveryShippedScenarioRuns) {
   }
 }
 
+TEST_F(New, ScenarioThatOpenSeesLeadsIsCopiedByHand) {
+  EXPECT_THAT(made({"mine", "--from", "opensees/shear_frame"}, kExitConfiguration),
+              AllOf(HasSubstr("copy its folder"), HasSubstr("scenarios/opensees")));
+  EXPECT_FALSE(std::filesystem::exists(directory() / "mine"));
+}
+
 TEST_F(New, TakesTheMotionOfTheUser) {
   std::ofstream{directory() / "my $1 motion.txt"} << "0 0\n0.5 0.2\n1.0 0\n";
   EXPECT_THAT(made({"mine", "--motion", "my $1 motion.txt"}, kExitConfiguration), HasSubstr("unit"));
