@@ -37,9 +37,6 @@ std::string record_text(const Scenario& scenario, std::size_t index, const Vibra
   std::string text =
       fmt::format("\nground motion {}{}: {}\n", excitation.records.size() > 1 ? fmt::format("{}, ", index + 1) : "",
                   record.text, ground_motion_text(record.facts));
-  if (const std::string warning = ground_motion_warning(record.facts); !warning.empty()) {
-    text += fmt::format("  WARNING: {}\n", warning);
-  }
   if (!record.support.empty()) text += fmt::format("  moves the support '{}' alone\n", record.support);
   if (record.factor_found)
     text += fmt::format("  scaled by {:.6g}, the factor found for scale_to\n", *record.factor_found);
