@@ -65,7 +65,8 @@ Instant Coordinator::advance(Instant now) noexcept {
   if (requested_stop_ != StopReason::none)
     begin_stop(now, std::exchange(requested_stop_, StopReason::none), kOperatorId);
   if (std::exchange(lead_has_left_, false) && phase_ < Phase::stopping) {
-    report(now, Severity::fault, EventCode::opensees_lost, kOpenSeesId, {static_cast<double>(ClientFault::closed), 0.0});
+    report(now, Severity::fault, EventCode::opensees_lost, kOpenSeesId,
+           {static_cast<double>(ClientFault::closed), 0.0});
     begin_stop(now, phase_ == Phase::running ? StopReason::opensees_lost : StopReason::participant_failed, kOpenSeesId);
   }
   if (presence_.is_duplicate() && phase_ != Phase::done && phase_ != Phase::stopping) {
@@ -275,6 +276,10 @@ void Coordinator::watch_participants(Instant now) noexcept {
         !command_is_open_) {
       report(now, Severity::fault, EventCode::opensees_silent, {}, {to_seconds(now - step_completed_), 0.0});
       begin_stop(now, StopReason::opensees_lost, kOpenSeesId);
+      return;
+    }
+    if (any(peer->status.faults & FaultFlags::model_failed)) {
+      begin_stop(now, StopReason::model_failed, substructure.id);
       return;
     }
     if (has_other_fault || is_leaving) {

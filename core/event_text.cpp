@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/client_fault.hpp"
+#include "core/model_fault.hpp"
 #include "core/rig_fault.hpp"
 
 namespace hybridtest {
@@ -163,6 +164,10 @@ std::string describe(const Event& event) {
              " in one step; a specimen cannot go back. Use an analysis that moves once a step, such as Newmark with "
              "Linear, AlphaOS or CentralDifference, or set coordinator.allow_iterations: true where each trial may "
              "be imposed";
+    case EventCode::model_failed:
+      return "the model of " + subject +
+             " failed: " + describe(ModelFailure{code_of<ModelFault>(event.values[0]), event.values[1]}) +
+             "; see the end of its output in the run directory";
   }
   return "unknown event";
 }

@@ -24,7 +24,7 @@ struct TestEnd {
 };
 
 /// All of them, one row per StopReason; docs/ends.md describes each.
-inline constexpr std::array<TestEnd, 15> kTestEnds{{
+inline constexpr std::array<TestEnd, 16> kTestEnds{{
     {StopReason::none, "none", "end unknown", kExitEndedEarly},
     {StopReason::completed, "completed", "completed", kExitCompleted},
     {StopReason::interrupted, "interrupted", "stopped by the operator", kExitEndedEarly},
@@ -40,6 +40,7 @@ inline constexpr std::array<TestEnd, 15> kTestEnds{{
     {StopReason::no_equilibrium, "no_equilibrium", "ended: no equilibrium in a step", kExitEndedEarly},
     {StopReason::opensees_lost, "opensees_lost", "ended: OpenSees was lost", kExitEndedEarly},
     {StopReason::opensees_iterates, "opensees_iterates", "ended: OpenSees iterates on a specimen", kExitEndedEarly},
+    {StopReason::model_failed, "model_failed", "ended: a numerical model failed", kExitEndedEarly},
 }};
 
 /// @return the row of `none` for a number that is no reason.

@@ -24,6 +24,7 @@ std::string_view name(FaultFlags single_flag) noexcept {
     case FaultFlags::force_step: return "force_step";
     case FaultFlags::stuck_sensor: return "stuck_sensor";
     case FaultFlags::tracking_indicator: return "tracking_indicator";
+    case FaultFlags::model_failed: return "model_failed";
   }
   return "several";
 }
@@ -70,6 +71,7 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::opensees_lost: return "opensees_lost";
     case EventCode::opensees_silent: return "opensees_silent";
     case EventCode::opensees_iterates: return "opensees_iterates";
+    case EventCode::model_failed: return "model_failed";
   }
   return "unknown";
 }

@@ -36,6 +36,7 @@ enum class FaultFlags : std::uint32_t {
   force_step = 1U << 14U,          // likewise
   stuck_sensor = 1U << 15U,        // reads the same while the command moves
   tracking_indicator = 1U << 16U,  // the specimen lags or leads too far
+  model_failed = 1U << 17U,        // of a numerical substructure
 };
 HYBRIDTEST_FLAG_OPERATORS(FaultFlags)
 
@@ -67,6 +68,7 @@ enum class StopReason : std::uint8_t {
   no_equilibrium,      // a step that the integrator iterates found none
   opensees_lost,       // that leads: its connection closed, or it asks for nothing
   opensees_iterates,   // that leads: several trials in a step, with a specimen
+  model_failed,        // of a numerical substructure
 };
 
 enum class EventCode : std::uint16_t {
@@ -105,6 +107,7 @@ enum class EventCode : std::uint16_t {
   opensees_lost,      // subject: the substructure of the element; values[0]: ClientFault
   opensees_silent,    // values[0]: time without a question [s]
   opensees_iterates,  // subject: the substructure that was to move again
+  model_failed,       // subject: the substructure; values: ModelFault, its value
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

@@ -26,7 +26,8 @@ Instant NumericalNode::advance(Instant now) noexcept {
     obey(request);
     if (is_done()) break;
   }
-  while (commands_.take(command_)) serve(command_, now);
+  if (is_pending_ && !is_done()) await_model(now);
+  while (!is_pending_ && !has_failed_ && commands_.take(command_)) serve(command_, now);
   if (!is_done()) return wake;
   static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
@@ -68,29 +69,52 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
   }
   for (int i = command.point_count - 1; i > 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
-    if (point.step == last_step_ + 1) take_step(point);
+    if (point.step == last_step_ + 1 && !compute(point, false, now)) return;
   }
-  if (newest.step != last_step_ + 1) return;
-  if (command.is_trial) {
-    try_point(newest);
-  } else {
-    take_step(newest);
-  }
-  last_iteration_ = command.iteration;
-  answer(command, now, MeasurementFlags::none);
+  if (newest.step != last_step_ + 1 || !compute(newest, command.is_trial, now)) return;
+  answer_newest(now);
 }
 
-void NumericalNode::try_point(const CommandPoint& point) noexcept {
+void NumericalNode::answer_newest(Instant now) noexcept {
+  last_iteration_ = command_.iteration;
+  answer(command_, now, MeasurementFlags::none);
+}
+
+bool NumericalNode::compute(const CommandPoint& point, bool is_trial, Instant now) noexcept {
   if (is_tried_) model_->revert();
-  model_->trial(point.displacement_m, point.velocity_m_per_s, force_n_);
-  is_tried_ = true;
-  last_point_ = point;
+  computed_ = point;
+  is_trial_ = is_trial;
+  return conclude(is_trial ? model_->begin_trial(point.displacement_m, point.velocity_m_per_s, force_n_, now)
+                           : model_->begin_step(point.displacement_m, point.velocity_m_per_s, force_n_, now),
+                  now);
 }
 
-void NumericalNode::take_step(const CommandPoint& point) noexcept {
-  try_point(point);
-  model_->commit();
-  is_tried_ = false;
+void NumericalNode::await_model(Instant now) noexcept {
+  if (!conclude(model_->take_answer(force_n_, now), now)) return;
+  if (last_point_.step == command_.newest().step) {
+    answer_newest(now);
+  } else {
+    serve(command_, now);  // goes on with the points that follow
+  }
+}
+
+bool NumericalNode::conclude(ModelAnswer answer, Instant now) noexcept {
+  is_pending_ = answer == ModelAnswer::pending;
+  if (answer == ModelAnswer::failed) {
+    has_failed_ = true;
+    const ModelFailure failure = model_->failure();
+    presence_.raise(FaultFlags::model_failed);
+    presence_.report(now, Severity::fault, EventCode::model_failed, presence_.identity().id,
+                     {static_cast<double>(failure.fault), failure.value}, computed_.step, computed_.model_time_s);
+  }
+  if (answer != ModelAnswer::ready) return false;
+  is_tried_ = is_trial_;
+  last_point_ = computed_;
+  if (!is_trial_) record_step(computed_);
+  return true;
+}
+
+void NumericalNode::record_step(const CommandPoint& point) noexcept {
   last_step_ = point.step;
   presence_.set_last_step(point.step);
 

@@ -17,6 +17,9 @@ namespace hybridtest {
 /// Answers each displacement command with the restoring force of a structural model. A step changes
 /// the model once, also when its command arrives several times. A trial does not change it: the next trial of the step,
 /// or its final command, starts from the state at the end of the step before.
+///
+/// A model that computes outside this process may take seconds: the node shows its presence meanwhile. One that fails
+/// ends the test, with its reason.
 class NumericalNode final : public Node {
  public:
   /// @param index      position of this substructure in the scenario.
@@ -37,15 +40,25 @@ class NumericalNode final : public Node {
     return requested_stop_ != StopReason::none ? requested_stop_ : membership_.stop_reason();
   }
 
+  /// What the model wrote before it failed; empty where it did not.
+  [[nodiscard]] std::string failure_text() const { return model_->failure_text(); }
+
   /// @param dofs   names of the recorded interface degrees of freedom.
   [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs);
 
  private:
   void obey(Request request) noexcept;
   void serve(const DisplacementCommand& command, Instant now) noexcept;
-  /// Force at the displacement, from the state at the end of the last step.
-  void try_point(const CommandPoint& point) noexcept;
-  void take_step(const CommandPoint& point) noexcept;
+  /// Takes the answer that the model owes, and goes on with its command.
+  void await_model(Instant now) noexcept;
+  /// The step at the point, or a trial of it: force at the displacement, from the state at the end of the last step.
+  /// @return whether the force is there.
+  bool compute(const CommandPoint& point, bool is_trial, Instant now) noexcept;
+  /// The force of the point that the model computes is there, or is not.
+  bool conclude(ModelAnswer answer, Instant now) noexcept;
+  void record_step(const CommandPoint& point) noexcept;
+  /// The force at the newest point of the command.
+  void answer_newest(Instant now) noexcept;
   void answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept;
 
   SubstructureIndex index_;
@@ -60,6 +73,10 @@ class NumericalNode final : public Node {
   std::uint16_t last_iteration_ = 0;
   Step last_step_ = kNoStep;     // the last one whose state the model has
   bool is_tried_ = false;        // the model holds a trial
+  CommandPoint computed_;        // with the model
+  bool is_trial_ = false;        // likewise
+  bool is_pending_ = false;      // the model owes its force
+  bool has_failed_ = false;      // the model answers no more
   DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
   InterfaceVector force_n_;

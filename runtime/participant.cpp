@@ -75,6 +75,14 @@ OpenSeesLeadSettings lead_settings(const Scenario& scenario) {
   return settings;
 }
 
+/// Under simulated time nothing waits for a model: its calls block.
+ModelSurroundings model_surroundings(const SubstructureScenario& substructure,
+                                     const ParticipantSurroundings& surroundings) {
+  if (surroundings.run_directory.empty()) return {};
+  return {.log = surroundings.run_directory / (substructure.id + "_model.log"),
+          .wake = [&waker = surroundings.transport.waker()] { waker.signal(); }};
+}
+
 }  // namespace
 
 Participant::Participant(const Scenario& scenario, std::string_view id, Role role,
@@ -119,8 +127,10 @@ NumericalParticipant::NumericalParticipant(const Scenario& scenario, const Subst
       announcements_{surroundings.transport.announcement_inbox()},
       commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
       measurements_{surroundings.transport.measurement_outbox()} {
+  std::unique_ptr<SubstructureModel> model = substructure.make_model();
+  model->start(model_surroundings(substructure, surroundings));
   numerical_ =
-      std::make_unique<NumericalNode>(scenario.index_of(substructure), substructure.make_model(), presence_,
+      std::make_unique<NumericalNode>(scenario.index_of(substructure), std::move(model), presence_,
                                       MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
                                       *commands_, *measurements_, surroundings.sink("steps"), substructure.recorded);
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct ParticipantSurroundings {
   Outbox<Event>& events;
   std::function<RowSink&(std::string_view table)> sink;
   Incarnation incarnation = 0;
+  std::filesystem::path run_directory = {};  // empty under simulated time
 };
 
 /// One participant of a test: its node, and the ports of the node.
@@ -84,6 +87,7 @@ class NumericalParticipant final : public Participant {
   [[nodiscard]] bool is_done() const noexcept override { return numerical_->is_done(); }
   [[nodiscard]] StopReason stop_reason() const noexcept override { return numerical_->stop_reason(); }
   void request_stop(StopReason reason) noexcept override { numerical_->request_stop(reason); }
+  [[nodiscard]] std::string failure_text() const { return numerical_->failure_text(); }
 
   [[nodiscard]] static std::vector<TableLayout> tables(const SubstructureScenario& substructure);
 

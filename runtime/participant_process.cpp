@@ -72,7 +72,8 @@ class ProcessSurroundings {
  public:
   ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
                       const std::vector<TableLayout>& tables)
-      : incarnation_{draw_incarnation()},
+      : run_directory_{options.run_directory},
+        incarnation_{draw_incarnation()},
         transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
         network_events_{transport_->event_outbox()},
         recorder_{run_file(options.run_directory, options.id),
@@ -83,7 +84,7 @@ class ProcessSurroundings {
 
   [[nodiscard]] ParticipantSurroundings surroundings() {
     return {*transport_, event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
-            incarnation_};
+            incarnation_, run_directory_};
   }
   [[nodiscard]] Transport& transport() { return *transport_; }
   [[nodiscard]] Recorder& recorder() { return recorder_; }
@@ -110,6 +111,7 @@ class ProcessSurroundings {
     return result;
   }
 
+  std::filesystem::path run_directory_;
   Incarnation incarnation_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<Outbox<Event>> network_events_;
@@ -210,6 +212,7 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
   wake_on_stop(process.transport().waker());
   run_to_the_end(participant, process, clock, scenario);
+  if (const std::string text = participant.failure_text(); !text.empty()) process.print(text);
   return exit_code_of(participant, process.recorder());
 }
 

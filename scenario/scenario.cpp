@@ -307,8 +307,8 @@ SubstructureScenario read_substructure(Section& section, Scenario& scenario, con
   substructure.role = is_numerical ? Role::numerical_substructure : Role::experimental_site;
   read_interface(section, table, scenario.excitation, substructure);
   if (is_numerical) {
-    substructure.make_model =
-        read_model(section.section("model"), named_interface(substructure, table), directory, scenario.files);
+    substructure.make_model = read_model(section.section("model"), named_interface(substructure, table), directory,
+                                         scenario.time.step_s, scenario.files);
   } else {
     read_site(section, scenario, directory, substructure);
   }
@@ -620,7 +620,8 @@ void read_led(const config::Document& document, Section& root, Scenario& scenari
   scenario.structure.influence = Eigen::VectorXd::Zero(size);
   scenario.integrator_step_s = scenario.time.step_s;
   for (const char* key : {"structure", "excitation", "integrator"}) {
-    if (root.has_optional(key)) root.error(key, "is in the model of OpenSees, which leads (coordinator.type); leave it out");
+    if (root.has_optional(key))
+      root.error(key, "is in the model of OpenSees, which leads (coordinator.type); leave it out");
   }
   const std::vector<Section> substructures = read_substructures(root, document, table, scenario);
   read_rest(root, table, scenario);

@@ -379,6 +379,7 @@ void add_numerical_forces(const std::filesystem::path& run, const Scenario& scen
       return;
     }
     const auto model = substructure.make_model();
+    model->start({});
     model->reset();
     const InterfaceMap& interface = substructure.interface;
     InterfaceVector displacement_m;

@@ -18,6 +18,7 @@ Codes causes_of(StopReason reason) {
     case StopReason::participant_failed: return {EventCode::opensees_lost};
     case StopReason::opensees_lost: return {EventCode::opensees_lost, EventCode::opensees_silent};
     case StopReason::opensees_iterates: return {EventCode::opensees_iterates};
+    case StopReason::model_failed: return {EventCode::model_failed};
     case StopReason::not_assembled:
       return {EventCode::participant_missing, EventCode::opensees_refused, EventCode::opensees_missing};
     case StopReason::refused:
@@ -74,6 +75,7 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::no_equilibrium:
     case StopReason::opensees_lost:
     case StopReason::opensees_iterates:
+    case StopReason::model_failed:
     case StopReason::refused:
     case StopReason::recording_failed:
     case StopReason::emergency_stop: return false;

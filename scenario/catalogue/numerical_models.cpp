@@ -11,6 +11,7 @@
 #include "numerical_substructure/elastic_matrix.hpp"
 #include "numerical_substructure/spring_network.hpp"
 #include "scenario/catalogue/laws.hpp"
+#include "scenario/catalogue/opensees_model.hpp"
 #include "scenario/named_file.hpp"
 
 namespace hybridtest {
@@ -138,9 +139,10 @@ Maker<SubstructureModel> read_springs(Section& section, const NamedInterface& in
 }  // namespace
 
 Maker<SubstructureModel> read_model(Section section, const NamedInterface& interface,
-                                    const std::filesystem::path& directory, std::vector<NamedFile>& files) {
+                                    const std::filesystem::path& directory, double step_s,
+                                    std::vector<NamedFile>& files) {
   const auto dofs = static_cast<int>(interface.names.size());
-  std::vector<std::string> names{"elastic", "springs", "shear_building"};
+  std::vector<std::string> names{"elastic", "springs", "shear_building", "opensees"};
   for (const auto& law : laws()) {
     if (law.name != "elastic") names.push_back(law.name);
   }
@@ -153,9 +155,11 @@ Maker<SubstructureModel> read_model(Section section, const NamedInterface& inter
     maker = read_springs(section, interface);
   } else if (type == 2) {
     maker = read_shear_building(section, dofs);
+  } else if (type == 3) {
+    maker = read_opensees_model(section, dofs, step_s, directory, files);
   } else {
     // A law by itself is a spring at the only interface degree of freedom.
-    const std::vector<Maker<Law>> law{laws()[type - 2].read(section)};
+    const std::vector<Maker<Law>> law{laws()[type - 3].read(section)};
     expect_count(section, "type", law.size(), dofs);
     maker = one_spring_each(law);
   }

@@ -21,9 +21,10 @@ struct NamedInterface {
 
 /// The model of a numerical substructure.
 /// @param directory   where files that it names are looked for.
+/// @param step_s      of the test.
 /// @param files       those files are added.
 [[nodiscard]] Maker<SubstructureModel> read_model(config::Section section, const NamedInterface& interface,
-                                                  const std::filesystem::path& directory,
+                                                  const std::filesystem::path& directory, double step_s,
                                                   std::vector<NamedFile>& files);
 
 }  // namespace hybridtest

@@ -194,6 +194,7 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::no_equilibrium:
     case StopReason::opensees_lost:
     case StopReason::opensees_iterates:
+    case StopReason::model_failed:
     case StopReason::refused:
     case StopReason::emergency_stop:
     case StopReason::participant_failed:

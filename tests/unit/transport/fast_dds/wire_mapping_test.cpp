@@ -129,13 +129,13 @@ class Draw {
   }
   TestControl control() {
     return {one_of(ControlVerb::emergency_stop), any<Incarnation>(), one_of(Role::operator_tool),
-            one_of(StopReason::opensees_iterates)};
+            one_of(StopReason::model_failed)};
   }
   Event event() {
     return {text<48>(),
             any<Incarnation>(),
             one_of(Severity::fault),
-            one_of(EventCode::opensees_iterates),
+            one_of(EventCode::model_failed),
             step(),
             time_s(),
             text<48>(),
