@@ -15,9 +15,12 @@ std::string_view describe(ClientFault fault) noexcept {
              "(coordinator.elements)";
     case ClientFault::short_messages:
       return "its messages are too short for the element; give genericClient a larger -dataSize, at least 3 n + 2 and "
-             "n x n "
-             "for n degrees of freedom";
+             "n x n for n degrees of freedom";
     case ClientFault::other_message: return "it sent a message that the protocol of genericClient has not";
+    case ClientFault::not_finite:
+      return "it sent a displacement that is not a number: the analysis of OpenSees has diverged; look at its model "
+             "and "
+             "its step";
   }
   return "it gives no reason";
 }

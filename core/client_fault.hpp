@@ -15,6 +15,7 @@ enum class ClientFault : std::uint8_t {
   other_size,      // of the element, in degrees of freedom
   short_messages,  // too few doubles in each for the element (-dataSize)
   other_message,   // an action that the protocol has not
+  not_finite,      // its trial
 };
 
 /// For messages, such as "its connection closed before its model had ended".

@@ -1,14 +1,14 @@
 #include "coordinator/opensees/generic_client_server.hpp"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
+#include <fcntl.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -19,260 +19,474 @@
 namespace hybridtest {
 namespace {
 
-/// OpenSees splits a message of UDP into datagrams of this size.
-constexpr std::size_t kDatagramBytes = 9126;
-/// Requests that wait: the thread reads no further before they are taken.
-constexpr std::size_t kRequestsMax = 4096;
+/// Datagrams of the client, and those that it expects, are no larger.
+constexpr std::size_t kLargestDatagram = 9126;
+/// The first byte of a client over UDP, and the answer to it.
+constexpr std::byte kUdpHello{'a'};
+constexpr std::byte kUdpWelcome{'b'};
+/// Of what a client sends, per connection.
+constexpr std::size_t kReceiveBuffer = std::size_t{1} << 16;
+/// A message over UDP comes in one go; the system may grant less.
+constexpr int kUdpSystemBuffer = 1 << 22;
+/// Connections of an element that have not said who they are: a port scanner keeps no OpenSees out.
+constexpr std::ptrdiff_t kStrangers = 4;
+constexpr std::size_t kQueuedRequests = 64;
+/// A client whose host has vanished is noticed after about idle + count * interval [s].
+constexpr int kKeepAliveIdle = 5;
+constexpr int kKeepAliveInterval = 2;
+constexpr int kKeepAliveCount = 5;
+/// Ports that are tried for one that is free for TCP and for UDP.
+constexpr int kFreePortTrials = 32;
 
-std::uint32_t address_of(const std::string& text, const char* key) {
+void set_option(int socket, int level, int option, int value) noexcept {
+  // An option that the system does not grant costs time, not correctness.
+  (void)::setsockopt(socket, level, option, &value, sizeof value);
+}
+
+[[nodiscard]] in_addr address_of(const std::string& text, const char* key) {
   in_addr address{};
-  if (inet_pton(AF_INET, text.c_str(), &address) == 1) return address.s_addr;
+  if (::inet_pton(AF_INET, text.c_str(), &address) == 1) return address;
   throw ConfigError{std::string{"coordinator."} + key + ": '" + text +
                     "' is no IPv4 address, such as 127.0.0.1; OpenSees understands neither names nor IPv6"};
 }
 
-int listening_socket(int type, std::uint32_t address, std::uint16_t port) {
-  const int fd = socket(AF_INET, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const int on = 1;
-  if (type == SOCK_STREAM) setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in own{};
-  own.sin_family = AF_INET;
-  own.sin_addr.s_addr = address;
-  own.sin_port = htons(port);
-  if (fd >= 0 && bind(fd, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0 &&
-      (type != SOCK_STREAM || listen(fd, 4) == 0)) {
-    return fd;
-  }
-  const std::string why = std::strerror(errno);
-  if (fd >= 0) close(fd);
-  throw ConfigError{"coordinator.elements: cannot listen on port " + std::to_string(port) + ": " + why +
-                    "; give the element another port, here and in the model"};
+[[nodiscard]] bool is_same(const sockaddr_in& a, const sockaddr_in& b) noexcept {
+  return a.sin_addr.s_addr == b.sin_addr.s_addr && a.sin_port == b.sin_port;
 }
 
-std::uint16_t port_of(int fd) {
-  sockaddr_in own{};
-  socklen_t size = sizeof own;
-  getsockname(fd, reinterpret_cast<sockaddr*>(&own), &size);
-  return ntohs(own.sin_port);
-}
-
-/// Without it, Nagle's algorithm at OpenSees and the delayed acknowledgement here cost 44 ms a step. The system takes
-/// it back by itself: it is asked for again after each receive.
-void acknowledge_at_once(int fd) {
-  const int on = 1;
-  setsockopt(fd, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
-}
+[[nodiscard]] bool is_for_later() noexcept { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
 
-struct GenericClientServer::Element {
-  explicit Element(ServedElement served) : matrices{std::move(served.matrices)} {}
-  ~Element() {
-    for (const int fd : {listener, datagrams, client}) {
-      if (fd >= 0) close(fd);
+/// The sockets on which the clients of one element arrive.
+class GenericClientServer::Ports {
+ public:
+  Ports(in_addr address, const std::string& host, std::uint16_t port) {
+    for (int trial = 0; !open(address, port); ++trial) {
+      const int error = errno;
+      close();
+      if (port == 0 && error == EADDRINUSE && trial < kFreePortTrials) continue;
+      throw ConfigError{"coordinator.elements: cannot listen on port " + std::to_string(port) + " of " + host + ": " +
+                        std::strerror(error) +
+                        (error == EADDRNOTAVAIL ? "; write an address of this host as coordinator.listen"
+                                                : "; give the element another port, here and in the model")};
     }
   }
-  Element(const Element&) = delete;
-  Element& operator=(const Element&) = delete;
+  ~Ports() { close(); }
+  Ports(const Ports&) = delete;
+  Ports& operator=(const Ports&) = delete;
 
-  [[nodiscard]] bool has_client() const noexcept { return session != nullptr; }
+  [[nodiscard]] int tcp() const noexcept { return tcp_; }
+  [[nodiscard]] int udp() const noexcept { return udp_; }
+  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
 
-  int index = 0;
-  ElementMatrices matrices;
-  int listener = -1;                              // TCP
-  int datagrams = -1;                             // UDP
-  int client = -1;                                // TCP
-  sockaddr_in peer{};                             // UDP
-  std::unique_ptr<GenericClientSession> session;  // of the client that is there
-  std::vector<std::byte> unsent;
-  ClientFault refusal = ClientFault::unknown;  // the last one told
+ private:
+  [[nodiscard]] bool open(in_addr host, std::uint16_t port) noexcept {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr = host;
+    address.sin_port = htons(port);
+    const auto* bound = reinterpret_cast<const sockaddr*>(&address);
+    tcp_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    udp_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (tcp_ < 0 || udp_ < 0) return false;
+    set_option(tcp_, SOL_SOCKET, SO_REUSEADDR, 1);  // connections of the test before may still be closing
+    set_option(udp_, SOL_SOCKET, SO_RCVBUF, kUdpSystemBuffer);
+    if (::bind(tcp_, bound, sizeof address) < 0) return false;
+    socklen_t size = sizeof address;
+    if (::getsockname(tcp_, reinterpret_cast<sockaddr*>(&address), &size) < 0) return false;
+    port_ = ntohs(address.sin_port);
+    return ::bind(udp_, bound, sizeof address) == 0 && ::listen(tcp_, SOMAXCONN) == 0;
+  }
+  void close() noexcept {
+    for (int* socket : {&tcp_, &udp_}) {
+      if (*socket >= 0) ::close(std::exchange(*socket, -1));
+    }
+  }
+
+  int tcp_ = -1;
+  int udp_ = -1;
+  std::uint16_t port_ = 0;
+};
+
+/// A client, from its first byte.
+class GenericClientServer::Connection {
+ public:
+  enum class State : std::uint8_t {
+    stranger,  // has not said what it is
+    client,
+    failed,  // was let in, and broke the protocol
+    over,
+  };
+
+  Connection(std::size_t element, const ElementMatrices& matrices, int socket, const sockaddr_in& peer, bool is_udp)
+      : element_{element}, session_{matrices}, socket_{socket}, peer_{peer}, is_udp_{is_udp}, in_(kReceiveBuffer) {
+    if (is_udp) return;  // the socket is that of the port
+    set_option(socket_, IPPROTO_TCP, TCP_NODELAY, 1);
+    set_option(socket_, IPPROTO_TCP, TCP_QUICKACK, 1);
+    set_option(socket_, SOL_SOCKET, SO_KEEPALIVE, 1);
+    set_option(socket_, IPPROTO_TCP, TCP_KEEPIDLE, kKeepAliveIdle);
+    set_option(socket_, IPPROTO_TCP, TCP_KEEPINTVL, kKeepAliveInterval);
+    set_option(socket_, IPPROTO_TCP, TCP_KEEPCNT, kKeepAliveCount);
+  }
+  ~Connection() {
+    if (!is_udp_) ::close(socket_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  [[nodiscard]] std::size_t element() const noexcept { return element_; }
+  [[nodiscard]] GenericClientSession& session() noexcept { return session_; }
+  [[nodiscard]] int socket() const noexcept { return socket_; }
+  [[nodiscard]] const sockaddr_in& peer() const noexcept { return peer_; }
+  [[nodiscard]] bool is_udp() const noexcept { return is_udp_; }
+  [[nodiscard]] bool has_unsent() const noexcept { return !out_.empty(); }
+  [[nodiscard]] bool has_unread() const noexcept { return end_ > begin_; }
+  [[nodiscard]] std::span<const std::byte> unread() const noexcept {
+    return std::span{in_}.subspan(begin_, end_ - begin_);
+  }
+  void read_up_to(std::span<const std::byte> rest) noexcept { begin_ = end_ - rest.size(); }
+
+  /// For what comes next; empty when there is no room.
+  [[nodiscard]] std::span<std::byte> space() noexcept {
+    if (begin_ == end_) begin_ = end_ = 0;
+    if (end_ == in_.size() && begin_ > 0) {
+      std::copy(in_.begin() + static_cast<std::ptrdiff_t>(begin_), in_.end(), in_.begin());
+      end_ -= std::exchange(begin_, 0);
+    }
+    return std::span{in_}.subspan(end_);
+  }
+  void received(std::size_t count) noexcept { end_ += count; }
+
+  void send(std::span<const std::byte> bytes) {
+    if (out_.empty()) bytes = bytes.subspan(send_now(bytes));
+    out_.insert(out_.end(), bytes.begin(), bytes.end());
+  }
+  void send_rest() { out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(send_now(out_))); }
+
+  State state = State::stranger;
+  bool asks = false;  // 10 is not answered yet
+
+ private:
+  /// @return how much was sent. What an error stops counts as sent: the end of the connection will be read.
+  [[nodiscard]] std::size_t send_now(std::span<const std::byte> bytes) noexcept {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+      const std::size_t count = is_udp_ ? std::min(kLargestDatagram, bytes.size() - sent) : bytes.size() - sent;
+      const auto* to = is_udp_ ? reinterpret_cast<const sockaddr*>(&peer_) : nullptr;
+      const auto done = ::sendto(socket_, bytes.data() + sent, count, MSG_DONTWAIT | MSG_NOSIGNAL, to,
+                                 is_udp_ ? sizeof peer_ : socklen_t{0});
+      if (done < 0) return is_for_later() ? sent : bytes.size();
+      sent += static_cast<std::size_t>(done);
+    }
+    return sent;
+  }
+
+  std::size_t element_;
+  GenericClientSession session_;
+  int socket_;
+  sockaddr_in peer_;
+  bool is_udp_;
+  std::vector<std::byte> in_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::vector<std::byte> out_;
 };
 
 GenericClientServer::GenericClientServer(const std::string& listen_address, const std::string& client_address,
                                          std::vector<ServedElement> elements, std::function<void()> on_request)
-    : client_address_{address_of(client_address, "from")}, on_request_{std::move(on_request)} {
-  const std::uint32_t address = address_of(listen_address, "listen");
-  for (ServedElement& served : elements) {
-    const std::uint16_t port = served.port;
-    Element& element = *elements_.emplace_back(std::make_unique<Element>(std::move(served)));
-    element.index = static_cast<int>(elements_.size()) - 1;
-    element.listener = listening_socket(SOCK_STREAM, address, port);
-    element.datagrams = listening_socket(SOCK_DGRAM, address, port_of(element.listener));
+    : on_request_{std::move(on_request)},
+      client_address_{address_of(client_address, "from")},
+      queue_(kQueuedRequests + 2 * elements.size()) {
+  const in_addr address = address_of(listen_address, "listen");
+  matrices_.reserve(elements.size());
+  for (ServedElement& element : elements) {
+    matrices_.push_back(std::move(element.matrices));
+    ports_.push_back(std::make_unique<Ports>(address, listen_address, element.port));
   }
-  wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   HYBRIDTEST_ASSERT(wake_ >= 0);
   thread_ = std::thread{[this] { serve(); }};
 }
 
 GenericClientServer::~GenericClientServer() {
-  is_stopped_ = true;
-  eventfd_write(wake_, 1);
+  {
+    const std::lock_guard lock{mutex_};
+    is_ending_ = true;
+  }
+  wake();
   thread_.join();
-  close(wake_);
+  ::close(wake_);
 }
 
-std::uint16_t GenericClientServer::port(std::size_t element) const { return port_of(elements_.at(element)->listener); }
-
 bool GenericClientServer::take(ElementRequest& request) noexcept {
-  const std::lock_guard lock{mutex_};
-  if (requests_.empty()) return false;
-  std::swap(request, requests_.front());
-  requests_.pop_front();
-  if (requests_.size() == kRequestsMax / 2) eventfd_write(wake_, 1);  // there is room again
+  bool is_room_awaited = false;
+  {
+    const std::lock_guard lock{mutex_};
+    if (queued_ == 0) return false;
+    std::swap(request, queue_[first_]);
+    first_ = (first_ + 1) % queue_.size();
+    --queued_;
+    is_room_awaited = std::exchange(is_full_, false);
+  }
+  if (is_room_awaited) wake();
   return true;
 }
 
 void GenericClientServer::answer_force(int element, const Eigen::Ref<const Eigen::VectorXd>& force_n) noexcept {
-  const std::lock_guard lock{mutex_};
-  Element& asked = *elements_[static_cast<std::size_t>(element)];
-  if (!asked.has_client() || !asked.session->answer_force(force_n)) return;
-  send_output(asked);
-  if (!asked.unsent.empty()) eventfd_write(wake_, 1);
+  bool is_more = false;
+  {
+    const std::lock_guard lock{mutex_};
+    Connection* connection = client(static_cast<std::size_t>(element));
+    if (connection == nullptr || !std::exchange(connection->asks, false)) return;  // lost meanwhile
+    connection->send(connection->session().force_reply(force_n));
+    is_more = connection->has_unsent() || connection->has_unread();
+  }
+  if (is_more) wake();
+}
+
+std::uint16_t GenericClientServer::port(std::size_t element) const { return ports_.at(element)->port(); }
+
+void GenericClientServer::wake() noexcept {
+  const std::uint64_t one = 1;
+  (void)!::write(wake_, &one, sizeof one);
+}
+
+bool GenericClientServer::is_permitted(const sockaddr_in& from) const noexcept {
+  return from.sin_addr.s_addr == client_address_.s_addr;
+}
+
+GenericClientServer::Connection* GenericClientServer::client(std::size_t element) noexcept {
+  for (const auto& connection : connections_) {
+    if (connection->element() == element && connection->state == Connection::State::client) return connection.get();
+  }
+  return nullptr;
+}
+
+void GenericClientServer::push(std::size_t element) {
+  HYBRIDTEST_ASSERT(room() > 0);
+  ElementRequest& request = queue_[(first_ + queued_) % queue_.size()];
+  request_.element = static_cast<int>(element);
+  std::swap(request, request_);
+  ++queued_;
+  is_pushed_ = true;
 }
 
 void GenericClientServer::serve() noexcept {
-  std::vector<pollfd> polled;
-  while (!is_stopped_) {
-    polled.clear();
-    polled.push_back({wake_, POLLIN, 0});
+  std::vector<pollfd> watched;
+  std::vector<Connection*> owners;
+  for (;;) {
+    wait(watched, owners);
     {
       const std::lock_guard lock{mutex_};
-      const bool has_room = requests_.size() < kRequestsMax;
-      for (const auto& element : elements_) {
-        const short input = has_room ? POLLIN : 0;
-        polled.push_back({element->listener, POLLIN, 0});
-        polled.push_back({element->datagrams, input, 0});
-        polled.push_back({element->client, static_cast<short>(input | (element->unsent.empty() ? 0 : POLLOUT)), 0});
+      if (is_ending_) {
+        connections_.clear();
+        return;
       }
-    }
-    if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) continue;
-    eventfd_t count = 0;
-    if (polled[0].revents != 0) eventfd_read(wake_, &count);
-    {
-      const std::lock_guard lock{mutex_};
-      has_news_ = false;
-      for (std::size_t i = 0; i < elements_.size(); ++i) {
-        Element& element = *elements_[i];
-        if (polled[3 * i + 3].revents != 0 && element.client >= 0) {
-          send_output(element);
-          read_tcp(element);
-        }
-        if (polled[3 * i + 2].revents != 0) read_udp(element);
-        if (polled[3 * i + 1].revents != 0) accept_client(element);
+      std::uint64_t wakes = 0;
+      if (watched[0].revents != 0) (void)!::read(wake_, &wakes, sizeof wakes);
+      for (std::size_t i = 0; i < owners.size(); ++i) {
+        const short events = watched[1 + 2 * ports_.size() + i].revents;
+        if ((events & POLLOUT) != 0) owners[i]->send_rest();
+        if ((events & (POLLIN | POLLRDHUP | POLLHUP | POLLERR)) != 0) receive(*owners[i]);
       }
+      for (std::size_t i = 0; i < ports_.size(); ++i) {
+        if (watched[1 + 2 * i].revents != 0) accept(i);
+        if (watched[2 + 2 * i].revents != 0) receive_datagrams(i);
+      }
+      for (const auto& connection : connections_) go_on(*connection);
+      std::erase_if(connections_, [](const auto& each) { return each->state == Connection::State::over; });
     }
-    if (has_news_) on_request_();
+    if (std::exchange(is_pushed_, false)) on_request_();
   }
 }
 
-void GenericClientServer::accept_client(Element& element) {
-  sockaddr_in from{};
-  socklen_t size = sizeof from;
-  const int fd = accept4(element.listener, reinterpret_cast<sockaddr*>(&from), &size, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (fd < 0) return;
-  if (from.sin_addr.s_addr != client_address_ || element.has_client()) {
-    close(fd);
-    tell(element, ElementRequest::Kind::refused, element.has_client() ? ClientFault::occupied : ClientFault::address);
+void GenericClientServer::wait(std::vector<pollfd>& watched, std::vector<Connection*>& owners) {
+  watched.clear();
+  owners.clear();
+  watched.push_back({wake_, POLLIN, 0});
+  {
+    const std::lock_guard lock{mutex_};
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+      watched.push_back({ports_[i]->tcp(), POLLIN, 0});
+      watched.push_back({ports_[i]->udp(), static_cast<short>(is_behind(i) ? 0 : POLLIN), 0});
+    }
+    for (const auto& connection : connections_) {
+      int socket = connection->socket();
+      short events = 0;
+      if (connection->has_unsent()) {
+        events = POLLOUT;
+      } else if (connection->state == Connection::State::failed || connection->is_udp()) {
+        socket = -1;
+      } else if (!connection->has_unread()) {
+        events = POLLIN | POLLRDHUP;
+      } else if (connection->asks) {  // sends on although it waits for an answer
+        events = POLLRDHUP;
+      } else {
+        socket = -1;  // the queue is full
+      }
+      watched.push_back({socket, events, 0});
+      owners.push_back(connection.get());
+    }
+  }
+  (void)::poll(watched.data(), watched.size(), -1);
+}
+
+void GenericClientServer::accept(std::size_t element) {
+  for (;;) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const int socket =
+        ::accept4(ports_[element]->tcp(), reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (socket < 0) return;
+    auto connection = std::make_unique<Connection>(element, matrices_[element], socket, from, false);
+    if (is_permitted(from)) {
+      add(element, std::move(connection));
+    } else {
+      refuse(element, ClientFault::address);
+    }
+  }
+}
+
+bool GenericClientServer::is_behind(std::size_t element) const noexcept {
+  return std::ranges::any_of(connections_, [&](const auto& each) {
+    return each->element() == element && each->is_udp() && each->state == Connection::State::client &&
+           each->has_unread();
+  });
+}
+
+void GenericClientServer::receive_datagrams(std::size_t element) {
+  while (!is_behind(element)) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const auto count = ::recvfrom(ports_[element]->udp(), datagram_.data(), datagram_.size(), 0,
+                                  reinterpret_cast<sockaddr*>(&from), &size);
+    if (count < 0) return;
+    take_datagram(element, from, std::span{datagram_}.first(static_cast<std::size_t>(count)));
+  }
+}
+
+void GenericClientServer::take_datagram(std::size_t element, const sockaddr_in& from,
+                                        std::span<const std::byte> datagram) {
+  if (!is_permitted(from)) return refuse(element, ClientFault::address);
+  const auto found = std::ranges::find_if(connections_, [&](const auto& each) {
+    return each->is_udp() && each->element() == element && is_same(each->peer(), from) &&
+           each->state != Connection::State::over;
+  });
+  const bool is_hello = datagram.size() == 1 && datagram[0] == kUdpHello;
+  if (found == connections_.end()) {
+    if (!is_hello) return refuse(element, ClientFault::other_protocol);
+    if (client(element) != nullptr) return refuse(element, ClientFault::occupied);
+    auto connection = std::make_unique<Connection>(element, matrices_[element], ports_[element]->udp(), from, true);
+    connection->send(std::span{&kUdpWelcome, 1});
+    return add(element, std::move(connection));
+  }
+  Connection& connection = **found;
+  if (is_hello) {  // it has not heard the answer
+    if (!connection.session().has_begun()) connection.send(std::span{&kUdpWelcome, 1});
     return;
   }
-  const int on = 1;
-  setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  acknowledge_at_once(fd);
-  element.client = fd;
-  element.session = std::make_unique<GenericClientSession>(element.matrices);
+  const std::span<std::byte> space = connection.space();
+  if (datagram.size() > space.size()) return fail(connection, ClientFault::other_message);
+  std::ranges::copy(datagram, space.begin());
+  connection.received(datagram.size());
+  go_on(connection);
 }
 
-void GenericClientServer::read_tcp(Element& element) {
-  std::array<std::byte, 1U << 16U> bytes;
-  while (element.client >= 0) {
-    const ssize_t count = recv(element.client, bytes.data(), bytes.size(), 0);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
-    if (count <= 0) {
-      drop(element, ClientFault::closed);
+void GenericClientServer::receive(Connection& connection) {
+  if (connection.state == Connection::State::failed || connection.is_udp()) return;
+  const std::span<std::byte> space = connection.space();
+  const auto count = ::recv(connection.socket(), space.data(), space.size(), 0);
+  if (count > 0) {
+    // Linux goes back to delayed acknowledgements on its own; with them each small message of the client waits 40 ms.
+    set_option(connection.socket(), IPPROTO_TCP, TCP_QUICKACK, 1);
+    connection.received(static_cast<std::size_t>(count));
+    return;
+  }
+  if (count < 0 && is_for_later()) return;
+  if (connection.state == Connection::State::stranger) {
+    connection.state = Connection::State::over;
+    if (connection.session().has_begun()) refuse(connection.element(), ClientFault::other_protocol);
+    return;
+  }
+  if (!connection.session().has_ended()) fail(connection, ClientFault::closed);
+  connection.state = Connection::State::over;
+}
+
+void GenericClientServer::go_on(Connection& connection) {
+  using Outcome = GenericClientSession::Outcome;
+  if (connection.state == Connection::State::failed) return;
+  while (connection.has_unread() && connection.state != Connection::State::over && !connection.asks &&
+         !connection.has_unsent()) {
+    // One place is kept for the loss of each client.
+    if (room() <= ports_.size()) {
+      is_full_ = true;
       return;
     }
-    acknowledge_at_once(element.client);
-    take_bytes(element, {bytes.data(), static_cast<std::size_t>(count)});
-    if (static_cast<std::size_t>(count) < bytes.size()) return;
-  }
-}
-
-void GenericClientServer::read_udp(Element& element) {
-  std::array<std::byte, 1U << 16U> bytes;
-  sockaddr_in from{};
-  socklen_t size = sizeof from;
-  for (ssize_t count = 0;; size = sizeof from) {
-    count = recvfrom(element.datagrams, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
-    if (count < 0) return;
-    const bool is_peer = element.client < 0 && element.has_client() &&
-                         from.sin_addr.s_addr == element.peer.sin_addr.s_addr && from.sin_port == element.peer.sin_port;
-    if (is_peer) {
-      take_bytes(element, {bytes.data(), static_cast<std::size_t>(count)});
-    } else if (from.sin_addr.s_addr != client_address_ || element.has_client()) {
-      tell(element, ElementRequest::Kind::refused, element.has_client() ? ClientFault::occupied : ClientFault::address);
-    } else if (count != 1 || bytes[0] != std::byte{'a'}) {
-      tell(element, ElementRequest::Kind::refused, ClientFault::other_protocol);
-    } else {
-      element.peer = from;
-      element.session = std::make_unique<GenericClientSession>(element.matrices);
-      const char welcome = 'b';
-      static_cast<void>(
-          sendto(element.datagrams, &welcome, 1, 0, reinterpret_cast<const sockaddr*>(&from), sizeof from));
+    std::span<const std::byte> bytes = connection.unread();
+    const Outcome outcome = connection.session().take(bytes, request_);
+    connection.read_up_to(bytes);
+    switch (outcome) {
+      case Outcome::incomplete: break;
+      case Outcome::reply: connection.send(connection.session().reply()); break;
+      case Outcome::fault: return fail(connection, connection.session().fault());
+      case Outcome::request:
+        if (request_.kind == ElementRequest::Kind::connected) {
+          open(connection);
+          break;
+        }
+        connection.asks = request_.kind == ElementRequest::Kind::force;
+        push(connection.element());
+        // Over UDP nothing else says that it has gone.
+        if (connection.session().has_ended() && connection.is_udp()) connection.state = Connection::State::over;
+        break;
     }
   }
 }
 
-void GenericClientServer::take_bytes(Element& element, std::span<const std::byte> bytes) {
-  element.session->receive(bytes, fresh_);
-  for (ElementRequest& request : fresh_) {
-    request.element = element.index;
-    requests_.push_back(std::move(request));
-    has_news_ = true;
+void GenericClientServer::open(Connection& connection) {
+  if (client(connection.element()) != nullptr) {
+    connection.state = Connection::State::over;
+    return refuse(connection.element(), ClientFault::occupied);
   }
-  fresh_.clear();
-  send_output(element);
-  if (const auto fault = element.session->fault()) drop(element, *fault);
-}
-
-void GenericClientServer::tell(Element& element, ElementRequest::Kind kind, ClientFault fault) {
-  // Of many refusals for one reason the first is told: anybody can send them.
-  if (kind == ElementRequest::Kind::refused && std::exchange(element.refusal, fault) == fault) return;
-  ElementRequest request;
-  request.element = element.index;
-  request.kind = kind;
-  request.fault = fault;
-  requests_.push_back(std::move(request));
-  has_news_ = true;
-}
-
-void GenericClientServer::send_output(Element& element) {
-  if (!element.has_client()) return;
-  const std::vector<std::byte> output = element.session->take_output();
-  element.unsent.insert(element.unsent.end(), output.begin(), output.end());
-  std::size_t sent = 0;
-  while (sent < element.unsent.size()) {
-    const bool is_tcp = element.client >= 0;
-    const std::size_t left = element.unsent.size() - sent;
-    const ssize_t count = is_tcp
-                              ? send(element.client, element.unsent.data() + sent, left, MSG_NOSIGNAL)
-                              : sendto(element.datagrams, element.unsent.data() + sent, std::min(left, kDatagramBytes),
-                                       0, reinterpret_cast<const sockaddr*>(&element.peer), sizeof element.peer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) break;  // no room, which poll() tells of; or a connection that the next read finds closed
-    sent += static_cast<std::size_t>(count);
+  for (const auto& each : connections_) {
+    if (each->element() == connection.element() && each->state == Connection::State::failed) {
+      each->state = Connection::State::over;
+    }
   }
-  element.unsent.erase(element.unsent.begin(), element.unsent.begin() + static_cast<std::ptrdiff_t>(sent));
+  connection.state = Connection::State::client;
+  push(connection.element());
 }
 
-void GenericClientServer::drop(Element& element, ClientFault fault) {
-  const bool was_connected = element.session->is_connected();
-  const bool was_over = element.session->is_over();
-  if (element.client >= 0) close(std::exchange(element.client, -1));
-  element.session.reset();
-  element.unsent.clear();
-  if (was_over) return;
-  tell(element, was_connected ? ElementRequest::Kind::lost : ElementRequest::Kind::refused, fault);
+void GenericClientServer::fail(Connection& connection, ClientFault fault) {
+  if (connection.state == Connection::State::stranger) {
+    connection.state = Connection::State::over;
+    return refuse(connection.element(), fault);
+  }
+  if (connection.state != Connection::State::client) return;
+  connection.state = Connection::State::failed;
+  connection.asks = false;
+  request_.kind = ElementRequest::Kind::lost;
+  request_.fault = fault;
+  push(connection.element());
+}
+
+void GenericClientServer::refuse(std::size_t element, ClientFault fault) {
+  ++refused_;
+  if (room() <= queue_.size() / 2) return;  // many of them crowd no client out; they are counted
+  request_.kind = ElementRequest::Kind::refused;
+  request_.fault = fault;
+  push(element);
+}
+
+void GenericClientServer::add(std::size_t element, std::unique_ptr<Connection> connection) {
+  const auto is_stranger = [&](const auto& each) {
+    return each->element() == element && each->state == Connection::State::stranger;
+  };
+  if (std::ranges::count_if(connections_, is_stranger) >= kStrangers) {
+    (*std::ranges::find_if(connections_, is_stranger))->state = Connection::State::over;
+  }
+  connections_.push_back(std::move(connection));
 }
 
 }  // namespace hybridtest

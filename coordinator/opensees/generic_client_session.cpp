@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <utility>
 
 #include "core/assert.hpp"
 
 namespace hybridtest {
 namespace {
 
-constexpr std::size_t kSizes = 11;
+using Sizes = std::array<std::int32_t, 11>;
 
-enum class Action {
+/// Of a message, in doubles (8 MiB): a full matrix of 1024 degrees of freedom.
+constexpr std::int64_t kLargestMessage = std::int64_t{1} << 20;
+
+/// Action of a message, in its first double.
+enum class Action : std::uint8_t {
   trial = 3,
   commit = 5,
   force = 10,
@@ -25,102 +27,103 @@ enum class Action {
   die = 99,
 };
 
+[[nodiscard]] Action action_of(double value) noexcept {
+  // A value outside the range of the enumeration, or no number, becomes an action that there is not.
+  return value >= 0.0 && value <= 255.0 && value == std::floor(value) ? static_cast<Action>(value) : Action{};
+}
+
 }  // namespace
 
-GenericClientSession::GenericClientSession(ElementMatrices matrices)
-    : matrices_{std::move(matrices)}, dofs_{matrices_.stiffness_n_per_m.rows()} {
-  HYBRIDTEST_ASSERT(dofs_ > 0);
-  for (const Eigen::MatrixXd* matrix :
-       {&matrices_.stiffness_n_per_m, &matrices_.damping_n_s_per_m, &matrices_.mass_kg}) {
-    HYBRIDTEST_ASSERT(matrix->rows() == dofs_ && matrix->cols() == dofs_);
+GenericClientSession::GenericClientSession(const ElementMatrices& matrices)
+    : matrices_{matrices}, size_{matrices.stiffness_n_per_m.rows()}, message_(sizeof(Sizes)) {
+  for (const Eigen::MatrixXd* matrix : {&matrices.stiffness_n_per_m, &matrices.damping_n_s_per_m, &matrices.mass_kg}) {
+    HYBRIDTEST_ASSERT(matrix->rows() == size_ && matrix->cols() == size_);
   }
 }
 
-void GenericClientSession::receive(std::span<const std::byte> bytes, std::vector<ElementRequest>& requests) {
-  while (!bytes.empty() && !fault_ && !is_over_) {
-    const std::size_t taken = std::min(wanted_bytes() - arrived_.size(), bytes.size());
-    arrived_.insert(arrived_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
-    bytes = bytes.subspan(taken);
-    if (arrived_.size() < wanted_bytes()) return;
-    if (is_connected()) {
-      read_message(requests);
-    } else {
-      read_sizes(requests);
-    }
-    arrived_.clear();
+GenericClientSession::Outcome GenericClientSession::take(std::span<const std::byte>& bytes, ElementRequest& request) {
+  if (fault_ != ClientFault::unknown) return Outcome::fault;
+  if (has_ended_) {
+    bytes = {};
+    return Outcome::incomplete;
   }
+  const std::size_t count = std::min(bytes.size(), message_.size() - filled_);
+  std::ranges::copy(bytes.first(count), message_.begin() + static_cast<std::ptrdiff_t>(filled_));
+  bytes = bytes.subspan(count);
+  filled_ += count;
+  if (filled_ < message_.size()) return Outcome::incomplete;
+  filled_ = 0;
+  return is_open_ ? read_message(request) : read_sizes(request);
 }
 
-std::size_t GenericClientSession::wanted_bytes() const noexcept {
-  return is_connected() ? static_cast<std::size_t>(data_size_) * sizeof(double) : kSizes * sizeof(std::int32_t);
-}
-
-void GenericClientSession::read_sizes(std::vector<ElementRequest>& requests) {
-  std::array<std::int32_t, kSizes> sizes{};
-  std::memcpy(sizes.data(), arrived_.data(), arrived_.size());
+GenericClientSession::Outcome GenericClientSession::read_sizes(ElementRequest& request) {
+  Sizes sizes;
+  std::memcpy(sizes.data(), message_.data(), sizeof sizes);
   const std::int32_t n = sizes[0];
-  const std::array<std::int32_t, 10> expected{n, n, n, 0, 1, 0, 0, 0, n, 0};
-  const std::int32_t data_size = sizes.back();
-  if (n < 1 || n > kDataSizeMax || !std::equal(expected.begin(), expected.end(), sizes.begin()) ||
-      data_size > kDataSizeMax) {
-    fault_ = ClientFault::other_protocol;
-  } else if (n != dofs_) {
-    fault_ = ClientFault::other_size;
-  } else if (data_size < 3 * n + 2 || data_size < n * n) {
-    fault_ = ClientFault::short_messages;
-  } else {
-    data_size_ = data_size;
-    message_.resize(static_cast<std::size_t>(data_size));
-    requests.emplace_back().kind = ElementRequest::Kind::connected;
-  }
+  const std::int64_t values = sizes[10];
+  const Sizes expected{n, n, n, 0, 1, 0, 0, 0, n, 0, sizes[10]};
+  if (n < 1 || sizes != expected || values > kLargestMessage) return fail(ClientFault::other_protocol);
+  if (n != size_) return fail(ClientFault::other_size);
+  // OpenSees makes its messages at least as large as a trial and as a matrix.
+  const auto fewest = std::max<std::int64_t>(2 + 3 * size_, size_ * size_);
+  if (values < fewest) return fail(ClientFault::short_messages);
+  const auto count = static_cast<std::size_t>(values);
+  values_.assign(count, 0.0);
+  reply_.assign(count, 0.0);
+  force_reply_.assign(count, 0.0);
+  message_.resize(count * sizeof(double));
+  is_open_ = true;
+  request.kind = ElementRequest::Kind::connected;
+  return Outcome::request;
 }
 
-void GenericClientSession::read_message(std::vector<ElementRequest>& requests) {
-  std::memcpy(message_.data(), arrived_.data(), arrived_.size());
-  using Kind = ElementRequest::Kind;
-  const double number = message_[0];
-  // Not a number compares with nothing.
-  const bool is_action = number >= 0.0 && number < 256.0 && number == std::floor(number);
-  switch (is_action ? static_cast<Action>(static_cast<int>(number)) : Action{}) {
-    case Action::trial: {
-      ElementRequest& request = requests.emplace_back();
-      request.kind = Kind::trial;
-      const Eigen::Map<const Eigen::VectorXd> values{message_.data() + 1, 3 * dofs_ + 1};
-      request.displacement_m = values.segment(0, dofs_);
-      request.velocity_m_per_s = values.segment(dofs_, dofs_);
-      request.acceleration_m_per_s2 = values.segment(2 * dofs_, dofs_);
-      request.time_s = values[3 * dofs_];
-      return;
-    }
-    case Action::commit: requests.emplace_back().kind = Kind::commit; return;
-    case Action::force:
-      is_asked_ = true;
-      requests.emplace_back().kind = Kind::force;
-      return;
+GenericClientSession::Outcome GenericClientSession::read_message(ElementRequest& request) {
+  std::memcpy(values_.data(), message_.data(), message_.size());
+  const auto matrix = [&](const Eigen::MatrixXd& values) {
+    std::copy_n(values.data(), values.size(), reply_.begin());  // both are column-major
+    return Outcome::reply;
+  };
+  const auto plain = [&](ElementRequest::Kind kind) {
+    request.kind = kind;
+    return Outcome::request;
+  };
+  switch (action_of(values_[0])) {
+    case Action::trial: return read_trial(request);
+    case Action::commit: return plain(ElementRequest::Kind::commit);
+    case Action::force: return plain(ElementRequest::Kind::force);
     case Action::initial_stiffness:
-    case Action::tangent_stiffness: answer(matrices_.stiffness_n_per_m.reshaped()); return;
-    case Action::damping: answer(matrices_.damping_n_s_per_m.reshaped()); return;
-    case Action::mass: answer(matrices_.mass_kg.reshaped()); return;
-    case Action::die:
-      is_over_ = true;
-      requests.emplace_back().kind = Kind::die;
-      return;
+    case Action::tangent_stiffness: return matrix(matrices_.stiffness_n_per_m);
+    case Action::damping: return matrix(matrices_.damping_n_s_per_m);
+    case Action::mass: return matrix(matrices_.mass_kg);
+    case Action::die: has_ended_ = true; return plain(ElementRequest::Kind::die);
   }
-  fault_ = ClientFault::other_message;
+  return fail(ClientFault::other_message);
 }
 
-bool GenericClientSession::answer_force(const Eigen::Ref<const Eigen::VectorXd>& force_n) {
-  if (!std::exchange(is_asked_, false) || force_n.size() != dofs_) return false;
-  answer(force_n);
-  return true;
+GenericClientSession::Outcome GenericClientSession::read_trial(ElementRequest& request) {
+  const std::span<const double> used{values_.data(), static_cast<std::size_t>(2 + 3 * size_)};
+  if (!std::ranges::all_of(used, [](double value) { return std::isfinite(value); })) {
+    return fail(ClientFault::not_finite);
+  }
+  const Eigen::Map<const Eigen::VectorXd> values{values_.data() + 1, 3 * size_ + 1};
+  request.kind = ElementRequest::Kind::trial;
+  request.displacement_m = values.head(size_);
+  request.velocity_m_per_s = values.segment(size_, size_);
+  request.acceleration_m_per_s2 = values.segment(2 * size_, size_);
+  request.time_s = values[3 * size_];
+  return Outcome::request;
 }
 
-void GenericClientSession::answer(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  const std::size_t begin = output_.size();
-  output_.resize(begin + static_cast<std::size_t>(data_size_) * sizeof(double));
-  std::memcpy(output_.data() + begin, values.data(), static_cast<std::size_t>(values.size()) * sizeof(double));
+GenericClientSession::Outcome GenericClientSession::fail(ClientFault fault) noexcept {
+  fault_ = fault;
+  return Outcome::fault;
 }
 
-std::vector<std::byte> GenericClientSession::take_output() { return std::exchange(output_, {}); }
+std::span<const std::byte> GenericClientSession::force_reply(
+    const Eigen::Ref<const Eigen::VectorXd>& force_n) noexcept {
+  HYBRIDTEST_ASSERT(is_open_ && force_n.size() == size_);
+  std::ranges::copy(force_n, force_reply_.begin());
+  return std::as_bytes(std::span{force_reply_});
+}
 
 }  // namespace hybridtest

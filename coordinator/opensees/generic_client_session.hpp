@@ -2,68 +2,73 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <optional>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "coordinator/opensees/element_port.hpp"
+#include "core/client_fault.hpp"
 
 namespace hybridtest {
 
-/// What OpenSees is told of an element when it asks for its matrices (12 to 15), n x n each.
+/// What OpenSees is told of an element when it asks for a matrix. Square, one row per degree of freedom of the element.
 struct ElementMatrices {
-  Eigen::MatrixXd stiffness_n_per_m;  // initial and tangent
-  Eigen::MatrixXd damping_n_s_per_m;
-  Eigen::MatrixXd mass_kg;
+  Eigen::MatrixXd stiffness_n_per_m;  // initial (12) and tangent (13)
+  Eigen::MatrixXd damping_n_s_per_m;  // 14
+  Eigen::MatrixXd mass_kg;            // 15
 };
 
-/// One connection of an element `genericClient`, as bytes: what arrives becomes requests, what is answered becomes
-/// bytes.
+/// One client of the protocol of `genericClient`, from its first byte to its last: bytes in, requests out. No sockets.
 ///
-/// First come 11 integers of 32 bits: the sizes of the displacement, velocity, acceleration, force and time that
-/// OpenSees sends (n, n, n, 0, 1), of those that it wants (0, 0, 0, n, 0), and the number of doubles in each message.
-/// Then come messages of that many doubles with the action in the first one, and what is beyond its values is left over
-/// from an older message: 3 trial [3, d(n), v(n), a(n), t], 5 commit, 10 force, 12 to 15 initial stiffness, tangent,
-/// damping and mass, 99 die. Forces and matrices are answered by a message of the same length that begins with them,
-/// column by column. Integers and doubles are in the order of bytes of the machine; there is no frame and no checksum.
-/// (The classes GenericClient of OpenSees and its sockets.)
+/// First come eleven int32: n, n, n, 0, 1, 0, 0, 0, n, 0 and the number of doubles in each later message, for n degrees
+/// of freedom. Then messages of that size, both ways, with the action in the first double. All numbers have the byte
+/// order of the host. Only a trial uses more than its first double; the others may carry what the trial before left
+/// there.
 class GenericClientSession {
  public:
-  /// A message at most: 30 000 doubles of a trial, or a matrix of 500 x 500.
-  static constexpr std::int32_t kDataSizeMax = 1 << 18;
+  enum class Outcome : std::uint8_t {
+    incomplete,  // all bytes are used, the message goes on
+    request,     // the request is filled
+    reply,       // reply() is to be sent
+    fault,       // fault() tells why; nothing more is read
+  };
 
-  /// @param matrices   of the element; their size is its number of degrees of freedom, at least 1.
-  explicit GenericClientSession(ElementMatrices matrices);
+  /// @param matrices   must outlive the session; their size is that of the element.
+  explicit GenericClientSession(const ElementMatrices& matrices);
 
-  /// Takes bytes that arrived, in any portions. After a fault it takes nothing more.
-  /// @param requests   new ones are appended; their `element` is left alone. `lost` is not among them.
-  void receive(std::span<const std::byte> bytes, std::vector<ElementRequest>& requests);
-  /// Why the client is no client of this element; nothing while it is.
-  [[nodiscard]] std::optional<ClientFault> fault() const noexcept { return fault_; }
-  [[nodiscard]] bool is_connected() const noexcept { return data_size_ > 0; }
-  /// The client said that its model ends (99).
-  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+  /// Reads to the end of the next message, or of the bytes.
+  /// @param bytes     what was read is taken off its front.
+  /// @param request   its vectors are touched by a trial alone; `element` never.
+  [[nodiscard]] Outcome take(std::span<const std::byte>& bytes, ElementRequest& request);
+  /// The client has been understood, and its element is that of the scenario.
+  [[nodiscard]] bool is_open() const noexcept { return is_open_; }
+  /// Bytes have come.
+  [[nodiscard]] bool has_begun() const noexcept { return filled_ > 0 || is_open_; }
+  /// After 99.
+  [[nodiscard]] bool has_ended() const noexcept { return has_ended_; }
+  [[nodiscard]] ClientFault fault() const noexcept { return fault_; }
 
-  /// Answers the force that is asked for. @return false when none is, or when it has another size.
-  [[nodiscard]] bool answer_force(const Eigen::Ref<const Eigen::VectorXd>& force_n);
-  /// Bytes to send since the last call.
-  [[nodiscard]] std::vector<std::byte> take_output();
+  /// A matrix, after Outcome::reply. Valid until the next take().
+  [[nodiscard]] std::span<const std::byte> reply() const noexcept { return std::as_bytes(std::span{reply_}); }
+  /// The answer to 10. Valid until the next call.
+  [[nodiscard]] std::span<const std::byte> force_reply(const Eigen::Ref<const Eigen::VectorXd>& force_n) noexcept;
 
  private:
-  [[nodiscard]] std::size_t wanted_bytes() const noexcept;
-  void read_sizes(std::vector<ElementRequest>& requests);
-  void read_message(std::vector<ElementRequest>& requests);
-  void answer(const Eigen::Ref<const Eigen::VectorXd>& values);
+  [[nodiscard]] Outcome read_sizes(ElementRequest& request);
+  [[nodiscard]] Outcome read_message(ElementRequest& request);
+  [[nodiscard]] Outcome read_trial(ElementRequest& request);
+  [[nodiscard]] Outcome fail(ClientFault fault) noexcept;
 
-  ElementMatrices matrices_;
-  Eigen::Index dofs_;
-  std::int32_t data_size_ = 0;  // 0 before the sizes have come
-  bool is_over_ = false;
-  bool is_asked_ = false;
-  std::optional<ClientFault> fault_;
-  std::vector<std::byte> arrived_;  // of the message that is not whole yet
-  std::vector<std::byte> output_;
-  std::vector<double> message_;
+  const ElementMatrices& matrices_;
+  Eigen::Index size_;
+  std::vector<std::byte> message_;
+  std::size_t filled_ = 0;  // bytes of the message
+  std::vector<double> values_;
+  std::vector<double> reply_;
+  std::vector<double> force_reply_;
+  bool is_open_ = false;
+  bool has_ended_ = false;
+  ClientFault fault_ = ClientFault::unknown;
 };
 
 }  // namespace hybridtest
