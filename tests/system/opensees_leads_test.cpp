@@ -106,7 +106,7 @@ class OpenSeesLeads : public SystemTest {
   /// Newton's method to equilibrium, which asks for several displacements in a step.
   void iterate(const std::string& script) {
     change(script, "test NormUnbalance 1.0 1", "test NormUnbalance 1.0e-3 50");
-    change(script, "algorithm Linear", "algorithm Newton");
+    change(script, "algorithm Linear -initial", "algorithm Newton");
     change(script, "integrator AlphaOS 1.0", "integrator Newmark 0.5 0.25");
   }
   [[nodiscard]] Arguments with_network(Arguments arguments) const {
@@ -153,10 +153,9 @@ TEST_F(OpenSeesLeads, YieldingFrameIsTheUnsplitOne) {
   run_unsplit("shear_frame.tcl", {"steel"});
   const auto split = columns_of(directory() / "run" / "floors.txt");
   const auto whole = columns_of(directory() / "opensees" / "floors.txt");
-  // OpenSees commits its own storey at the corrected displacement, the specimen stays at the predicted one: measured
-  // 2.6e-5. Asked for: 5e-3.
-  EXPECT_LT(peak_error(split[1], whole[1]), 1e-4);
-  EXPECT_LT(peak_error(split[2], whole[2]), 1e-4);
+  // The same method and law: the order of additions alone differs. Asked for: 5e-3.
+  EXPECT_LT(peak_error(split[1], whole[1]), 1e-9);
+  EXPECT_LT(peak_error(split[2], whole[2]), 1e-9);
   // The coordinator recorded the motion that it imposed, at the times of OpenSees.
   const std::vector<double> times = recorded("run").column("coordinator", "opensees", "opensees_time_s");
   EXPECT_NEAR(times.back(), 31.0, 1e-6);
@@ -174,8 +173,9 @@ TEST_F(OpenSeesLeads, FibrePortalWithBraceIsTheUnsplitOne) {
   run_unsplit("portal_with_brace.tcl");
   const auto split = columns_of(directory() / "run" / "roof.txt");
   const auto whole = columns_of(directory() / "opensees" / "roof.txt");
-  // As above, with larger steps: measured 8.3e-4. Asked for: 5e-3.
-  EXPECT_LT(peak_error(split[1], whole[1]), 2e-3);
+  // OpenSees commits its own brace at the corrected displacement, the specimen stays at the predicted one: measured
+  // 1.2e-4. Asked for: 5e-3.
+  EXPECT_LT(peak_error(split[1], whole[1]), 3e-4);
 }
 
 TEST_F(OpenSeesLeads, IterationOnASpecimenEndsTheTest) {
@@ -220,6 +220,32 @@ TEST_F(OpenSeesLeads, ModelsMayBeIterated) {
   const auto whole = columns_of(directory() / "opensees" / "floors.txt");
   // Both find the same equilibrium, to the tolerance of 1e-3 N of the test of convergence.
   EXPECT_LT(peak_error(split[1], whole[1]), 1e-6);
+}
+
+TEST_F(OpenSeesLeads, SubstructureMayBeAnotherOpenSees) {
+  HYBRIDTEST_NEEDS_OPENSEES();
+  const std::filesystem::path scenario = own_copy("shear_frame");
+  change("shear_frame.tcl", "set duration_s 31.0", "set duration_s 6.0");
+  std::ofstream{directory() / "opensees" / "storey.tcl"} << "model BasicBuilder -ndm 1 -ndf 1\n"
+                                                            "node 0 0.0\nnode 1 0.0\nfix 0 1\n"
+                                                            "uniaxialMaterial Steel01 1 40.0e3 4.0e6 0.05\n"
+                                                            "element zeroLength 1 0 1 -mat 1 -dir 1\n";
+  std::string text = text_of(scenario);
+  text.resize(text.find("substructures:"));
+  std::ofstream{scenario} << text
+                          << "substructures:\n"
+                             "  - id: storey_1\n"
+                             "    kind: numerical\n"
+                             "    interface: [{dof: floor_1}]\n"
+                             "    model: {type: opensees, script: storey.tcl, interface: [{node: 1, dof: 1}]}\n";
+  StartedProgram run = start_run(scenario, "run");
+  ASSERT_THAT(run.wait(), Optional(kExitCompleted)) << run.standard_error();
+  run_unsplit("shear_frame.tcl", {"steel"});
+  const auto split = columns_of(directory() / "run" / "floors.txt");
+  const auto whole = columns_of(directory() / "opensees" / "floors.txt");
+  // The same material and the same commits, in another process. Asked for: 5e-3.
+  EXPECT_LT(peak_error(split[1], whole[1]), 1e-9);
+  EXPECT_LT(peak_error(split[2], whole[2]), 1e-9);
 }
 
 TEST_F(OpenSeesLeads, KilledOpenSeesEndsTheTest) {
@@ -298,7 +324,7 @@ TEST_F(OpenSeesLeads, PausedTestGoesOnWhereItWas) {
   run_unsplit("shear_frame.tcl", {"steel"});
   EXPECT_LT(peak_error(columns_of(directory() / "run" / "floors.txt")[1],
                        columns_of(directory() / "opensees" / "floors.txt")[1]),
-            1e-4);
+            1e-9);
 }
 
 TEST_F(OpenSeesLeads, StartedByHandItIsToldToBeEndedByHand) {
