@@ -6,11 +6,10 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <optional>
+#include <array>
+#include <span>
 #include <thread>
 #include <vector>
-
-#include "tests/support/generic_client_bytes.hpp"
 
 namespace hybridtest {
 
@@ -23,8 +22,11 @@ class BareServer {
     double displacement_m = 0.0;  // of a trial
   };
 
-  explicit BareServer(double stiffness_n_per_m)
-      : stiffness_n_per_m_{stiffness_n_per_m}, listener_{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)} {
+  /// @param acknowledges_at_once   otherwise the system delays its acknowledgements by 40 ms.
+  explicit BareServer(double stiffness_n_per_m, bool acknowledges_at_once = true)
+      : stiffness_n_per_m_{stiffness_n_per_m},
+        acknowledges_at_once_{acknowledges_at_once},
+        listener_{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)} {
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -73,18 +75,19 @@ class BareServer {
     if (message.action == 12 || message.action == 13) reply[0] = stiffness_n_per_m_;
     static_cast<void>(::send(client, reply.data(), reply.size() * sizeof(double), MSG_NOSIGNAL));
   }
-  static bool receive(int client, std::span<std::byte> bytes) {
+  [[nodiscard]] bool receive(int client, std::span<std::byte> bytes) {
     while (!bytes.empty()) {
       const auto count = ::recv(client, bytes.data(), bytes.size(), 0);
       if (count <= 0) return false;
       const int on = 1;
-      ::setsockopt(client, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+      if (acknowledges_at_once_) ::setsockopt(client, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
       bytes = bytes.subspan(static_cast<std::size_t>(count));
     }
     return true;
   }
 
   double stiffness_n_per_m_;
+  bool acknowledges_at_once_;
   int listener_;
   std::uint16_t port_ = 0;
   double displacement_m_ = 0.0;
