@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "tests/contract/opensees/bare_server.hpp"
 #include "tests/contract/opensees/served_springs.hpp"
+#include "tests/support/generic_client_bytes.hpp"
 #include "tests/support/opensees.hpp"
 #include "tests/support/started_program.hpp"
 
@@ -223,6 +225,83 @@ TEST_F(Integrators, AnySizeOfMessagesIsTheSame) {
     SCOPED_TRACE(size);
     expect_same(split(2, {"-dataSize", size}), reference);
   }
+}
+
+/// The state that Linux gives a process: R runs, S waits, T is stopped.
+char run_state(pid_t process) {
+  const std::string text = text_of("/proc/" + std::to_string(process) + "/stat");
+  const std::size_t name_end = text.rfind(')');
+  return name_end == std::string::npos ? '?' : text.at(name_end + 2);
+}
+
+class RealClient : public Integrators {
+ protected:
+  void SetUp() override {
+    Integrators::SetUp();
+    if (!IsSkipped()) use("algorithm Linear; integrator AlphaOS 1.0");
+  }
+  /// A running analysis, whose third question for a force waits for its answer.
+  StartedProgram asking(ServedSprings& springs) const {
+    StartedProgram program = start({"1", std::to_string(springs.port()), "0"});
+    EXPECT_TRUE(springs.answer_until(ElementRequest::Kind::force, 2)) << program.standard_error();
+    for (;;) {
+      const auto request = springs.next();
+      EXPECT_TRUE(request.has_value());
+      if (!request || request->kind == ElementRequest::Kind::force) return program;
+    }
+  }
+  static std::vector<Eigen::MatrixXd> storey() { return {Eigen::MatrixXd::Constant(1, 1, kFirstStorey)}; }
+};
+
+TEST_F(RealClient, StoppedInAStepGoesOnWhereItWas) {
+  const std::vector<double> reference = unsplit();
+  ServedSprings springs{storey()};
+  StartedProgram program = start({"1", std::to_string(springs.port()), "0"});
+  ASSERT_TRUE(springs.answer_until(ElementRequest::Kind::force, 3));
+  program.signal(SIGSTOP);
+  ASSERT_TRUE(wait_until([&] { return run_state(program.process()) == 'T'; }));
+  program.signal(SIGCONT);
+  EXPECT_TRUE(springs.answer_until(ElementRequest::Kind::die));
+  EXPECT_THAT(program.wait(), Optional(0));
+  expect_same(floors(), reference);
+}
+
+TEST_F(RealClient, WaitsWithoutLoadForAnAnswer) {
+  ServedSprings springs{storey()};
+  StartedProgram program = asking(springs);
+  EXPECT_TRUE(wait_until([&] { return run_state(program.process()) == 'S'; }));
+  EXPECT_TRUE(program.is_running());
+}
+
+TEST_F(RealClient, NeverEndsByItselfWhenItsServerIsGone) {
+  auto springs = std::make_unique<ServedSprings>(storey());
+  StartedProgram program = asking(*springs);
+  springs.reset();
+  EXPECT_TRUE(wait_until([&] { return run_state(program.process()) == 'R'; }));
+  EXPECT_TRUE(program.is_running());
+  program.signal(SIGTERM);
+  EXPECT_THAT(program.wait(), Optional(128 + SIGTERM));
+}
+
+TEST_F(RealClient, KilledIsLostWhileItsQuestionIsOpen) {
+  ServedSprings springs{storey()};
+  StartedProgram program = asking(springs);
+  program.signal(SIGKILL);
+  const auto request = springs.next();
+  ASSERT_TRUE(request.has_value());
+  EXPECT_EQ(request->kind, ElementRequest::Kind::lost);
+  EXPECT_EQ(request->fault, ClientFault::closed);
+}
+
+TEST_F(RealClient, DivergedAnalysisIsLostBeforeItMovesAnything) {
+  ServedSprings springs{storey()};
+  StartedProgram program = asking(springs);
+  springs.server().answer_force(0, Eigen::VectorXd::Constant(1, std::nan("")));
+  const auto lost = springs.answer_until(ElementRequest::Kind::lost);
+  ASSERT_TRUE(lost.has_value());
+  EXPECT_EQ(lost->fault, ClientFault::not_finite);
+  for (const Eigen::VectorXd& trial : springs.trials()) EXPECT_TRUE(trial.allFinite());
+  EXPECT_TRUE(program.is_running()) << "its connection is kept open";
 }
 
 }  // namespace
