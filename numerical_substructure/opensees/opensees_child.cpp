@@ -59,6 +59,7 @@ OpenSeesChild::OpenSeesChild(const OpenSeesSettings& settings, OpenSeesPurpose p
                              const std::filesystem::path& log, std::function<void()> wake)
     : dofs_{settings.interface.size()}, wake_{std::move(wake)} {
   const std::filesystem::path program = find_opensees(settings.program);
+  limit_opensees_threads();
   folder_ = temporary_folder();
   const std::filesystem::path driver = folder_ / "driver.tcl";
   std::ofstream{driver} << opensees_driver();
