@@ -25,6 +25,7 @@ namespace eval ::hybridtest {
   variable iterations_max 25
   variable trial_iterations 3     ;# of the last trial that converged
   variable has_trial_record 0
+  variable has_ties 0             ;# nodes follow others
   variable steps 0
   variable parts 0
 
@@ -35,11 +36,21 @@ namespace eval ::hybridtest {
     set user_command([lindex $command 0]) $command
   }
 
+  # Commands of a model exist once `model` has run.
+  proc remember_model {args} {
+    foreach command {equalDOF equalDOF_Mixed rigidDiaphragm rigidLink} {
+      if {[info commands ::$command] ne ""} { trace add execution ::$command enter ::hybridtest::remember_tie }
+    }
+  }
+
+  proc remember_tie {args} { variable has_ties 1 }
+
   proc guard_commands {mode} {
     variable user_command
     foreach command {constraints numberer system test algorithm} {
       trace add execution $command enter ::hybridtest::remember
     }
+    trace add execution model leave ::hybridtest::remember_model
     trace add execution wipeAnalysis enter {apply {args {array unset ::hybridtest::user_command}}}
     rename ::exit ::hybridtest::leave
     proc ::exit args {
@@ -121,11 +132,40 @@ namespace eval ::hybridtest {
     foreach tag $tags displacement $displacements { updateParameter $tag $displacement }
   }
 
-  proc reactions_now {} {
+  # OpenSees does not pass the reactions of nodes that follow another one on to that node: they are summed here.
+  # @return   for each degree of freedom of the interface a list of nodes and degrees of freedom
+  proc find_sources {} {
     variable held
+    variable has_ties
+    set sources {}
+    foreach {node dof} $held {
+      set own [list $node $dof]
+      if {$has_ties} {
+        foreach follower [getConstrainedNodes $node] {
+          set tied [getConstrainedDOFs $follower $node $dof]
+          if {[llength $tied] == 0} { continue }
+          set directions [llength [nodeCoord $node]]
+          if {$dof > $directions && [nodeCoord $node] ne [nodeCoord $follower]} {
+            error "node $follower follows the rotation of node $node, dof $dof at the interface, at a distance; put the\
+              interface at a node that no other follows, joined to this one by an element"
+          }
+          lappend own $follower $dof
+        }
+      }
+      lappend sources $own
+    }
+    return $sources
+  }
+
+  proc reactions_now {} {
+    variable sources
     reactions
     set forces {}
-    foreach {node dof} $held { lappend forces [expr {double([nodeReaction $node $dof])}] }
+    foreach own $sources {
+      set force 0.0
+      foreach {node dof} $own { set force [expr {$force + [nodeReaction $node $dof]}] }
+      lappend forces $force
+    }
     return $forces
   }
 
@@ -222,25 +262,30 @@ namespace eval ::hybridtest {
 
   # The forces at the last iteration of an analysis are in files that the algorithm writes.
   proc record_trials {} {
-    variable held
+    variable sources
     variable trial_file
     variable has_trial_record
     if {$has_trial_record} { return }
     set place 0
-    foreach {node dof} $held {
+    foreach {node dof} [concat {*}$sources] {
       algorithmRecorder Node -file $trial_file.[incr place] -precision 17 -closeOnWrite -node $node -dof $dof reaction
     }
     set has_trial_record 1
   }
 
   proc recorded_forces {} {
-    variable held
+    variable sources
     variable trial_file
     set forces {}
-    for {set place 1} {$place <= [llength $held] / 2} {incr place} {
-      set file [open $trial_file.$place]
-      lappend forces [expr {double([lindex [read $file] end])}]
-      close $file
+    set place 0
+    foreach own $sources {
+      set force 0.0
+      foreach {node dof} $own {
+        set file [open $trial_file.[incr place]]
+        set force [expr {$force + [lindex [read $file] end]}]
+        close $file
+      }
+      lappend forces $force
     }
     return $forces
   }
@@ -373,10 +418,17 @@ namespace eval ::hybridtest {
     variable at
     variable algorithms
     variable current
+    variable has_ties
+    variable sources
     guard_commands $mode
     run_script $script
     check_interface $interface
     hold_interface $interface
+    if {$has_ties && [info commands getConstrainedNodes] eq ""} {
+      error "this OpenSees ([version]) does not tell which nodes follow others (getConstrainedNodes), and the script has\
+        such nodes; use a newer version, 3.3 or later"
+    }
+    set sources [find_sources]
     set_up_analysis $tolerance
     set current [lindex $algorithms 0]
     if {![converge $origin]} {

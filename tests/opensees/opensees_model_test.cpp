@@ -104,6 +104,21 @@ TEST_F(OpenSeesModelTest, ElasticColumnHasTheStiffnessOfABeam) {
       << "condensed on one degree of freedom";
 }
 
+TEST_F(OpenSeesModelTest, NodesThatFollowTheInterfaceCount) {
+  HYBRIDTEST_NEEDS_OPENSEES();
+  const std::string columns =
+      "model basic -ndm 2 -ndf 3\ngeomTransf Linear 1\n"
+      "foreach {foot tip x} {1 2 0.0  3 4 5.0} {\n"
+      "  node $foot $x 0.0\n  node $tip $x 3.0\n  fix $foot 1 1 1\n"
+      "  element elasticBeamColumn $foot $foot $tip 0.01 200.0e9 5.0e-4 1\n}\n";
+  constexpr double kCantilever_n_per_m = 3.0 * 200.0e9 * 5.0e-4 / 27.0;
+  OpenSeesModel model{settings(columns + "equalDOF 2 4 1\n")};
+  EXPECT_NEAR(model.initial_stiffness_n_per_m()(0, 0) / (2.0 * kCantilever_n_per_m), 1.0, 1e-9) << "by trials";
+  model.start({});
+  EXPECT_NEAR(step(model, 0.01) / (0.02 * kCantilever_n_per_m), 1.0, 1e-9) << "by a step";
+  expect_refused(settings(columns + "rigidLink beam 2 4\n", {{2, 3, true}}), "follows the rotation of node 2");
+}
+
 TEST_F(OpenSeesModelTest, YieldingSteelIsOurBilinearLaw) {
   HYBRIDTEST_NEEDS_OPENSEES();
   OpenSeesModel model{settings(kStorey)};
