@@ -18,6 +18,7 @@ void add_effects_command(CLI::App& app, CommandAction& action);
 void add_export_command(CLI::App& app, CommandAction& action);
 void add_summary_command(CLI::App& app, CommandAction& action);
 void add_diagnose_command(CLI::App& app, CommandAction& action);
+void add_reference_command(CLI::App& app, CommandAction& action);
 void add_replay_command(CLI::App& app, CommandAction& action);
 void add_study_command(CLI::App& app, CommandAction& action);
 void add_blind_command(CLI::App& app, CommandAction& action);

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   hybridtest::add_summary_command(app, action);
   hybridtest::add_diagnose_command(app, action);
   hybridtest::add_replay_command(app, action);
+  hybridtest::add_reference_command(app, action);
   hybridtest::add_study_command(app, action);
   hybridtest::add_blind_command(app, action);
   try {

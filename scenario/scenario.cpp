@@ -264,9 +264,12 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
     section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
   }
   substructure.make_rig = std::move(rig.make);
+  substructure.make_reference = std::move(rig.make_specimen);
   site.has_model = section.has_optional("model");
   if (site.has_model) {
-    substructure.make_model_rig = read_model_rig(section.section("model"), static_cast<int>(dofs)).make;
+    RigReading model = read_model_rig(section.section("model"), static_cast<int>(dofs));
+    substructure.make_model_rig = std::move(model.make);
+    if (!substructure.make_reference) substructure.make_reference = std::move(model.make_specimen);
   }
   site.control_rate_hz = section.number("control_rate_hz", {.low = 1.0, .high = 20e3}, 1024.0);
 
@@ -309,6 +312,7 @@ SubstructureScenario read_substructure(Section& section, Scenario& scenario, con
   if (is_numerical) {
     substructure.make_model = read_model(section.section("model"), named_interface(substructure, table), directory,
                                          scenario.time.step_s, scenario.files);
+    substructure.make_reference = substructure.make_model;
   } else {
     read_site(section, scenario, directory, substructure);
   }

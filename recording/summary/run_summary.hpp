@@ -13,6 +13,7 @@
 #include "core/messages.hpp"
 #include "recording/summary/percentiles.hpp"
 #include "recording/summary/process_end.hpp"
+#include "recording/summary/reference_comparison.hpp"
 #include "recording/summary/tracking_error.hpp"
 
 namespace hybridtest {
@@ -141,6 +142,7 @@ struct RunSummary {
   std::optional<double> steps_per_second;
 
   std::vector<GroundMotionSummary> ground_motions;  // none in the files of older versions
+  std::vector<ReferenceComparison> references;      // of `hybridtest reference`
   std::vector<Peak> peak_displacement_m;            // per structure degree of freedom
   std::vector<SubstructureSummary> substructures;
   std::vector<InterlockSummary> interlocks;
@@ -176,6 +178,9 @@ struct SummaryInput {
 void write_summary_json(const RunSummary& summary, std::ostream& stream);
 /// @throws RecordingError when the file cannot be written.
 void write_summary_json(const RunSummary& summary, const std::filesystem::path& path);
+
+/// Of references, as in the summary.
+void print_comparisons(const std::vector<ReferenceComparison>& comparisons, std::ostream& stream);
 
 /// For users: verdict first, in millimetres, kilonewtons and milliseconds.
 void print_summary(const RunSummary& summary, std::ostream& stream);

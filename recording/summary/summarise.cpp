@@ -494,7 +494,9 @@ void Summariser::conclude() {
 }  // namespace
 
 RunSummary summarise(const std::filesystem::path& run_directory, const SummaryInput& input) {
-  return Summariser{run_directory, input}.summarise();
+  RunSummary summary = Summariser{run_directory, input}.summarise();
+  summary.references = reference_comparisons(run_directory);
+  return summary;
 }
 
 }  // namespace hybridtest

@@ -33,6 +33,12 @@ Json json(const std::vector<Peak>& peaks, const char* key) {
   return list;
 }
 
+Json json(const std::vector<ReferenceComparison>& comparisons) {
+  Json list = Json::array();
+  for (const ReferenceComparison& comparison : comparisons) list.push_back(Json::parse(text_of(comparison)));
+  return list;
+}
+
 Json json(const ExchangeSummary& exchange) {
   return {{"round_trip_us", json(exchange.round_trip_us)},
           {"turnaround_us", json(exchange.turnaround_us)},
@@ -157,6 +163,7 @@ Json json(const RunSummary& summary) {
           {"wall_time_s", optional(summary.wall_time_s)},
           {"steps_per_second", optional(summary.steps_per_second)},
           {"ground_motions", list(summary.ground_motions)},
+          {"references", json(summary.references)},
           {"peak_displacement", json(summary.peak_displacement_m, "displacement_m")},
           {"substructures", list(summary.substructures)},
           {"interlocks", list(summary.interlocks)},

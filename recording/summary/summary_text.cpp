@@ -200,6 +200,18 @@ std::string verdict(const RunSummary& summary) {
   return summary.data_valid ? text : text + "; data invalid";
 }
 
+void print_comparisons(const std::vector<ReferenceComparison>& comparisons, std::ostream& stream) {
+  for (const ReferenceComparison& comparison : comparisons) {
+    TextTable table{
+        {"against reference " + comparison.reference, "peak mm", "reference mm", "RMS diff. %", "largest %"}};
+    for (const DofComparison& dof : comparison.dofs) {
+      table.add({dof.dof, fixed(dof.peak_m * kMillimetres, 3), fixed(dof.reference_peak_m * kMillimetres, 3),
+                 fixed(dof.rms_relative, kPercent, 4), fixed(dof.difference_relative, kPercent, 4)});
+    }
+    table.print(stream);
+  }
+}
+
 void print_summary(const RunSummary& summary, std::ostream& stream) {
   print_head(summary, stream);
   std::vector<std::string> interlocks;
@@ -208,6 +220,7 @@ void print_summary(const RunSummary& summary, std::ostream& stream) {
   print_list("data invalid because", summary.data_faults, stream);
   print_list("faults", summary.faults, stream);
   print_peaks(summary, stream);
+  print_comparisons(summary.references, stream);
   print_exchanges(summary, stream);
   print_sites(summary, stream);
   print_list("remarks", summary.remarks, stream);

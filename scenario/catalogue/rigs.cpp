@@ -142,6 +142,7 @@ std::unique_ptr<Rig> late_rig(const std::vector<double>& delay_s, double period_
 
 /// The rig, read in actuators, behind its geometry.
 RigReading behind(const GeometryReading& geometry, int dofs, RigReading rig) {
+  rig.make_specimen = {};
   // Each degree of freedom may hang on every actuator: the slowest counts.
   const double slowest_s = rig.transfer_delay_s.empty() ? 0.0 : std::ranges::max(rig.transfer_delay_s);
   rig.transfer_delay_s.assign(static_cast<std::size_t>(dofs), slowest_s);

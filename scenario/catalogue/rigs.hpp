@@ -10,6 +10,7 @@
 #include "core/config/section.hpp"
 #include "core/records.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "numerical_substructure/substructure_model.hpp"
 #include "scenario/catalogue/rig_rating.hpp"
 
 namespace hybridtest {
@@ -26,6 +27,9 @@ struct RigReading {
   /// of its own stiffness as above or, where that is not known, of the stiffness given.
   std::function<std::unique_ptr<Rig>(double control_period_s, double displacement_m, const Eigen::MatrixXd& given)>
       make_linear = {};
+  /// The simulated specimen alone, without its effects, as a model over the interface. Empty where there is none, and
+  /// behind a geometry.
+  std::function<std::unique_ptr<SubstructureModel>()> make_specimen = {};
   bool follows_commands = true;  // false: nothing there tracks a target
   double silence_s_max = 0.0;    // for so long readings may fail to come without a fault
   RigRating rating;

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "experimental_site/rigs/simulated_rig.hpp"
+#include "numerical_substructure/elastic_matrix.hpp"
+#include "numerical_substructure/spring_network.hpp"
 #include "plant/specimens/elastic_specimen.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/ideal.hpp"
@@ -128,6 +130,20 @@ Eigen::MatrixXd secant_stiffness(Specimen& specimen, double displacement_m) {
   return stiffness_n_per_m;
 }
 
+/// Empty without a law for each degree of freedom.
+std::function<std::unique_ptr<SubstructureModel>()> specimen_model(const SimulatedSiteReading& site) {
+  if (site.make_full_stiffness) {
+    return
+        [make = site.make_full_stiffness] { return std::make_unique<ElasticMatrix>(secant_stiffness(*make(), 1.0)); };
+  }
+  std::vector<Maker<Law>> laws;
+  for (const SiteModel& dof : site.dofs) {
+    if (!dof.make_law) return {};
+    laws.push_back(dof.make_law);
+  }
+  return [laws] { return std::make_unique<SpringNetwork>(springs_to_ground(make_all(laws))); };
+}
+
 }  // namespace
 
 SimulatedSiteReading read_simulated_site(Section& section, int dofs, AbsentPart absent) {
@@ -161,6 +177,7 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
       return secant_stiffness(*make_specimen(site), displacement_m);
     };
   }
+  reading.make_specimen = specimen_model(site);
   reading.make_linear = [site, own = reading.stiffness_n_per_m](double period_s, double displacement_m,
                                                                 const Eigen::MatrixXd& given) {
     std::vector<std::unique_ptr<TransferSystem>> transfer_systems;

@@ -32,7 +32,8 @@ const std::vector<Part>& parts() {
       joined(joined(models, nodes), {"core/config", "transport", "transport/fast_dds", "recording", "scenario"});
   static const Paths product =
       joined(participants, {"runtime", "report/plotting", "diagnosis", "diagnosis/runs", "validation/blind_batches",
-                            "validation/blind_batches/plant", "validation/design_motion", "validation/studies"});
+                            "validation/blind_batches/plant", "validation/design_motion", "validation/reference",
+                            "validation/studies"});
   static const Paths everything = joined(product, {"idl", "launch", "tests", "benchmarks"});
   static const std::vector<Part> table{
       {"idl", {}},
@@ -60,6 +61,7 @@ const std::vector<Part>& parts() {
       {"validation/blind_batches", {"core", "validation/blind_batches/plant"}},
       {"validation/blind_batches/plant", {}},
       {"validation/design_motion", {"core", "coordinator"}},
+      {"validation/reference", joined(participants, {"runtime"})},
       {"validation/studies", joined(participants, {"runtime", "report/plotting"})},
       {"launch", product},
       // Composition: may include what launch may.
