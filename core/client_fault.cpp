@@ -1,5 +1,7 @@
 #include "core/client_fault.hpp"
 
+#include <cstdio>
+
 namespace hybridtest {
 
 std::string_view describe(ClientFault fault) noexcept {
@@ -23,6 +25,16 @@ std::string_view describe(ClientFault fault) noexcept {
              "its step";
   }
   return "it gives no reason";
+}
+
+std::string describe(ClientFault fault, double given) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%.6g", given);
+  std::string text{describe(fault)};
+  if (fault == ClientFault::other_size) return text + "; it has " + number;
+  if (fault == ClientFault::short_messages) return text + "; they have " + number + " doubles";
+  if (fault == ClientFault::other_message) return text + ", with the action " + number;
+  return text;
 }
 
 }  // namespace hybridtest

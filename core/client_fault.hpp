@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace hybridtest {
@@ -20,5 +21,8 @@ enum class ClientFault : std::uint8_t {
 
 /// For messages, such as "its connection closed before its model had ended".
 [[nodiscard]] std::string_view describe(ClientFault fault) noexcept;
+/// @param given   what the client sent: its degrees of freedom (other_size), the doubles in its messages
+///                (short_messages), the action (other_message); without meaning for the other faults.
+[[nodiscard]] std::string describe(ClientFault fault, double given);
 
 }  // namespace hybridtest

@@ -149,13 +149,13 @@ std::string describe(const Event& event) {
              "; look at the port of the element, and at the end of opensees.log";
     case EventCode::opensees_refused:
       return "refused a client at the element of " + subject + ": " +
-             std::string{describe(code_of<ClientFault>(event.values[0]))};
+             describe(code_of<ClientFault>(event.values[0]), event.values[1]);
     case EventCode::opensees_lost:
       if (event.subject == ParticipantId{kOpenSeesId}) {
         return "OpenSees ended before its model had; look at the end of opensees.log";
       }
       return "lost OpenSees at the element of " + subject + ": " +
-             std::string{describe(code_of<ClientFault>(event.values[0]))};
+             describe(code_of<ClientFault>(event.values[0]), event.values[1]);
     case EventCode::opensees_silent:
       return "OpenSees has asked for nothing for " + number(event.values[0]) +
              " s; look whether its process still runs, or give it more time (coordinator.silence_s)";

@@ -103,8 +103,9 @@ enum class EventCode : std::uint16_t {
   test_stalled,       // subject: who answered last; values: time without a new step [s], wall time of a step [s]
   no_equilibrium,     // values: trials, last correction [m]
   opensees_missing,   // that leads; subject: the substructure whose element has not connected
-  opensees_refused,   // a client of an element; subject: the substructure; values[0]: ClientFault
-  opensees_lost,      // subject: the substructure of the element; values[0]: ClientFault
+  opensees_refused,   // a client of an element; subject: the substructure; values[0]: ClientFault; values[1]: see
+                      // describe()
+  opensees_lost,      // subject: the substructure of the element; values as of opensees_refused
   opensees_silent,    // values[0]: time without a question [s]
   opensees_iterates,  // subject: the substructure that was to move again
   model_failed,       // subject: the substructure; values: ModelFault, its value

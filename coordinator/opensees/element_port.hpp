@@ -26,6 +26,7 @@ struct ElementRequest {
   Eigen::VectorXd acceleration_m_per_s2;
   double time_s = 0.0;                       // of a trial, in OpenSees
   ClientFault fault = ClientFault::unknown;  // lost and refused: why
+  double given = 0.0;                        // of the fault, see describe()
 };
 
 /// The elements of an OpenSees that leads. Requests of one element come in its order; a force that is asked for is the

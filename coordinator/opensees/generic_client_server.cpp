@@ -429,7 +429,7 @@ void GenericClientServer::go_on(Connection& connection) {
     switch (outcome) {
       case Outcome::incomplete: break;
       case Outcome::reply: connection.send(connection.session().reply()); break;
-      case Outcome::fault: return fail(connection, connection.session().fault());
+      case Outcome::fault: return fail(connection, connection.session().fault(), connection.session().given());
       case Outcome::request:
         if (request_.kind == ElementRequest::Kind::connected) {
           open(connection);
@@ -458,24 +458,26 @@ void GenericClientServer::open(Connection& connection) {
   push(connection.element());
 }
 
-void GenericClientServer::fail(Connection& connection, ClientFault fault) {
+void GenericClientServer::fail(Connection& connection, ClientFault fault, double given) {
   if (connection.state == Connection::State::stranger) {
     connection.state = Connection::State::over;
-    return refuse(connection.element(), fault);
+    return refuse(connection.element(), fault, given);
   }
   if (connection.state != Connection::State::client) return;
   connection.state = Connection::State::failed;
   connection.asks = false;
   request_.kind = ElementRequest::Kind::lost;
   request_.fault = fault;
+  request_.given = given;
   push(connection.element());
 }
 
-void GenericClientServer::refuse(std::size_t element, ClientFault fault) {
+void GenericClientServer::refuse(std::size_t element, ClientFault fault, double given) {
   ++refused_;
   if (room() <= queue_.size() / 2) return;  // many of them crowd no client out; they are counted
   request_.kind = ElementRequest::Kind::refused;
   request_.fault = fault;
+  request_.given = given;
   push(element);
 }
 

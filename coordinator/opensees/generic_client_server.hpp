@@ -68,8 +68,8 @@ class GenericClientServer final : public ElementPort {
   /// Deals with what a client sent, as far as it may.
   void go_on(Connection& connection);
   void open(Connection& connection);
-  void fail(Connection& connection, ClientFault fault);
-  void refuse(std::size_t element, ClientFault fault);
+  void fail(Connection& connection, ClientFault fault, double given = 0.0);
+  void refuse(std::size_t element, ClientFault fault, double given = 0.0);
   void add(std::size_t element, std::unique_ptr<Connection> connection);
   [[nodiscard]] bool is_permitted(const sockaddr_in& from) const noexcept;
   [[nodiscard]] Connection* client(std::size_t element) noexcept;

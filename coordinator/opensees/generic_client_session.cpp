@@ -63,10 +63,10 @@ GenericClientSession::Outcome GenericClientSession::read_sizes(ElementRequest& r
   const std::int64_t values = sizes[10];
   const Sizes expected{n, n, n, 0, 1, 0, 0, 0, n, 0, sizes[10]};
   if (n < 1 || sizes != expected || values > kLargestMessage) return fail(ClientFault::other_protocol);
-  if (n != size_) return fail(ClientFault::other_size);
+  if (n != size_) return fail(ClientFault::other_size, n);
   // OpenSees makes its messages at least as large as a trial and as a matrix.
   const auto fewest = std::max<std::int64_t>(2 + 3 * size_, size_ * size_);
-  if (values < fewest) return fail(ClientFault::short_messages);
+  if (values < fewest) return fail(ClientFault::short_messages, sizes[10]);
   const auto count = static_cast<std::size_t>(values);
   values_.assign(count, 0.0);
   reply_.assign(count, 0.0);
@@ -97,7 +97,7 @@ GenericClientSession::Outcome GenericClientSession::read_message(ElementRequest&
     case Action::mass: return matrix(matrices_.mass_kg);
     case Action::die: has_ended_ = true; return plain(ElementRequest::Kind::die);
   }
-  return fail(ClientFault::other_message);
+  return fail(ClientFault::other_message, values_[0]);
 }
 
 GenericClientSession::Outcome GenericClientSession::read_trial(ElementRequest& request) {
@@ -114,8 +114,9 @@ GenericClientSession::Outcome GenericClientSession::read_trial(ElementRequest& r
   return Outcome::request;
 }
 
-GenericClientSession::Outcome GenericClientSession::fail(ClientFault fault) noexcept {
+GenericClientSession::Outcome GenericClientSession::fail(ClientFault fault, double given) noexcept {
   fault_ = fault;
+  given_ = given;
   return Outcome::fault;
 }
 

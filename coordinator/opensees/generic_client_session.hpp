@@ -47,6 +47,8 @@ class GenericClientSession {
   /// After 99.
   [[nodiscard]] bool has_ended() const noexcept { return has_ended_; }
   [[nodiscard]] ClientFault fault() const noexcept { return fault_; }
+  /// What the client sent instead, see describe().
+  [[nodiscard]] double given() const noexcept { return given_; }
 
   /// A matrix, after Outcome::reply. Valid until the next take().
   [[nodiscard]] std::span<const std::byte> reply() const noexcept { return std::as_bytes(std::span{reply_}); }
@@ -57,7 +59,7 @@ class GenericClientSession {
   [[nodiscard]] Outcome read_sizes(ElementRequest& request);
   [[nodiscard]] Outcome read_message(ElementRequest& request);
   [[nodiscard]] Outcome read_trial(ElementRequest& request);
-  [[nodiscard]] Outcome fail(ClientFault fault) noexcept;
+  [[nodiscard]] Outcome fail(ClientFault fault, double given = 0.0) noexcept;
 
   const ElementMatrices& matrices_;
   Eigen::Index size_;
@@ -69,6 +71,7 @@ class GenericClientSession {
   bool is_open_ = false;
   bool has_ended_ = false;
   ClientFault fault_ = ClientFault::unknown;
+  double given_ = 0.0;
 };
 
 }  // namespace hybridtest

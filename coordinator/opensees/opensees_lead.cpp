@@ -85,7 +85,7 @@ void OpenSeesLead::take_requests(Instant now) noexcept {
     switch (request_.kind) {
       case ElementRequest::Kind::connected: element.is_connected = true; break;
       case ElementRequest::Kind::refused:
-        told_ = LeadEvent{EventCode::opensees_refused, id, {static_cast<double>(request_.fault), 0.0}};
+        told_ = LeadEvent{EventCode::opensees_refused, id, {static_cast<double>(request_.fault), request_.given}};
         break;
       case ElementRequest::Kind::lost:
         element.is_connected = false;
@@ -128,7 +128,9 @@ void OpenSeesLead::go_on(std::size_t index) noexcept {
       case ElementRequest::Kind::die: end_.reason = StopReason::completed; break;
       case ElementRequest::Kind::lost:
         end_ = {StopReason::opensees_lost,
-                {EventCode::opensees_lost, settings_.elements[index].id, {static_cast<double>(request.fault), 0.0}}};
+                {EventCode::opensees_lost,
+                 settings_.elements[index].id,
+                 {static_cast<double>(request.fault), request.given}}};
         break;
       case ElementRequest::Kind::connected:
       case ElementRequest::Kind::refused: break;  // dealt with on arrival

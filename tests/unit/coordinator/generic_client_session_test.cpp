@@ -222,5 +222,19 @@ TEST(GenericClientSession, EveryFaultIsDescribed) {
   }
 }
 
+TEST(GenericClientSession, FaultTellsWhatTheClientSent) {
+  const std::vector<std::pair<Bytes, std::string>> sent{
+      {sizes(3), "it has 3"}, {sizes(1, 4), "they have 4 doubles"}, {sizes(1) + message(77.0), "with the action 77"}};
+  const ElementMatrices matrices = matrices_of(1);
+  for (const auto& [bytes, expected] : sent) {
+    GenericClientSession session{matrices};
+    std::span<const std::byte> arrived{bytes};
+    ElementRequest request;
+    while (session.take(arrived, request) != Outcome::fault) ASSERT_FALSE(arrived.empty()) << expected;
+    const std::string text = describe(session.fault(), session.given());
+    EXPECT_NE(text.find(expected), std::string::npos) << text;
+  }
+}
+
 }  // namespace
 }  // namespace hybridtest
