@@ -11,6 +11,7 @@ using CommandAction = std::function<int()>;
 
 void add_new_command(CLI::App& app, CommandAction& action);
 void add_check_command(CLI::App& app, CommandAction& action);
+void add_import_command(CLI::App& app, CommandAction& action);
 void add_run_command(CLI::App& app, CommandAction& action);
 void add_simulate_command(CLI::App& app, CommandAction& action);
 void add_control_commands(CLI::App& app, CommandAction& action);

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   hybridtest::CommandAction action;
   hybridtest::add_new_command(app, action);
   hybridtest::add_check_command(app, action);
+  hybridtest::add_import_command(app, action);
   hybridtest::add_run_command(app, action);
   hybridtest::add_simulate_command(app, action);
   hybridtest::add_control_commands(app, action);
