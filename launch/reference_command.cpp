@@ -11,7 +11,7 @@
 #include "recording/summary/run_summary.hpp"
 #include "runtime/run_directory.hpp"
 #include "scenario/scenario.hpp"
-#include "validation/reference/monolithic_test.hpp"
+#include "validation/reference/monolithic_response.hpp"
 #include "validation/reference/response_comparison.hpp"
 
 namespace hybridtest {
@@ -50,7 +50,7 @@ int make_reference(const ReferenceOptions& options) {
     if (is_terminal || step == last)
       fmt::print(stderr, "{}reference: step {}/{}{}", is_terminal ? "\r" : "", step, last, step == last ? "\n" : "");
   };
-  const ReferenceResponse response = monolithic_test(scenario, show);
+  const ReferenceResponse response = monolithic_response(scenario, show);
   write_response(scenario, response, folder / (name + ".csv"));
   fmt::print("{}: {} steps of {:.6g} s without coupling, in {}\n", scenario.name, scenario.time.last_step,
              response.step_s, (folder / (name + ".csv")).string());

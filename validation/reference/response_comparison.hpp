@@ -4,7 +4,7 @@
 #include <string>
 
 #include "recording/summary/reference_comparison.hpp"
-#include "validation/reference/monolithic_test.hpp"
+#include "validation/reference/monolithic_response.hpp"
 
 namespace hybridtest {
 

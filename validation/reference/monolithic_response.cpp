@@ -1,4 +1,4 @@
-#include "validation/reference/monolithic_test.hpp"
+#include "validation/reference/monolithic_response.hpp"
 
 #include <fmt/format.h>
 
@@ -53,9 +53,9 @@ LinearStructure structure_of(const Scenario& scenario, const std::vector<Part>& 
   return structure;
 }
 
-class MonolithicTest {
+class MonolithicStructure {
  public:
-  explicit MonolithicTest(const Scenario& scenario)
+  explicit MonolithicStructure(const Scenario& scenario)
       : parts_{parts_of(scenario)},
         structure_{structure_of(scenario, parts_)},
         load_{scenario.excitation.load(structure_)},
@@ -120,13 +120,13 @@ class MonolithicTest {
 
 }  // namespace
 
-ReferenceResponse monolithic_test(const Scenario& scenario, const std::function<void(Step, Step)>& progress) {
+ReferenceResponse monolithic_response(const Scenario& scenario, const std::function<void(Step, Step)>& progress) {
   if (scenario.opensees) {
     throw ConfigError{scenario.file.string() +
                       ": OpenSees leads this test, and its model of the structure is not known here; compute the same "
                       "model without a test in OpenSees itself"};
   }
-  MonolithicTest test{scenario};
+  MonolithicStructure test{scenario};
   const Step last = scenario.time.last_step;
   ReferenceResponse response{.step_s = scenario.time.step_s,
                              .displacement_m = Eigen::MatrixXd{scenario.structure.size(), last + 1}};

@@ -18,7 +18,7 @@ struct ReferenceResponse {
 /// @param progress   (steps done, steps in all) now and then; may be empty.
 /// @throws ConfigError where OpenSees leads, for a site whose specimen is not known, and for a step without
 /// equilibrium.
-[[nodiscard]] ReferenceResponse monolithic_test(const Scenario& scenario,
-                                                const std::function<void(Step, Step)>& progress = {});
+[[nodiscard]] ReferenceResponse monolithic_response(const Scenario& scenario,
+                                                    const std::function<void(Step, Step)>& progress = {});
 
 }  // namespace hybridtest
