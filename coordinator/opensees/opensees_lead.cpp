@@ -83,7 +83,11 @@ void OpenSeesLead::take_requests(Instant now) noexcept {
     Element& element = elements_[index];
     const ParticipantId& id = settings_.elements[index].id;
     switch (request_.kind) {
-      case ElementRequest::Kind::connected: element.is_connected = true; break;
+      case ElementRequest::Kind::connected:
+        element.is_connected = true;
+        // Before the test a model may come and go; what an earlier one said does not count.
+        if (is_commanded_ && step_ == 0) element.arrived.clear();
+        break;
       case ElementRequest::Kind::refused:
         told_ = LeadEvent{EventCode::opensees_refused, id, {static_cast<double>(request_.fault), request_.given}};
         break;

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "mechanics/structure/matrix_market.hpp"
 #include "tests/support/opensees.hpp"
@@ -74,6 +76,68 @@ TEST_F(Import, SpaceFrameEqualsTheMatricesOfTheReference) {
   EXPECT_THAT(scenario, HasSubstr("interface: [{dof: node_300_uy}]"));
   StartedProgram check = start_hybridtest({"check", "frame/scenario.yaml", "--quick"}, "check");
   EXPECT_THAT(check.wait(), Optional(kExitCompleted)) << check.standard_output() << check.standard_error();
+}
+
+/// The history of the reference: time, then a column for each of `dofs`, every 0.05 s.
+std::vector<std::vector<double>> history_of_the_frame() {
+  std::ifstream file{std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "tests/reference/frame_3d/history.csv"};
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  for (std::getline(file, line); std::getline(file, line);) {
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream words{line};
+    std::vector<double>& row = rows.emplace_back();
+    for (double value = 0.0; words >> value;) row.push_back(value);
+  }
+  return rows;
+}
+
+TEST_F(Import, RunEqualsTheAnalysisOfOpenSees) {
+  const std::filesystem::path reference = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "tests/reference";
+  write("frame.tcl", "set argv {0.05 " + directory().string() + "}\nsource " + (reference / "frame_3d.tcl").string());
+  imported({"frame.tcl", "--interface", "300,1"});
+  std::string scenario = text_of(directory() / "frame/scenario.yaml");
+  const auto replace = [&](const std::string& key, const std::string& line) {
+    const std::size_t begin = scenario.find("\n" + key) + 1;
+    scenario.replace(begin, scenario.find('\n', begin) - begin, line);
+  };
+  replace("time:", "time: {mode: lockstep, step_s: 0.001, duration_s: 10.0}");
+  std::string records = "excitation:\n  records:";
+  for (const std::string axis : {"x", "y"}) {
+    std::filesystem::copy_file(reference / "frame_3d" / (axis + ".txt"), directory() / "frame" / (axis + ".txt"));
+    records += "\n    - {ground_motion: " + axis + ".txt, unit: m_per_s2, dt_s: 0.01, direction: " + axis + "}";
+  }
+  replace("excitation:", records);
+  write("frame/shaken.yaml", scenario);
+  // Control: three hundredths more of the damping by mass are far above the limit.
+  replace("  damping:", "  damping: {type: mass_and_stiffness, mass_per_s: 0.36, stiffness_s: 0.0006}");
+  write("frame/damped.yaml", scenario);
+  const std::vector<std::vector<double>> expected = history_of_the_frame();
+  ASSERT_EQ(expected.size(), 200U);
+  const auto worst_share_of_peak = [&](const std::string& name) {
+    StartedProgram simulate = start_hybridtest(
+        {"simulate", "frame/" + name + ".yaml", "--seed", "1", "--out", name + ".run"}, "simulate_" + name);
+    EXPECT_THAT(simulate.wait(), Optional(kExitCompleted)) << simulate.standard_error();
+    double worst = 0.0;
+    std::size_t column = 0;
+    for (const std::string dof : {"node_300_ux", "node_300_uy", "node_321_ux", "node_321_uy"}) {
+      ++column;
+      const std::vector<double> found =
+          recorded(name + ".run").column("coordinator", "steps", "displacement_" + dof + "_m");
+      double peak = 0.0;
+      double distance = 0.0;
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        peak = std::max(peak, std::abs(expected[i][column]));
+        distance = std::max(distance, std::abs(found.at((i + 1) * 50) - expected[i][column]));
+      }
+      worst = std::max(worst, distance / peak);
+    }
+    return worst;
+  };
+  const double share = worst_share_of_peak("shaken");
+  RecordProperty("worst_share_of_peak", std::to_string(share));
+  EXPECT_LE(share, 5e-4);
+  EXPECT_GE(worst_share_of_peak("damped"), 2e-3);
 }
 
 TEST_F(Import, UnitsOfTheScriptBecomeSi) {

@@ -331,6 +331,7 @@ TEST_F(OpenSeesLeads, ForeignClientIsRefusedAndMovesNothing) {
   HYBRIDTEST_NEEDS_OPENSEES();
   const std::filesystem::path scenario = own_copy("shear_frame");
   change("shear_frame.yaml", "  script: shear_frame.tcl\n", "");
+  change("shear_frame.tcl", "set duration_s 31.0", "set duration_s 2.0");
   StartedProgram run = start_run(scenario, "run");
   ASSERT_TRUE(wait_until([&] { return run.standard_error().find("storey_1: ready") != std::string::npos; }));
   const int foreign = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

@@ -116,6 +116,23 @@ TEST_F(OpenSeesLeadTest, AwaitsTheFirstElementThatIsNotConnected) {
   EXPECT_EQ(lead_->awaited(now_).view(), "b");
 }
 
+TEST_F(OpenSeesLeadTest, ModelThatCameAgainBeforeTheTestLeads) {
+  port_.says(0, Kind::connected);
+  port_.tries(0, of({0.5}));
+  port_.says(0, Kind::lost, ClientFault::closed);
+  port_.says(0, Kind::connected);
+  leads(false);
+  EXPECT_EQ(lead_->next(now_), NextMotion::none) << "neither lost nor at 0.5 m";
+}
+
+TEST_F(OpenSeesLeadTest, ModelThatComesAgainDuringTheTestDoesNotLead) {
+  leads(false);
+  port_.says(0, Kind::lost, ClientFault::closed);
+  port_.says(0, Kind::connected);
+  ASSERT_EQ(lead_->next(now_), NextMotion::end);
+  EXPECT_EQ(lead_->end().reason, StopReason::opensees_lost);
+}
+
 TEST_F(OpenSeesLeadTest, TrialAloneMovesNothing) {
   leads(false);
   tries(0.001, 0.002);
