@@ -431,6 +431,7 @@ void apply(const NumericalErrors& errors, Scenario& scenario) {
     substructure.make_model = [make = substructure.make_model, factor = errors.stiffness] {
       return std::make_unique<ScaledModel>(make(), factor);
     };
+    substructure.make_reference = substructure.make_model;
     substructure.initial_stiffness_n_per_m *= errors.stiffness;
   }
   scenario.structure.initial_stiffness_n_per_m = assembled_stiffness(scenario);

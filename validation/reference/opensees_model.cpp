@@ -48,6 +48,22 @@ Material bouc_wen(Section& law) {
   return text + " 0.0 0.0 0.0 1.0e-14 100";
 }
 
+/// Bilinear without hardening.
+Material friction(Section& law) {
+  const double force = law.number("friction_force_n");
+  if (force == 0.0) return {};
+  return fmt::format("Steel01 {:.17g} {:.17g} 0.0", force, force / law.number("presliding_displacement_m"));
+}
+
+/// A line through four points, which goes on beyond the outer ones.
+Material gap(Section& law) {
+  const double touch_m = law.number("gap_m");
+  if (touch_m == 0.0) return {};
+  const double force = law.number("stiffness_n_per_m") * touch_m;
+  return fmt::format("ElasticMultiLinear -strain {0:.17g} {1:.17g} {2:.17g} {3:.17g} -stress {4:.17g} 0.0 0.0 {5:.17g}",
+                     -2.0 * touch_m, -touch_m, touch_m, 2.0 * touch_m, -force, force);
+}
+
 Material lead_rubber(Section& law) {
   if (law.number("heating_path_m") != 0.0) return {};
   const double rubber = law.number("rubber_stiffness_n_per_m");
@@ -72,6 +88,8 @@ const std::vector<std::pair<std::string_view, Writer>>& writers() {
                             law.number("flag_ratio"));
        }},
       {"lead_rubber", lead_rubber},
+      {"friction", friction},
+      {"gap", gap},
       {"viscous",
        [](Section& law) {
          return fmt::format("Viscous {:.17g} {:.17g}", law.number("damping_n_s_per_m"), law.number("exponent"));
@@ -93,12 +111,18 @@ class ModelWriter {
 
   [[nodiscard]] std::string text(const std::filesystem::path& results) {
     if (scenario_.excitation.free_vibration) refuse("excitation.free_vibration: an initial motion is not written");
+    check_effects();
+    const Eigen::SparseMatrix<double>& damping = scenario_.structure.damping_n_s_per_m;
+    if (!Eigen::SparseMatrix<double>{damping.transpose()}.isApprox(damping, kSumRounding)) {
+      refuse("structure.damping: a matrix that is not symmetric is not written");
+    }
     write_nodes();
     write_substructures();
     write_matrix(stiffness_, [](double value) { return fmt::format("Elastic {:.17g}", value); });
     write_matrix(scenario_.structure.damping_n_s_per_m,
                  [](double value) { return fmt::format("Elastic 0.0 {:.17g}", value); });
     write_loads();
+    write_initial_acceleration();
     write_analysis(results);
     if (!issues_.empty()) {
       std::string all = scenario_.file.string() + " cannot be written for OpenSees:";
@@ -111,6 +135,15 @@ class ModelWriter {
  private:
   void refuse(const std::string& what) { issues_.push_back(what); }
   void line(const std::string& what) { text_ += what + "\n"; }
+
+  /// Errors of mass and damping are in the matrices; one of the stiffness is not in the laws.
+  void check_effects() {
+    Section root = document_.root();
+    if (!root.has("effects")) return;
+    for (Section& effect : root.sections("effects", true)) {
+      if (effect.text("type") == "stiffness_error") refuse("effects: stiffness_error is not written");
+    }
+  }
 
   void write_nodes() {
     line("# " + scenario_.name +
@@ -262,7 +295,10 @@ class ModelWriter {
   /// One law, or several in parallel, along an elongation.
   void write_law(const SubstructureScenario& substructure, const Weights& weights, Section law) {
     const std::string type = law.text("type");
-    if (type == "none") return;
+    if (type == "none") {
+      refuse(substructure.id + ": a specimen without a law; its effects are not written");
+      return;
+    }
     if (type == "parallel") {
       for (Section& each : law.sections("laws", true)) write_law(substructure, weights, each);
       return;
@@ -299,6 +335,7 @@ class ModelWriter {
   void write_series(int tag, const std::vector<double>& values) {
     std::string list;
     for (const double value : values) list += fmt::format(" {:.17g}", value);
+    list += fmt::format(" {:.17g}", values.back());  // the last value of a series counts as zero
     line(fmt::format("timeSeries Path {} -dt {:.17g} -values {{{}}}", tag, scenario_.time.step_s, list));
   }
 
@@ -322,6 +359,19 @@ class ModelWriter {
       for (std::size_t k = 0; k < force.load.dofs.size(); ++k) factors[force.load.dofs[k]] = force.load.factors[k];
       write_series(++tag, force.load.force_n);
       write_pattern(tag, factors);
+    }
+  }
+
+  /// The structure begins at rest with the acceleration of the first load; OpenSees would begin without one.
+  void write_initial_acceleration() {
+    const AppliedLoad load = scenario_.excitation.load(scenario_.structure);
+    Eigen::VectorXd ground_n = Eigen::VectorXd::Zero(size_);
+    Eigen::VectorXd forces_n = Eigen::VectorXd::Zero(size_);
+    load.ground_at(0, ground_n);
+    if (load.has_forces()) load.forces_at(0, forces_n);
+    for (Eigen::Index dof = 0; dof < size_; ++dof) {
+      const double acceleration = (ground_n[dof] + forces_n[dof]) / scenario_.structure.mass_kg.coeff(dof, dof);
+      if (acceleration != 0.0) line(fmt::format("setNodeAccel {} 1 {:.17g} -commit", dof + 1, acceleration));
     }
   }
 
