@@ -12,7 +12,8 @@ namespace hybridtest {
 /// @return the stability that the lines are from.
 TestStability check_stability(const Scenario& scenario, CheckReport& report, std::FILE* out);
 
-/// The same of a test that OpenSees leads, whose structure is not known here: how it starts, its elements, and the sites.
+/// The same of a test that OpenSees leads, whose structure is not known here: how it starts, its elements, and the
+/// sites.
 void check_led_test(const Scenario& scenario, CheckReport& report, std::FILE* out);
 
 /// The lines that need one: peaks at each site against its limits and the rating of its rig.

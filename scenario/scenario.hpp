@@ -91,8 +91,8 @@ struct SubstructureScenario {
   /// @param control_period_s   in site time.
   std::function<std::unique_ptr<Rig>(double control_period_s)> make_rig;
   std::function<SiteCompensation(double control_period_s)> make_compensation;
-  /// The substructure itself, for a test without coupling: the model or, of a site, the simulated specimen of its rig or
-  /// of the `model` beside it. Empty where neither is known.
+  /// The substructure itself, for a test without coupling: the model or, of a site, the simulated specimen of its rig
+  /// or of the `model` beside it. Empty where neither is known.
   std::function<std::unique_ptr<SubstructureModel>()> make_reference;
   std::function<std::unique_ptr<Rig>(double control_period_s)> make_model_rig;  // by `model`; empty without one
   // The same for the preflight: linear, see RigReading::make_linear. Force compensators that are not linear are left

@@ -105,7 +105,8 @@ TEST_F(Import, RunEqualsTheAnalysisOfOpenSees) {
   std::string records = "excitation:\n  records:";
   for (const std::string axis : {"x", "y"}) {
     std::filesystem::copy_file(reference / "frame_3d" / (axis + ".txt"), directory() / "frame" / (axis + ".txt"));
-    records += "\n    - {ground_motion: " + axis + ".txt, unit: m_per_s2, dt_s: 0.01, direction: " + axis + "}";
+    records.append("\n    - {ground_motion: ").append(axis).append(".txt, unit: m_per_s2, dt_s: 0.01, direction: ");
+    records.append(axis).append("}");
   }
   replace("excitation:", records);
   write("frame/shaken.yaml", scenario);
