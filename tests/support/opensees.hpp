@@ -17,7 +17,13 @@ inline std::filesystem::path test_opensees() {
 
 }  // namespace hybridtest
 
-/// As HYBRIDTEST_NEEDS_DATA, for OpenSees. The programs that the test starts find it by the environment variable.
-#define HYBRIDTEST_NEEDS_OPENSEES()                     \
-  HYBRIDTEST_NEEDS_DATA(::hybridtest::test_opensees()); \
-  setenv("HYBRIDTEST_OPENSEES", ::hybridtest::test_opensees().c_str(), 1)
+/// Skips the test where there is no OpenSees, in CI too: it is not part of the data. The programs that the test starts
+/// find it by the environment variable.
+#define HYBRIDTEST_NEEDS_OPENSEES()                                             \
+  do {                                                                          \
+    const std::filesystem::path needed_program = ::hybridtest::test_opensees(); \
+    if (!std::filesystem::exists(needed_program)) {                             \
+      GTEST_SKIP() << "there is no OpenSees: " << needed_program;               \
+    }                                                                           \
+    setenv("HYBRIDTEST_OPENSEES", needed_program.c_str(), 1);                   \
+  } while (false)
