@@ -1,4 +1,4 @@
-# How a folder becomes a target: hybridtest_library() and hybridtest_program().
+# How a folder becomes a target: hybridtest_library() and hybridtest_program(), with files inside: hybridtest_embed_files().
 
 include(GNUInstallDirs)
 
@@ -107,6 +107,21 @@ function(hybridtest_library name)
   else()
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   endif()
+endfunction()
+
+# hybridtest_embed_files(<target> <name> <files>…): the files become part of the target, which declares
+# `std::span<const EmbeddedFile> hybridtest::embedded::<name>()` where it uses them (core/embedded_file.hpp).
+function(hybridtest_embed_files target name)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name}.cpp)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]" OUTPUT_VARIABLE files)
+  list(JOIN files "|" joined)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -D NAME=${name} "-DFILES=${joined}" -D OUTPUT=${source}
+      -P ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
+    DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
+    COMMENT "Files for ${name}" VERBATIM)
+  set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  target_sources(${target} PRIVATE ${source})
 endfunction()
 
 # hybridtest_program(<name> [INSTALL] SOURCES <files>… LINK <targets>…): in bin/ of the build folder.

@@ -26,8 +26,10 @@ constexpr std::int64_t kLongestWait_ms = 1'000'000'000;
 /// Of a process that was just forked: only calls that are safe in a signal handler.
 [[noreturn]] void become(const ChildStart& start, int log, pid_t parent, char* const* arguments) noexcept {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, start.is_killed_with_parent ? SIGKILL : SIGTERM);
-  if (getppid() != parent) _exit(kNoProgram);
+  if (!start.outlives_parent) {
+    prctl(PR_SET_PDEATHSIG, start.is_killed_with_parent ? SIGKILL : SIGTERM);
+    if (getppid() != parent) _exit(kNoProgram);
+  }
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO);
   dup2(log, STDOUT_FILENO);

@@ -19,6 +19,7 @@ struct ChildStart {
   std::filesystem::path directory = {};    // its working directory; empty: that of this process
   std::vector<int> kept_descriptors = {};  // close-on-exec descriptors that the child has under the same number
   bool is_killed_with_parent = false;      // SIGKILL when its parent dies; otherwise SIGTERM, so that it stops safely
+  bool outlives_parent = false;            // no signal then; it must end by itself
 };
 
 /// A program started on this machine. Its output goes to a log file, its standard input is empty. Ctrl-C at the

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string_view>
+#include <vector>
 
 #include "core/faults.hpp"
 #include "core/fixed_text.hpp"
@@ -20,7 +22,9 @@ namespace hybridtest {
 inline constexpr int kMaxSubstructures = 32;
 /// Number of points in each command: the newest one and those before it.
 inline constexpr int kCommandPoints = 4;
-inline constexpr int kMaxSignalSamples = 32;
+/// In one block of live signals.
+inline constexpr std::size_t kMaxLiveSignals = 16;
+inline constexpr std::size_t kMaxLivePoints = 16;
 
 using ParticipantId = FixedText<48>;
 /// The id of the coordinator of every test.
@@ -200,21 +204,29 @@ struct Event {
   bool operator==(const Event&) const = default;
 };
 
-/// One decimated control-rate sample of a site's first interface degree of freedom.
-struct SignalSample {
-  double model_time_s = 0.0;             // [s]
-  double target_displacement_m = 0.0;    // [m]
-  double command_displacement_m = 0.0;   // [m]
-  double measured_displacement_m = 0.0;  // [m]
-  double force_n = 0.0;                  // [N]
-  bool operator==(const SignalSample&) const = default;
+/// One signal of a live view, over the points of its block. Each point stands for the rows since the point before, so
+/// that no peak is lost.
+struct LiveSignal {
+  FixedText<48> name;      // of the quantity, see live_signals.hpp
+  FixedText<128> subject;  // degree of freedom or substructure that it belongs to; may be empty
+  FixedText<16> unit;
+  double limit = std::numeric_limits<double>::quiet_NaN();  // [unit] magnitude, of its interlock; NaN without one
+  std::vector<double> least{};                              // [unit] one entry per point
+  std::vector<double> most{};                               // [unit] likewise
+  std::vector<double> last{};                               // [unit] of the newest row; NaN where there is no value
+  bool operator==(const LiveSignal&) const = default;
 };
 
-/// Site to live views; best effort, never on the critical path.
+/// A participant to live views; best effort. It is made from recorded rows by the thread that writes them to the file,
+/// and not on the path of a step.
 struct SignalBlock {
-  SubstructureIndex substructure = 0;
-  std::uint8_t sample_count = 0;
-  std::array<SignalSample, kMaxSignalSamples> samples{};
+  ParticipantId participant;
+  Incarnation incarnation = 0;
+  FixedText<32> group;
+  std::uint16_t part = 0;              // a group of many signals travels in several blocks
+  std::uint64_t sequence = 0;          // counts the blocks of one part
+  std::vector<double> model_time_s{};  // [s] of the newest row of each point
+  std::vector<LiveSignal> signals{};   // at most kMaxLiveSignals
   bool operator==(const SignalBlock&) const = default;
 };
 

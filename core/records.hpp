@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hybridtest {
@@ -19,7 +23,20 @@ struct TableLayout {
   std::string name;
   std::vector<Column> columns;
   bool operator==(const TableLayout&) const = default;
+
+  /// Of the column with this name; nothing without one.
+  [[nodiscard]] std::optional<std::size_t> position(std::string_view column) const noexcept {
+    const auto found = std::ranges::find(columns, column, &Column::name);
+    if (found == columns.end()) return {};
+    return static_cast<std::size_t>(found - columns.begin());
+  }
 };
+
+/// Behind the name of a column that occurs `count` times: `_1`, `_2` ...; nothing where it occurs once.
+/// @param number   from 1.
+[[nodiscard]] inline std::string column_suffix(int number, int count) {
+  return count == 1 ? "" : "_" + std::to_string(number);
+}
 
 /// Where a Node appends the rows of one table. Never blocks, never allocates: rows that cannot
 /// be kept are counted by the sink and fail the verdict of the run.

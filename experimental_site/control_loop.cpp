@@ -14,9 +14,6 @@ namespace {
 /// nodes of the thread run.
 constexpr int kPeriodsPerAdvance = 256;
 
-/// One of this many control periods is sent to the live views.
-constexpr std::int64_t kSignalDecimation = 16;
-
 /// Shortest time from motion to standing.
 constexpr double kHalt_s_min = 0.02;
 
@@ -444,11 +441,11 @@ void ControlLoop::record() noexcept {
                   .compensated_force_n = compensated_force_n_,
                   .energy_error_j = energy_error_.energy_error_j(),
                   .tracking_lag_sine = tracking_.lag_sine(),
-                  .faults = faults_});
-  if (command_.sample % kSignalDecimation == 0) {
-    ports_.signals.send({model_time_s(), target_.displacement_m[0], command_.displacement_m[0],
-                         feedback_.displacement_m[0], feedback_.force_n[0]});
-  }
+                  .faults = faults_,
+                  .target_velocity_m_per_s = target_.velocity_m_per_s,
+                  .energy_error_ratio = energy_error_.ratio(),
+                  .command_age_s = follows_targets() && !is_paused_ ? command_age_s_ : 0.0,
+                  .follows_targets = follows_targets()});
 }
 
 }  // namespace hybridtest

@@ -41,7 +41,6 @@ struct ControlLoopSettings {
 struct ControlLoopPorts {
   Inbox<LoopRequest>& requests;
   Outbox<LoopReport>& reports;
-  Outbox<SignalSample>& signals;
 };
 
 /// One per interface degree of freedom each.

@@ -3,7 +3,6 @@
 #include <string>
 
 namespace hybridtest {
-
 ControlRecord::ControlRecord(int dofs, RowSink& sink) : sink_{sink}, row_(layout(dofs).columns.size()) {}
 
 void ControlRecord::append(const ControlSample& sample) noexcept {
@@ -21,13 +20,17 @@ void ControlRecord::append(const ControlSample& sample) noexcept {
   row_[next++] = sample.energy_error_j;
   row_[next++] = sample.tracking_lag_sine;
   row_[next++] = static_cast<double>(static_cast<std::uint32_t>(sample.faults));
+  for (const double velocity_m_per_s : sample.target_velocity_m_per_s) row_[next++] = velocity_m_per_s;
+  row_[next++] = sample.energy_error_ratio;
+  row_[next++] = sample.command_age_s;
+  row_[next++] = sample.follows_targets ? 1.0 : 0.0;
   sink_.append(row_);
 }
 
 TableLayout ControlRecord::layout(int dofs) {
   TableLayout layout{"control", {{"sample", ""}, {"time_s", "s"}, {"model_time_s", "s"}}};
   for (int k = 1; k <= dofs; ++k) {
-    const std::string suffix = dofs == 1 ? "" : "_" + std::to_string(k);
+    const std::string suffix = column_suffix(k, dofs);
     layout.columns.push_back({"target_displacement_m" + suffix, "m"});
     layout.columns.push_back({"command_displacement_m" + suffix, "m"});
     layout.columns.push_back({"measured_displacement_m" + suffix, "m"});
@@ -37,6 +40,12 @@ TableLayout ControlRecord::layout(int dofs) {
   layout.columns.push_back({"energy_error_j", "J"});
   layout.columns.push_back({"tracking_lag_sine", ""});
   layout.columns.push_back({"faults", ""});
+  for (int k = 1; k <= dofs; ++k) {
+    layout.columns.push_back({"target_velocity_m_per_s" + column_suffix(k, dofs), "m/s"});
+  }
+  layout.columns.push_back({"energy_error_ratio", ""});
+  layout.columns.push_back({"command_age_s", "s"});
+  layout.columns.push_back({"follows_targets", ""});
   return layout;
 }
 

@@ -22,6 +22,11 @@ struct ControlSample {
   double energy_error_j = 0.0;
   double tracking_lag_sine = 0.0;  // see TrackingIndicator
   FaultFlags faults = FaultFlags::none;
+  // What the interlocks judge besides, see InterlockUse.
+  const SiteVector& target_velocity_m_per_s;
+  double energy_error_ratio = 0.0;
+  double command_age_s = 0.0;    // 0 while no command is expected
+  bool follows_targets = false;  // else the tracking is not judged
 };
 
 /// The table `control` of a site: one row per control period. append() does not allocate.

@@ -182,6 +182,21 @@ InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, co
   return verdict;
 }
 
+std::optional<InterlockLevel> level_of(InterlockKind kind, const SiteLimits& limits, const InterlockInput& input,
+                                       const SiteVector& measured_displacement_m_before,
+                                       const SiteVector& force_n_before) noexcept {
+  switch (kind) {
+    case InterlockKind::not_finite:
+    case InterlockKind::rig_status:
+    case InterlockKind::emergency_stop:
+    case InterlockKind::stuck_sensor: return {};
+    default: break;
+  }
+  const Finding finding = find(kind, limits, input, {measured_displacement_m_before, force_n_before}, {});
+  if (!finding.is_judged) return {};
+  return InterlockLevel{finding.observed, finding.limit};
+}
+
 bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexcept {
   bool has_reset = false;
   for (std::size_t i = 0; i < kInterlockCount; ++i) {

@@ -142,6 +142,20 @@ inline constexpr double kClearAfter_s = 0.1;
 [[nodiscard]] InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
                                      InterlockState& state) noexcept;
 
+/// What an interlock compares with its limit.
+struct InterlockLevel {
+  double observed = 0.0;  // in the unit of the limit
+  double limit = 0.0;
+};
+
+/// How near an interlock is to its limit, with the input that judge() has; nothing for one without a limit, and while
+/// there is nothing to judge. Counters (`stuck_sensor`) and those that are there or not have no level.
+/// @param measured_displacement_m_before, force_n_before   one sample earlier; empty without one.
+[[nodiscard]] std::optional<InterlockLevel> level_of(InterlockKind kind, const SiteLimits& limits,
+                                                     const InterlockInput& input,
+                                                     const SiteVector& measured_displacement_m_before,
+                                                     const SiteVector& force_n_before) noexcept;
+
 /// The operator's reset: clears the interlocks that wait for it. One whose condition is still present
 /// at the next sample trips again. @return whether one was waiting.
 bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexcept;

@@ -25,9 +25,7 @@ SiteLink::SiteLink(SubstructureIndex index, int dofs, Presence& presence, Member
       membership_{presence, membership},
       ports_{ports},
       steps_{steps},
-      row_(3 + 3 * static_cast<std::size_t>(dofs)) {
-  block_.substructure = index;
-}
+      row_(3 + 3 * static_cast<std::size_t>(dofs)) {}
 
 Instant SiteLink::advance(Instant now) noexcept {
   take_messages(now);
@@ -48,7 +46,6 @@ Instant SiteLink::pass_reports_on(Instant now) noexcept {
   const Instant wake = presence_.advance(now);  // sends the state that the messages led to
   LoopReport report;
   while (ports_.reports.take(report)) handle(report, now);
-  batch_signals();
   if (!is_done()) return wake;
   static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
@@ -174,20 +171,10 @@ void SiteLink::record_step() noexcept {
   steps_.append(row_);
 }
 
-void SiteLink::batch_signals() noexcept {
-  SignalSample sample;
-  while (ports_.signals.take(sample)) {
-    block_.samples[block_.sample_count++] = sample;
-    if (block_.sample_count < kMaxSignalSamples) continue;
-    ports_.signal_blocks.send(block_);
-    block_.sample_count = 0;
-  }
-}
-
 TableLayout SiteLink::steps_layout(int dofs) {
   TableLayout layout{"steps", {{"step", ""}, {"model_time_s", "s"}}};
   for (int k = 1; k <= dofs; ++k) {
-    const std::string suffix = dofs == 1 ? "" : "_" + std::to_string(k);
+    const std::string suffix = column_suffix(k, dofs);
     layout.columns.push_back({"target_displacement_m" + suffix, "m"});
     layout.columns.push_back({"measured_displacement_m" + suffix, "m"});
     layout.columns.push_back({"measured_force_n" + suffix, "N"});

@@ -13,10 +13,8 @@ namespace hybridtest {
 struct SiteLinkPorts {
   Inbox<DisplacementCommand>& commands;
   Outbox<ForceMeasurement>& measurements;
-  Outbox<SignalBlock>& signal_blocks;
   Outbox<LoopRequest>& requests;
   Inbox<LoopReport>& reports;
-  Inbox<SignalSample>& signals;
 };
 
 /// The network side of a site, without deadlines. It passes each target once and in order to the
@@ -52,7 +50,6 @@ class SiteLink final : public Node {
   void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;
   void answer(Instant now, MeasurementFlags flags) noexcept;
   void record_step() noexcept;
-  void batch_signals() noexcept;
 
   SubstructureIndex index_;
   int dofs_;
@@ -68,7 +65,6 @@ class SiteLink final : public Node {
   StepMeasurement measured_;     // newest answer
   DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
-  SignalBlock block_;
   std::vector<double> row_;
 };
 

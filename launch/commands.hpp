@@ -14,14 +14,18 @@ void add_check_command(CLI::App& app, CommandAction& action);
 void add_import_command(CLI::App& app, CommandAction& action);
 void add_run_command(CLI::App& app, CommandAction& action);
 void add_simulate_command(CLI::App& app, CommandAction& action);
+void add_watch_command(CLI::App& app, CommandAction& action);
 void add_control_commands(CLI::App& app, CommandAction& action);
 void add_effects_command(CLI::App& app, CommandAction& action);
 void add_export_command(CLI::App& app, CommandAction& action);
 void add_summary_command(CLI::App& app, CommandAction& action);
 void add_diagnose_command(CLI::App& app, CommandAction& action);
 void add_reference_command(CLI::App& app, CommandAction& action);
+void add_report_command(CLI::App& app, CommandAction& action);
+void add_runs_command(CLI::App& app, CommandAction& action);
 void add_replay_command(CLI::App& app, CommandAction& action);
 void add_study_command(CLI::App& app, CommandAction& action);
 void add_blind_command(CLI::App& app, CommandAction& action);
+void add_sweep_command(CLI::App& app, CommandAction& action);
 
 }  // namespace hybridtest

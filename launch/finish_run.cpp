@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <iostream>
 
 #include "core/exit_code.hpp"
+#include "launch/run_report.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file.hpp"
 #include "recording/run_file_reader.hpp"
@@ -25,15 +27,28 @@ void repair_files(const std::filesystem::path& directory) {
   }
 }
 
+/// The exit code of a test does not depend on its report, so nothing thrown leaves.
+void try_report(const std::filesystem::path& directory, const RunSummary& summary) {
+  const std::filesystem::path file = report_file(directory);
+  try {
+    write_run_report(directory, {}, summary, file);
+    fmt::print(stderr, "report: {}\n", file.string());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "report.html was not written: {}; write it with `hybridtest report {}`\n", error.what(),
+               directory.string());
+  }
+}
+
 }  // namespace
 
-int finish_run(const std::filesystem::path& directory, int exit_code, const SummaryInput& input) {
+int finish_run(const std::filesystem::path& directory, int exit_code, const SummaryInput& input, ReportWish report) {
   repair_files(directory);
   try {
     const RunSummary summary = summarise(directory, input);
     // Print first: on a full disk the file cannot be written.
     print_summary(summary, std::cout);
     write_summary_json(summary, directory / "summary.json");
+    if (report == ReportWish::with) try_report(directory, summary);
     return exit_code == kExitInternal ? exit_code : summary.exit_code;
   } catch (const RecordingError& error) {
     fmt::print(stderr, "summary.json was not written: {}\n", error.what());

@@ -24,15 +24,19 @@ int main(int argc, char** argv) {
   hybridtest::add_import_command(app, action);
   hybridtest::add_run_command(app, action);
   hybridtest::add_simulate_command(app, action);
+  hybridtest::add_watch_command(app, action);
   hybridtest::add_control_commands(app, action);
   hybridtest::add_effects_command(app, action);
   hybridtest::add_export_command(app, action);
   hybridtest::add_summary_command(app, action);
+  hybridtest::add_report_command(app, action);
+  hybridtest::add_runs_command(app, action);
   hybridtest::add_diagnose_command(app, action);
   hybridtest::add_replay_command(app, action);
   hybridtest::add_reference_command(app, action);
   hybridtest::add_study_command(app, action);
   hybridtest::add_blind_command(app, action);
+  hybridtest::add_sweep_command(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

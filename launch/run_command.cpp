@@ -11,6 +11,7 @@
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "launch/finish_run.hpp"
+#include "launch/live_page.hpp"
 #include "launch/run_monitor.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/network_options.hpp"
@@ -28,7 +29,10 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::filesystem::path directory;
   bool diagnose = false;
+  bool no_report = false;
   bool even_if_unstable = false;
+  bool watch = false;
+  bool allow_control = false;
   std::vector<std::string> remote;
   NetworkOptions network;
 };
@@ -89,6 +93,9 @@ int run(RunOptions options) {
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);
   if (options.remote.empty()) options.network.set_loopback_only(true);
+  std::optional<LivePage> page;
+  if (options.watch)
+    page.emplace(start_live_page(scenario.name, options.directory, options.network, options.allow_control));
   fmt::print(stderr, "{}: {} steps of {} s, recordings in {}\n", scenario.name, scenario.time.last_step,
              scenario.time.step_s, options.directory.string());
 
@@ -114,8 +121,10 @@ int run(RunOptions options) {
     }
   }
   write_process_ends(known.processes, options.directory);
-  const int exit_code = finish_run(options.directory, coordinator_exit, known);
+  const int exit_code = finish_run(options.directory, coordinator_exit, known,
+                                   options.no_report ? ReportWish::without : ReportWish::with);
   if (options.diagnose) show_diagnosis(scenario, options.directory);
+  if (page) page->tell_end();
   return exit_code;
 }
 
@@ -128,6 +137,10 @@ void add_run_command(CLI::App& app, CommandAction& action) {
   command->add_option("--out", options->directory, "Run directory to create")->default_str("runs/<name>_<time>");
   command->add_flag("--diagnose", options->diagnose,
                     "After the test, diagnose every site against the `model` beside its rig; results in RUN/diagnosis");
+  command->add_flag("--no-report", options->no_report, "Do not write RUN/report.html");
+  auto* watch = command->add_flag("--watch", options->watch, "Show the test in the browser; prints the address");
+  command->add_flag("--allow-control", options->allow_control, "With --watch: pause, resume and stop from the page")
+      ->needs(watch);
   command->add_flag("--even-if-unstable", options->even_if_unstable,
                     "Run a test that `check` calls unstable although a rig of it is not simulated");
   command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");

@@ -31,6 +31,7 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::filesystem::path directory;
   bool diagnose = false;
+  bool no_report = false;
   std::uint64_t seed = 0;
   double latency_us = 50.0;
   double jitter_us = 0.0;
@@ -148,13 +149,14 @@ class SimulatedRecording {
     if (role == Role::coordinator) std::ranges::move(test_tables(), std::back_inserter(tables));
     std::vector<RecordedTable> recorded;
     for (const TableLayout& table : tables) recorded.push_back({table, kRingRows});
-    parts_[id].recorder =
-        std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, seed_), recorded);
+    parts_[id].recorder = std::make_unique<Recorder>(
+        run_file(directory_, id), run_file_header(scenario_, id, role, seed_, begin_.zero_unix_s()), recorded);
   }
 
   const Scenario& scenario_;
   std::filesystem::path directory_;
   std::uint64_t seed_;
+  ProcessClock begin_;  // of simulated time
   std::map<std::string, Part> parts_;
   std::vector<std::string> failures_;
 };
@@ -210,7 +212,8 @@ int simulate_scenario(SimulateOptions options) {
   }
   for (const std::string& why : recording.close(result)) fmt::print(stderr, "the recording failed: {}\n", why);
   warn_of_unreached(options, settings, result.simulated_time);
-  const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason));
+  const int exit_code = finish_run(options.directory, exit_code_for(result.coordinator.reason), {},
+                                   options.no_report ? ReportWish::without : ReportWish::with);
   if (options.diagnose) show_diagnosis(scenario, options.directory);
   return exit_code;
 }
@@ -231,6 +234,7 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
       ->default_str("runs/<name>_simulated_<time>");
   command->add_flag("--diagnose", options->diagnose,
                     "After the test, diagnose every site against the `model` beside its rig; results in RUN/diagnosis");
+  command->add_flag("--no-report", options->no_report, "Do not write RUN/report.html");
   command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->add_option("--latency-us", options->latency_us, "Latency of every message, in microseconds")
       ->check(CLI::Range(0.0, 1e7))

@@ -27,15 +27,6 @@ void append_number(std::string& text, double value) {
   text.append(digits.data(), result.ptr);
 }
 
-void append_quoted(std::string& text, std::string_view value) {
-  text += '"';
-  for (const char character : value) {
-    if (character == '"') text += '"';
-    text += character;
-  }
-  text += '"';
-}
-
 /// A file that throws an error when it cannot be written completely.
 class CsvFile {
  public:
@@ -112,6 +103,15 @@ void export_file(const std::filesystem::path& run_file, const std::filesystem::p
 }
 
 }  // namespace
+
+void append_quoted(std::string& text, std::string_view value) {
+  text += '"';
+  for (const char character : value) {
+    if (character == '"') text += '"';
+    text += character;
+  }
+  text += '"';
+}
 
 std::vector<std::filesystem::path> export_csv(const std::filesystem::path& run_directory,
                                               const std::filesystem::path& out_directory) {

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace hybridtest {
+
+/// Adds a cell in quotes to a line, its own quotes doubled.
+void append_quoted(std::string& text, std::string_view value);
 
 /// Writes every table of every run file of a run directory as `<participant's file>.<table>.csv`,
 /// and its events as `<participant's file>.events.csv`.

@@ -88,7 +88,9 @@ void Recorder::drain_table(std::size_t table) {
     const std::size_t taken = ring.take(std::span{rows_}.first(room));
     taken_[table] += taken;
     waiting -= taken;
-    attempt([&] { writer_->append(table, std::span{rows_}.first(taken * ring.row_width())); });
+    const std::span<const double> rows = std::span{rows_}.first(taken * ring.row_width());
+    attempt([&] { writer_->append(table, rows); });
+    if (observer_ != nullptr && taken > 0) observer_->see(table, rows);
   }
 }
 
@@ -129,6 +131,7 @@ void Recorder::drain() noexcept {
   count_losses();
   attempt([&] { writer_->flush(); });
   if (failed()) count_losses();
+  if (observer_ != nullptr) observer_->end_of_drain();
 }
 
 void Recorder::close() noexcept {

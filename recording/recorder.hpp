@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,18 @@ namespace hybridtest {
 struct RecordedTable {
   TableLayout layout;
   std::size_t ring_rows = 8192;
+};
+
+/// Sees what is recorded, on the thread that drains the rings: never on the path of a step.
+class RowObserver {
+ public:
+  virtual ~RowObserver() = default;
+
+  /// @param table   position in the list of tables that the recorder was made with.
+  /// @param rows    row after row, every column; at least one row.
+  virtual void see(std::size_t table, std::span<const double> rows) noexcept = 0;
+  /// After each drain, with or without rows.
+  virtual void end_of_drain() noexcept = 0;
 };
 
 /// Everything one participant records: a ring per table and per event source, and the run file
@@ -44,6 +57,8 @@ class Recorder {
   [[nodiscard]] RowSink& sink(std::string_view table);
   /// @param source   below `event_sources`.
   [[nodiscard]] Outbox<Event>& events(std::size_t source = 0);
+  /// @param observer   must outlive the drains; nullptr for none. Not while another thread drains.
+  void set_observer(RowObserver* observer) noexcept { observer_ = observer; }
 
   /// Whether a ring is at least half full, so that a caller without RecorderThread should drain().
   [[nodiscard]] bool should_drain() const noexcept;
@@ -78,6 +93,7 @@ class Recorder {
   std::vector<std::uint64_t> taken_;  // rows taken out of each ring, then events
   std::vector<double> rows_;          // on their way from ring to file
   std::unique_ptr<RunFileWriter> writer_;
+  RowObserver* observer_ = nullptr;
   bool closed_ = false;
   std::string error_text_;  // written once, before failed_ turns true
   std::atomic<bool> failed_{false};

@@ -14,6 +14,15 @@ namespace hybridtest {
 inline constexpr std::string_view kRunFileSchema = "hybridtest/run/1";
 inline constexpr std::string_view kRunFileExtension = ".h5";
 
+/// What a table holds and how its rows follow each other: attributes of its dataset, for tools that read the file.
+struct TableNote {
+  std::string table;
+  std::string description;         // one or two sentences
+  std::string time_column;         // whose values grow by the same interval from row to row; empty without one
+  double sample_interval_s = 0.0;  // [s] that interval; 0 without one
+  bool operator==(const TableNote&) const = default;
+};
+
 /// Who wrote the file, and of which test: the attributes of a run file.
 struct RunFileHeader {
   std::string participant;  // `coordinator` or the substructure's id
@@ -26,6 +35,11 @@ struct RunFileHeader {
   std::vector<std::string> substructure_ids;  // in the scenario's order: index of `exchanges.substructure`
   std::vector<std::string> structure_dofs;    // of the structure, those in the record
   std::vector<std::string> interface_dofs;    // of this substructure; empty for the coordinator
+  // When the participant's clock stood at zero, so that times of events are absolute. None in files of older versions.
+  std::string t0_utc{};                  // ISO 8601
+  double t0_unix_s = 0.0;                // [s] since 1970-01-01T00:00:00Z
+  double model_time_step_s = 0.0;        // [s]
+  std::vector<TableNote> table_notes{};  // in the order of the tables
   bool operator==(const RunFileHeader&) const = default;
 };
 

@@ -193,11 +193,14 @@ void RunFileWriter::Impl::create(const RunFileHeader& header) {
   hdf5::write_header(file.id(), header);
   for (const TableLayout& layout : layouts) {
     tables.push_back(create_extensible(file.id(), layout.name, hdf5::row_type(layout.columns)));
-    std::vector<std::string> units;
-    for (const Column& column : layout.columns) units.push_back(column.unit);
-    hdf5::write_attribute(tables.back().id.id(), hdf5::kUnitsName, units);
+    hdf5::write_columns(tables.back().id.id(), layout.columns);
+    const auto note = std::ranges::find(header.table_notes, layout.name, &TableNote::table);
+    if (note != header.table_notes.end()) hdf5::write_note(tables.back().id.id(), *note);
   }
   tables.push_back(create_extensible(file.id(), hdf5::kEventsName, hdf5::event_type()));
+  hdf5::write_columns(tables.back().id.id(), hdf5::event_columns());
+  hdf5::write_attribute(tables.back().id.id(), "description",
+                        "What happened, in this participant and heard from others; time_s is the clock of the sender.");
 
   for (std::size_t i = 0; i < tables.size(); ++i) {
     hdf5::CounterRow row{};
@@ -207,7 +210,12 @@ void RunFileWriter::Impl::create(const RunFileHeader& header) {
   }
   counters =
       create_fixed(file.id(), hdf5::kCountersName, hdf5::counter_type(), counter_rows.size(), counter_rows.data());
+  hdf5::write_columns(counters.id.id(), hdf5::counter_columns());
+  hdf5::write_attribute(counters.id.id(), "description",
+                        "Rows that are safe in each table, and rows that were lost before they were written.");
   state = create_fixed(file.id(), hdf5::kStateName, hdf5::state_type(), 1, &state_row);
+  hdf5::write_columns(state.id.id(), hdf5::state_columns());
+  hdf5::write_attribute(state.id.id(), "description", "Whether the file is complete.");
   counters_offset = place_of(counters);
   state_offset = place_of(state);
   check(H5Fstart_swmr_write(file.id()), "starting to write for concurrent readers");

@@ -26,6 +26,16 @@ fast_dds::FastDdsSettings NetworkOptions::settings() const {
   return settings;
 }
 
+std::vector<fast_dds::FastDdsSettings> NetworkOptions::observer_paths() const {
+  fast_dds::FastDdsSettings path = settings();
+  path.is_observer = true;
+  std::vector<fast_dds::FastDdsSettings> paths;
+  if (!path.loopback_only) paths.push_back(path);
+  path.loopback_only = true;
+  paths.push_back(path);
+  return paths;
+}
+
 std::vector<std::string> NetworkOptions::arguments() const {
   std::vector<std::string> arguments{"--domain", std::to_string(domain_)};
   for (const std::string& peer : peers_) arguments.insert(arguments.end(), {"--peer", peer});

@@ -15,6 +15,8 @@ class NetworkOptions {
  public:
   void add_to(CLI::App& app);
   [[nodiscard]] fast_dds::FastDdsSettings settings() const;
+  /// For a tool that looks for a test wherever it may run: the network, if it is to be used, and this machine alone.
+  [[nodiscard]] std::vector<fast_dds::FastDdsSettings> observer_paths() const;
   /// The same as arguments for a child process.
   [[nodiscard]] std::vector<std::string> arguments() const;
 

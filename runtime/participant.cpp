@@ -145,10 +145,8 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
       announcements_{surroundings.transport.announcement_inbox()},
       commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
       measurements_{surroundings.transport.measurement_outbox()},
-      signal_blocks_{surroundings.transport.signal_outbox()},
       requests_{kLoopQueue},
       reports_{kLoopQueue},
-      signals_{1024},
       waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()} {
   const ControlLoopSettings settings = control_loop_settings(scenario, substructure);
   const double control_period_s = settings.step_s / settings.periods_per_step;
@@ -158,13 +156,12 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   // A motion below a twentieth of the displacement limit does not scale the energy error.
   EnergyErrorMonitor energy_error{substructure.initial_stiffness_n_per_m, 0.05 * settings.limits.displacement_m};
   loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
-                                        std::move(energy_error), ControlLoopPorts{requests_, waking_reports_, signals_},
+                                        std::move(energy_error), ControlLoopPorts{requests_, waking_reports_},
                                         surroundings.sink("control"));
-  link_ = std::make_unique<SiteLink>(
-      scenario.index_of(substructure), settings.dofs, presence_,
-      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
-      SiteLinkPorts{*commands_, *measurements_, *signal_blocks_, requests_, reports_, signals_},
-      surroundings.sink("steps"));
+  link_ = std::make_unique<SiteLink>(scenario.index_of(substructure), settings.dofs, presence_,
+                                     MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
+                                     SiteLinkPorts{*commands_, *measurements_, requests_, reports_},
+                                     surroundings.sink("steps"));
   if (runs_loop) node_.emplace(*link_, *loop_);
 }
 

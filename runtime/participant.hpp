@@ -140,10 +140,8 @@ class SiteParticipant final : public Participant {
   std::unique_ptr<Inbox<TestAnnouncement>> announcements_;
   std::unique_ptr<Inbox<DisplacementCommand>> commands_;
   std::unique_ptr<Outbox<ForceMeasurement>> measurements_;
-  std::unique_ptr<Outbox<SignalBlock>> signal_blocks_;
   RingPort<LoopRequest> requests_;
   RingPort<LoopReport> reports_;
-  RingPort<SignalSample> signals_;
   WakingOutbox<LoopReport> waking_reports_;
   std::unique_ptr<Rig> rig_;
   std::unique_ptr<ControlLoop> loop_;

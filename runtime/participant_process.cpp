@@ -19,6 +19,7 @@
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
 #include "runtime/lead_process.hpp"
+#include "runtime/live/live_signals.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/network_options.hpp"
 #include "runtime/participant.hpp"
@@ -71,14 +72,17 @@ class ParticipantProgress {
 class ProcessSurroundings {
  public:
   ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
-                      const std::vector<TableLayout>& tables)
+                      const std::vector<TableLayout>& tables, const ProcessClock& clock)
       : run_directory_{options.run_directory},
         incarnation_{draw_incarnation()},
         transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
         network_events_{transport_->event_outbox()},
+        live_{options.id, incarnation_, transport_->signal_outbox()},
         recorder_{run_file(options.run_directory, options.id),
-                  run_file_header(scenario, options.id, role, incarnation_), recorded(tables)},
+                  run_file_header(scenario, options.id, role, incarnation_, clock.zero_unix_s()), recorded(tables)},
         event_log_{*network_events_, recorder_.events(), options.run_directory, !options.shows_progress} {
+    publish(scenario, options, role, tables);
+    recorder_.set_observer(&live_);
     if (options.shows_progress) progress_.emplace(scenario, options, role);
   }
 
@@ -105,6 +109,34 @@ class ProcessSurroundings {
   }
 
  private:
+  /// What live views get to see.
+  void publish(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
+               const std::vector<TableLayout>& tables) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      const TableLayout& table = tables[i];
+      if (role == Role::coordinator) {
+        if (table.name == "steps") {
+          live_.add("structure", i, table, structure_signals(scenario, table));
+          live_.add("pace", i, table, pace_signals(table));
+        }
+        if (table.name == "exchanges") {
+          std::vector<std::string> ids;
+          for (const SubstructureScenario& one : scenario.substructures) ids.push_back(one.id);
+          live_.add_exchanges(i, table, std::move(ids), scenario.time.step_s);
+        }
+        continue;
+      }
+      const SubstructureScenario& substructure = *scenario.find(options.id);
+      if (role == Role::numerical_substructure && table.name == "steps") {
+        live_.add("steps", i, table, numerical_signals(substructure, table));
+      }
+      if (role == Role::experimental_site && table.name == "control") {
+        live_.add("control", i, table, site_signals(substructure, table));
+        live_.add("interlocks", i, table, interlock_signals(substructure, table));
+      }
+    }
+  }
+
   static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
     std::vector<RecordedTable> result;
     for (const TableLayout& table : tables) result.push_back({table, kRingRows});
@@ -115,6 +147,7 @@ class ProcessSurroundings {
   Incarnation incarnation_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<Outbox<Event>> network_events_;
+  LiveSignals live_;  // used by the recorder until it is closed
   Recorder recorder_;
   EventLog event_log_;
   std::optional<ParticipantProgress> progress_;  // none is shown for a child of `hybridtest run`
@@ -183,7 +216,7 @@ void run_to_the_end(
 int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
   std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
   std::ranges::move(test_tables(), std::back_inserter(tables));
-  ProcessSurroundings process{scenario, options, Role::coordinator, tables};
+  ProcessSurroundings process{scenario, options, Role::coordinator, tables, clock};
   CoordinatorParticipant participant{scenario, process.surroundings()};
   wake_on_stop(process.transport().waker());
   std::optional<LeadProcess> lead;
@@ -208,7 +241,7 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
 
 int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
                   const ParticipantProcessOptions& options, const ProcessClock& clock) {
-  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure)};
+  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure), clock};
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
   wake_on_stop(process.transport().waker());
   run_to_the_end(participant, process, clock, scenario);
@@ -258,7 +291,7 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
   const bool has_loop_thread = scenario.time.mode != CouplingMode::lockstep;
   std::vector<TableLayout> tables = substructure_tables(substructure);
   if (has_loop_thread) std::ranges::move(loop_timing_tables(), std::back_inserter(tables));
-  ProcessSurroundings process{scenario, options, substructure.role, tables};
+  ProcessSurroundings process{scenario, options, substructure.role, tables, clock};
   SiteParticipant participant{scenario, substructure, process.surroundings(), !has_loop_thread};
   set_assert_action([](void* rig) noexcept { static_cast<Rig*>(rig)->stop_motion(); }, &participant.rig());
   wake_on_stop(process.transport().waker());

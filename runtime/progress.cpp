@@ -75,7 +75,12 @@ void Progress::learn(const ParticipantStatus& status) {
 }
 
 void Progress::learn(const SignalBlock& block) {
-  if (block.sample_count > 0) signals_[block.substructure] = block.samples[block.sample_count - 1U];
+  if (block.group.view() != "control" || block.part != 0 || block.model_time_s.empty()) return;
+  const auto newest = [&](std::string_view name) {
+    const auto signal = std::ranges::find(block.signals, name, [](const LiveSignal& one) { return one.name.view(); });
+    return signal == block.signals.end() ? 0.0 : signal->last.back();
+  };
+  readings_[block.participant.text()] = {newest("measured_displacement"), newest("force")};
 }
 
 void Progress::set_completed(Step step, Instant now) {
@@ -144,11 +149,11 @@ std::string Progress::line(std::size_t width) const {
   if (!states_.empty()) text += "  " + states();  // a simulation has no statuses
   std::size_t left_out = 0;
   for (const SubstructureScenario& substructure : scenario_.substructures) {
-    const auto signal = signals_.find(scenario_.index_of(substructure));
-    if (signal == signals_.end()) continue;
+    const auto reading = readings_.find(substructure.id);
+    if (reading == readings_.end()) continue;
     const std::string shown = fmt::format("  {} {} mm {} kN", substructure.id,
-                                          short_number(signal->second.measured_displacement_m * 1e3, 1, Sign::always),
-                                          short_number(signal->second.force_n * 1e-3, 1, Sign::always));
+                                          short_number(reading->second.displacement_m * 1e3, 1, Sign::always),
+                                          short_number(reading->second.force_n * 1e-3, 1, Sign::always));
     if (left_out > 0 || text.size() + shown.size() + kRoomForRest > width) {
       ++left_out;
     } else {

@@ -62,7 +62,12 @@ class Progress {
   Instant first_step_at_{};
   Instant last_step_at_{};
   std::map<std::string, LifecycleState, std::less<>> states_;
-  std::map<SubstructureIndex, SignalSample> signals_;
+  /// Of a site's first interface degree of freedom.
+  struct Reading {
+    double displacement_m = 0.0;
+    double force_n = 0.0;
+  };
+  std::map<std::string, Reading, std::less<>> readings_;
   std::map<std::string, Repeated> repeated_;  // by source, code and subject
 };
 

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <limits>
@@ -15,18 +17,28 @@
 #include "coordinator/excitation/response_spectrum.hpp"
 #include "core/config_error.hpp"
 #include "mechanics/structure/vibration_modes.hpp"
+#include "runtime/table_notes.hpp"
 #include "runtime/version.hpp"
 
 namespace hybridtest {
 namespace {
 
-std::string utc_text(const char* format) {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+std::time_t time_now() { return std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()); }
+
+std::string utc_text(const char* format, std::time_t seconds = time_now()) {
   std::tm parts{};
-  gmtime_r(&now, &parts);
+  gmtime_r(&seconds, &parts);
   std::array<char, 64> text{};
   std::strftime(text.data(), text.size(), format, &parts);
   return text.data();
+}
+
+/// With microseconds. @param unix_s   [s] since 1970-01-01T00:00:00Z.
+std::string utc_text_of(double unix_s) {
+  const auto us = static_cast<std::int64_t>(std::llround(unix_s * 1e6));
+  std::array<char, 16> fraction{};
+  std::snprintf(fraction.data(), fraction.size(), ".%06dZ", static_cast<int>(us % 1'000'000));
+  return utc_text("%Y-%m-%dT%H:%M:%S", us / 1'000'000) + fraction.data();
 }
 
 void copy_named_files(const std::filesystem::path& directory, const Scenario& scenario) {
@@ -43,7 +55,8 @@ void copy_named_files(const std::filesystem::path& directory, const Scenario& sc
 
 }  // namespace
 
-std::string time_utc() { return utc_text("%Y-%m-%dT%H:%M:%SZ"); }
+std::string time_utc() { return time_utc_of(time_now()); }
+std::string time_utc_of(std::time_t seconds) { return utc_text("%Y-%m-%dT%H:%M:%SZ", seconds); }
 
 std::filesystem::path default_run_directory(std::string_view test_name) {
   return std::filesystem::path{"runs"} / (std::string{test_name} + "_" + utc_text("%Y%m%dT%H%M%SZ"));
@@ -79,7 +92,7 @@ std::filesystem::path run_file(const std::filesystem::path& directory, std::stri
 }
 
 RunFileHeader run_file_header(const Scenario& scenario, std::string_view participant, Role role,
-                              Incarnation incarnation) {
+                              Incarnation incarnation, double clock_zero_unix_s) {
   RunFileHeader header;
   header.participant = participant;
   header.role = role;
@@ -93,6 +106,10 @@ RunFileHeader run_file_header(const Scenario& scenario, std::string_view partici
     header.substructure_ids.push_back(substructure.id);
     if (substructure.id == participant) header.interface_dofs = substructure.interface_names;
   }
+  header.t0_utc = utc_text_of(clock_zero_unix_s);
+  header.t0_unix_s = clock_zero_unix_s;
+  header.model_time_step_s = scenario.time.step_s;
+  header.table_notes = table_notes(scenario, participant);
   return header;
 }
 

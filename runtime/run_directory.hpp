@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -15,6 +16,8 @@ namespace hybridtest {
 
 /// The time of the wall clock: `2026-11-22T10:15:00Z`.
 [[nodiscard]] std::string time_utc();
+/// Another time in the same form.
+[[nodiscard]] std::string time_utc_of(std::time_t seconds);
 
 /// `runs/<test name>_<UTC time>` below the working directory.
 [[nodiscard]] std::filesystem::path default_run_directory(std::string_view test_name);
@@ -29,8 +32,9 @@ void require_new_run(const std::filesystem::path& directory, std::string_view pa
 
 [[nodiscard]] std::filesystem::path run_file(const std::filesystem::path& directory, std::string_view participant);
 
+/// @param clock_zero_unix_s   [s] when the participant's clock stood at zero, see ProcessClock::zero_unix_s().
 [[nodiscard]] RunFileHeader run_file_header(const Scenario& scenario, std::string_view participant, Role role,
-                                            Incarnation incarnation);
+                                            Incarnation incarnation, double clock_zero_unix_s);
 
 /// The tables of the coordinator's file about the test as a whole, which it writes at the end: `test`, with one row;
 /// `ground_motions`, with a row for each; `response_spectra` of what was applied.

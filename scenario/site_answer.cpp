@@ -70,7 +70,7 @@ class LoopProbe {
               *rig_,
               std::move(compensation),
               EnergyErrorMonitor{SiteMatrix::Identity(settings.dofs, settings.dofs), 1.0},
-              ControlLoopPorts{requests_, reports_, signals_},
+              ControlLoopPorts{requests_, reports_},
               force_} {
     rig_->connect();
     requests_.send(loop_request::Arm{});
@@ -134,7 +134,6 @@ class LoopProbe {
   std::unique_ptr<Rig> rig_;
   RingPort<LoopRequest> requests_{8};
   RingPort<LoopReport> reports_{64};
-  RingPort<SignalSample> signals_{2};
   LastForce force_;
   ControlLoop loop_;
   Step step_ = 0;

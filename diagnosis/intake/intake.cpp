@@ -54,8 +54,16 @@ std::vector<IntakeFinding> FindingList::sorted() const {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kLeftAside{"sample",         "model_time_s",      "compensated_force_n",
-                                                     "energy_error_j", "tracking_lag_sine", "faults"};
+constexpr std::array<std::string_view, 10> kLeftAside{"sample",
+                                                      "model_time_s",
+                                                      "compensated_force_n",
+                                                      "energy_error_j",
+                                                      "tracking_lag_sine",
+                                                      "faults",
+                                                      "target_velocity_m_per_s",
+                                                      "energy_error_ratio",
+                                                      "command_age_s",
+                                                      "follows_targets"};
 constexpr std::string_view kPredicted = "predicted_";
 
 Channel channel_at(std::size_t index) { return static_cast<Channel>(index); }

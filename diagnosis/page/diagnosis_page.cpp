@@ -113,7 +113,7 @@ std::string causes_part(const DiagnosisReport& report) {
   std::string html;
   if (!report.ranking.empty()) {
     html +=
-        "<h2>Effects that explain the gap</h2>\n<div class=\"scroll\"><table "
+        "<h2>Effects that explain the gap</h2>\n<div class=\"scroll\" tabindex=\"0\"><table "
         "class=\"causes\"><tr><th>effect</th><th>probability</th><th>parameters (95 "
         "%)</th>"
         "<th></th></tr>\n";
@@ -167,7 +167,8 @@ std::string facts_part(const DiagnosisReport& report) {
   std::string html = interfaces.empty() && report.notes.empty() ? "" : "<h2>Results by interface</h2>\n";
   if (!interfaces.empty()) {
     html +=
-        "<div class=\"scroll\"><table><tr><th>interface</th><th>gap, NRMSE</th><th>noise floor</th><th>difference "
+        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>interface</th><th>gap, NRMSE</th><th>noise "
+        "floor</th><th>difference "
         "between "
         "repetitions</th><th>share of the gap</th><th>95 %</th></tr>\n" +
         interfaces + "</table></div>\n";
@@ -175,7 +176,7 @@ std::string facts_part(const DiagnosisReport& report) {
   for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
   const std::string of = report.model_part.empty() ? "" : report.model_part + ", in the scenario ";
   html += "<h2>Model and recordings</h2>\n<p>Model: " + escaped(of + report.model_file) +
-          "</p>\n<div class=\"scroll\"><table>";
+          "</p>\n<div class=\"scroll\" tabindex=\"0\"><table>";
   html += "<tr><th>recording</th><th>used for</th><th>length</th><th>sample period</th><th>SHA-256</th></tr>\n";
   return html + recording_rows(report) + "</table></div>\n";
 }
@@ -208,7 +209,7 @@ std::string row(const SensorFacts& facts) {
 std::string sensors_part(const DiagnosisReport& report) {
   if (report.sensors.empty()) return "";
   std::string html =
-      "<h2>Sensor checks</h2>\n<div class=\"scroll\"><table><tr><th>channel</th><th>smallest "
+      "<h2>Sensor checks</h2>\n<div class=\"scroll\" tabindex=\"0\"><table><tr><th>channel</th><th>smallest "
       "step</th><th>unchanged samples</th><th>at the end of the range</th><th>at rest</th><th>lag behind "
       "displacement</th></tr>\n";
   for (const SensorFacts& facts : report.sensors) html += row(facts);
@@ -276,7 +277,9 @@ std::string shrink_part(const DiagnosisReport& report) {
   if (shrink.explainable_fraction)
     html += fmt::format(", {} of what a perfect model could remove", percent(*shrink.explainable_fraction));
   html += ".</p>\n" + energy_bar(shrink);
-  html += "<div class=\"scroll\"><table class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
+  html +=
+      "<div class=\"scroll\" tabindex=\"0\"><table "
+      "class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
   html += before_after("at the interface, NRMSE", shrink.nrmse_before, shrink.nrmse_after);
   if (report.response_shrink) html += response_rows(*report.response_shrink);
   html +=
@@ -289,24 +292,12 @@ std::string shrink_part(const DiagnosisReport& report) {
 
 namespace {
 
-/// Figures are drawn on white; on a system with dark colours they are inverted.
+/// Beside the style of all pages.
 constexpr std::string_view kStyle = R"css(
-:root { --ground: #fff; --ink: #222; --soft: #666; --line: #d0d0d0; --panel: #f6f6f6; --bad: #b3261e; --badsoft: #fdecea;
-  --good: #1b7f4b; --blue: #0072b2; --orange: #d55e00; --grey: #b5b5b5; }
-@media (prefers-color-scheme: dark) { :root { --ground: #191919; --ink: #e4e4e4; --soft: #a5a5a5; --line: #444;
-  --panel: #242424; --bad: #ff8a80; --badsoft: #40201e; --good: #6fd39b; --blue: #56b4e9; --orange: #ff9e57; --grey: #777; }
-  svg { filter: invert(0.9) hue-rotate(180deg); } }
-body { font: 15px/1.45 'DejaVu Sans', Verdana, sans-serif; color: var(--ink); background: var(--ground);
-  max-width: 1180px; margin: 24px auto; padding: 0 18px; }
+body { max-width: 1180px; }
 h1 { font-size: 17px; font-weight: normal; color: var(--soft); margin: 0; }
-h2 { font-size: 17px; margin: 34px 0 8px; }
-svg { width: 100%; display: block; margin: 6px 0; }
-small, .fine { color: var(--soft); font-size: 13px; }
-.verdict { font-size: 22px; line-height: 1.35; margin: 8px 0 20px; padding: 14px 18px; background: var(--panel);
-  border-left: 6px solid var(--bad); }
 .verdict.none { border-color: var(--good); } .verdict.not_excited, .verdict.unknown { border-color: var(--orange); }
-.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(560px, 100%), 1fr)); gap: 0 20px; }
-.pair > * { min-width: 0; } .pair > :only-child { max-width: 640px; }
+.pair > :only-child { max-width: 640px; }
 .chain { list-style: none; display: flex; flex-wrap: wrap; gap: 10px 20px; padding: 0; }
 .chain li { flex: 1 1 118px; max-width: 210px; position: relative; border: 1.5px solid var(--line); border-radius: 6px;
   padding: 8px 9px; display: flex; flex-direction: column; background: var(--panel); }
@@ -324,27 +315,14 @@ small, .fine { color: var(--soft); font-size: 13px; }
 .other { background: repeating-linear-gradient(45deg, var(--orange) 0 3px, transparent 3px 7px); }
 .key span { margin-right: 20px; white-space: nowrap; } .key i { display: inline-block; width: 13px; height: 13px;
   margin-right: 6px; vertical-align: -1px; }
-table { border-collapse: collapse; margin: 8px 0; } td, th { text-align: left; padding: 5px 14px 5px 0; vertical-align: top;
-  font-size: 14px; border-bottom: 1px solid var(--line); font-weight: normal; }
-tr:first-child > th { color: var(--soft); font-size: 13px; }
 td small { display: block; } td .par { display: block; } td .par small { display: inline; }
 .eq { font-family: 'DejaVu Sans Mono', monospace; font-size: 12px; }
 .causes { width: 100%; } .cause td { background: var(--panel); } .causes td:first-child { padding-left: 8px; }
 .prob { min-width: 100px; } .shrink { width: 100%; } .wide { width: 45%; }
 .warn { color: var(--bad); } .note { font-size: 14px; padding-left: 10px; border-left: 3px solid var(--line); }
 .next { padding: 10px 14px; border: 1.5px solid var(--blue); border-radius: 6px; }
-code { font-size: 11.5px; overflow-wrap: anywhere; }
-@media print { .verdict, .chain li, svg { break-inside: avoid; } }
+@media print { .chain li { break-inside: avoid; } }
 )css";
-
-std::string head(const DiagnosisReport& report) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Diagnosis: "
-      "{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
-      plot::escaped(report.site), plot::kScrollStyle, kStyle);
-}
 
 /// When and by what the page was made.
 std::string imprint(const DiagnosisReport& report) {
@@ -357,13 +335,13 @@ std::string imprint(const DiagnosisReport& report) {
 }  // namespace
 
 std::string diagnosis_page(const DiagnosisReport& report) {
-  return head(report) +
+  return plot::page_head("Diagnosis: " + report.site, kStyle) +
          fmt::format(
              "<h1>Diagnosis of {}: where the test differs from its model, and why</h1>\n<p class=\"verdict "
              "{}\">{}</p>\n",
              plot::escaped(report.site), name_of(report.verdict), plot::escaped(verdict_sentence(report))) +
          imprint(report) + chain_part(report) + shrink_part(report) + causes_part(report) + curves_part(report) +
-         location_part(report) + sensors_part(report) + facts_part(report) + "</body>\n</html>\n";
+         location_part(report) + sensors_part(report) + facts_part(report) + plot::page_end();
 }
 
 }  // namespace hybridtest::report

@@ -110,14 +110,25 @@ const std::string kAugmented = "model with the causes added";
 
 Line measured_behind(Line line) {
   line.is_background = true;
+  line.signal = plot::Signal::measured;
+  return line;
+}
+
+Line modelled(Line line) {
+  line.signal = plot::Signal::modelled;
+  return line;
+}
+
+Line completed(Line line) {
+  line.signal = plot::Signal::completed;
   return line;
 }
 
 std::vector<Line> outputs(const SeriesView& view, SeriesView::Range range) {
   const InterfaceSeries& series = view.series();
   std::vector<Line> lines{measured_behind(view.over_time(kMeasured, series.measured, range)),
-                          view.over_time(kModel, series.model, range)};
-  if (view.has_augmented()) lines.push_back(view.over_time(kAugmented, series.augmented, range));
+                          modelled(view.over_time(kModel, series.model, range))};
+  if (view.has_augmented()) lines.push_back(completed(view.over_time(kAugmented, series.augmented, range)));
   return lines;
 }
 
@@ -125,8 +136,8 @@ std::vector<Line> residuals(const SeriesView& view, SeriesView::Range range) {
   const auto values = [](const GapSignals& signals) {
     return std::vector<double>(signals.residual.begin(), signals.residual.end());
   };
-  std::vector<Line> lines{view.over_time(kModel, values(view.before()), range)};
-  if (view.has_augmented()) lines.push_back(view.over_time(kAugmented, values(view.after()), range));
+  std::vector<Line> lines{modelled(view.over_time(kModel, values(view.before()), range))};
+  if (view.has_augmented()) lines.push_back(completed(view.over_time(kAugmented, values(view.after()), range)));
   return lines;
 }
 
@@ -150,13 +161,15 @@ std::string loops(const SeriesView& view) {
   const std::string input = view.gives_force() ? "displacement [mm]" : "command [mm]";
   const std::string title = view.gives_force() ? "force over displacement" : "synchronisation subspace";
   const Line measured = measured_behind(view.over_input(kMeasured, series.measured, range));
-  std::vector<Panel> panels{
-      {title + ", before", {input}, {view.output_label()}, {measured, view.over_input(kModel, series.model, range)}}};
+  std::vector<Panel> panels{{title + ", before",
+                             {input},
+                             {view.output_label()},
+                             {measured, modelled(view.over_input(kModel, series.model, range))}}};
   if (view.has_augmented()) {
     panels.push_back({title + ", after",
                       {input},
                       {view.output_label()},
-                      {measured, view.over_input(kAugmented, series.augmented, range)}});
+                      {measured, completed(view.over_input(kAugmented, series.augmented, range))}});
   }
   const std::string figure = plot::scrolling(to_svg(LineFigure{
       .panels = panels, .columns = static_cast<int>(panels.size()), .panel_width = kHalfWidth, .panel_height = 360.0}));
@@ -261,11 +274,11 @@ struct Located {
   /// Curves of before and after over something, with the floor behind.
   template <class Add>
   [[nodiscard]] std::vector<Line> lines(Add&& add) const {
-    Steps model{{.name = "model as given"}};
+    Steps model{{.name = "model as given", .signal = plot::Signal::modelled}};
     add(before, model);
     std::vector<Line> result{model.line};
     if (after) {
-      Steps augmented{{.name = "model with the causes added"}};
+      Steps augmented{{.name = "model with the causes added", .signal = plot::Signal::completed}};
       add(*after, augmented);
       result.push_back(augmented.line);
     }

@@ -13,6 +13,7 @@
 #include "diagnosis/page/diagnosis_json.hpp"
 #include "diagnosis/page/diagnosis_page.hpp"
 #include "diagnosis/page/wording.hpp"
+#include "diagnosis/runs/prediction_file.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
 #include "recording/error.hpp"
@@ -176,6 +177,7 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
   if (failed) throw ConfigError{"--out " + directory.string() + ": " + failed.message()};
   write_file(directory / "diagnosis.json", diagnosis_json(diagnosis.diagnosis));
   write_file(directory / "diagnosis.html", report::diagnosis_page(diagnosis.diagnosis.report));
+  write_file(directory / kPredictionFile, prediction_csv(diagnosis.diagnosis.report));
   write_file(directory / "augmented_model.yaml", model.with_effects(diagnosis.listed_causes(model)).text);
   progress.report("pages written", 1, 1);
 }

@@ -42,7 +42,8 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
 void diagnose_structure_of(SiteDiagnosis& diagnosis, const std::filesystem::path& run,
                            const std::filesystem::path& scenario, const PartProgress& progress = {});
 
-/// Writes diagnosis.json, diagnosis.html and augmented_model.yaml: the model with the causes, if there are any.
+/// Writes diagnosis.json, diagnosis.html, prediction.csv and augmented_model.yaml: the model with the causes, if there
+/// are any.
 /// @throws ConfigError when the directory cannot be written to.
 void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& directory,
                      const PartProgress& progress = {});

@@ -21,7 +21,7 @@ TransformedRig::TransformedRig(std::unique_ptr<Rig> rig, std::unique_ptr<SetupGe
 TableLayout TransformedRig::actuators_layout(int actuators) {
   TableLayout layout{"rig_actuators", {{"sample", "1"}}};
   for (int i = 1; i <= actuators; ++i) {
-    const std::string suffix = actuators == 1 ? "" : "_" + std::to_string(i);
+    const std::string suffix = column_suffix(i, actuators);
     layout.columns.push_back({"command_stroke_m" + suffix, "m"});
     layout.columns.push_back({"measured_stroke_m" + suffix, "m"});
     layout.columns.push_back({"measured_actuator_force_n" + suffix, "N"});

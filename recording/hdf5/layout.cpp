@@ -27,6 +27,17 @@ void insert(const Handle& type, const char* name, std::size_t offset, hid_t memb
 
 Handle compound(std::size_t size) { return {checked(H5Tcreate(H5T_COMPOUND, size), "describing a record"), H5Tclose}; }
 
+/// Members of a compound, in its order.
+std::vector<Column> columns_of(const Handle& type, const std::vector<std::string>& units) {
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    char* const name = H5Tget_member_name(type.id(), static_cast<unsigned>(i));
+    columns.push_back({name == nullptr ? std::string{} : name, units[i]});
+    H5free_memory(name);
+  }
+  return columns;
+}
+
 Handle list_space(std::size_t size) {
   const hsize_t count = size;
   return {checked(H5Screate_simple(1, &count, nullptr), "describing an attribute"), H5Sclose};
@@ -139,6 +150,14 @@ void write_attribute(hid_t object, const char* name, const std::vector<std::stri
   check(H5Awrite(attribute.id(), type.id(), bytes.data()), std::string{"writing "} + name);
 }
 
+void write_attribute(hid_t object, const char* name, double value) {
+  const Handle space{checked(H5Screate(H5S_SCALAR), "describing an attribute"), H5Sclose};
+  const Handle attribute{checked(H5Acreate2(object, name, H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                                 std::string{"creating "} + name),
+                         H5Aclose};
+  check(H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, &value), std::string{"writing "} + name);
+}
+
 std::vector<std::string> read_list_attribute(hid_t object, const char* name) {
   if (H5Aexists(object, name) == 0) return {};
   const Handle attribute{checked(H5Aopen(object, name, H5P_DEFAULT), std::string{"opening attribute "} + name),
@@ -166,6 +185,51 @@ std::string read_text_attribute(hid_t object, const char* name) {
   return values.empty() ? std::string{} : values.front();
 }
 
+double read_number_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return 0.0;
+  const Handle attribute{checked(H5Aopen(object, name, H5P_DEFAULT), std::string{"opening attribute "} + name),
+                         H5Aclose};
+  const Handle space{checked(H5Aget_space(attribute.id()), std::string{"reading attribute "} + name), H5Sclose};
+  if (H5Sget_simple_extent_npoints(space.id()) != 1) {
+    throw RecordingError{std::string{"attribute "} + name + " is not one number"};
+  }
+  double value = 0.0;
+  check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), std::string{"reading attribute "} + name);
+  return value;
+}
+
+void write_columns(hid_t table, const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+  for (const Column& column : columns) {
+    names.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  write_attribute(table, kColumnNamesName, names);
+  write_attribute(table, kUnitsName, units);
+}
+
+std::vector<Column> event_columns() {
+  return columns_of(event_type(), {"s", "", "", "", "", "s", "", "", "", "", "", ""});
+}
+
+std::vector<Column> counter_columns() { return columns_of(counter_type(), {"", "", ""}); }
+
+std::vector<Column> state_columns() { return columns_of(state_type(), {"", "", ""}); }
+
+void write_note(hid_t table, const TableNote& note) {
+  write_attribute(table, "description", note.description);
+  if (note.sample_interval_s <= 0.0) return;
+  write_attribute(table, "time_column", note.time_column);
+  write_attribute(table, "sample_interval_s", note.sample_interval_s);
+  write_attribute(table, "sample_rate_hz", 1.0 / note.sample_interval_s);
+}
+
+TableNote read_note(hid_t table, const std::string& name) {
+  return {name, read_text_attribute(table, "description"), read_text_attribute(table, "time_column"),
+          read_number_attribute(table, "sample_interval_s")};
+}
+
 void write_header(hid_t file, const RunFileHeader& header) {
   write_attribute(file, "schema", std::string{kRunFileSchema});
   write_attribute(file, "participant", header.participant);
@@ -179,6 +243,9 @@ void write_header(hid_t file, const RunFileHeader& header) {
   write_attribute(file, "substructure_ids", header.substructure_ids);
   write_attribute(file, "structure_dofs", header.structure_dofs);
   write_attribute(file, "interface_dofs", header.interface_dofs);
+  write_attribute(file, "t0_utc", header.t0_utc);
+  write_attribute(file, "t0_unix_s", header.t0_unix_s);
+  write_attribute(file, "model_time_step_s", header.model_time_step_s);
 }
 
 RunFileHeader read_header(hid_t file) {
@@ -198,6 +265,9 @@ RunFileHeader read_header(hid_t file) {
   header.substructure_ids = read_list_attribute(file, "substructure_ids");
   header.structure_dofs = read_list_attribute(file, "structure_dofs");
   header.interface_dofs = read_list_attribute(file, "interface_dofs");
+  header.t0_utc = read_text_attribute(file, "t0_utc");
+  header.t0_unix_s = read_number_attribute(file, "t0_unix_s");
+  header.model_time_step_s = read_number_attribute(file, "model_time_step_s");
   return header;
 }
 

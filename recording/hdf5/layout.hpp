@@ -16,6 +16,7 @@ inline constexpr const char* kEventsName = "events";
 inline constexpr const char* kCountersName = "counters";
 inline constexpr const char* kStateName = "state";
 inline constexpr const char* kUnitsName = "units";
+inline constexpr const char* kColumnNamesName = "column_names";
 
 /// `/events`, one row each. Texts are padded with zero bytes.
 struct EventRow {
@@ -61,9 +62,22 @@ struct StateRow {
 void write_attribute(hid_t object, const char* name, const std::string& value);
 /// An empty list writes nothing: not every reader copes with empty attributes.
 void write_attribute(hid_t object, const char* name, const std::vector<std::string>& values);
-/// An attribute that is not there reads as empty.
+void write_attribute(hid_t object, const char* name, double value);
+/// An attribute that is not there reads as empty, a number as 0.
 [[nodiscard]] std::string read_text_attribute(hid_t object, const char* name);
 [[nodiscard]] std::vector<std::string> read_list_attribute(hid_t object, const char* name);
+[[nodiscard]] double read_number_attribute(hid_t object, const char* name);
+
+/// Names and units of the columns, for tools that cannot tell them from the type of the rows.
+void write_columns(hid_t table, const std::vector<Column>& columns);
+/// The columns of `/events`, `/counters` and `/state`.
+[[nodiscard]] std::vector<Column> event_columns();
+[[nodiscard]] std::vector<Column> counter_columns();
+[[nodiscard]] std::vector<Column> state_columns();
+
+void write_note(hid_t table, const TableNote& note);
+/// @return without a description when the file has none, as of older versions.
+[[nodiscard]] TableNote read_note(hid_t table, const std::string& name);
 
 void write_header(hid_t file, const RunFileHeader& header);
 /// @throws RecordingError when the schema is another one.

@@ -12,6 +12,9 @@ bool is_number(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
+/// `_2`
+bool is_numbered(std::string_view text) { return text.starts_with('_') && is_number(text.substr(1)); }
+
 std::string dof_name(const RunFileHeader& header, std::string_view suffix) {
   if (!suffix.empty() && !is_number(suffix.substr(1))) return std::string{suffix.substr(1)};
   std::size_t position = 1;
@@ -30,11 +33,18 @@ std::vector<DofColumn> dof_columns(const RunFileReader& file, std::string_view t
     if (layout.name != table) continue;
     for (const Column& column : layout.columns) {
       const std::string_view name = column.name;
-      if (!name.starts_with(quantity) || !name.ends_with(ending)) continue;
-      if (name.size() < quantity.size() + ending.size()) continue;
-      const std::string_view suffix = name.substr(quantity.size(), name.size() - quantity.size() - ending.size());
+      if (!name.starts_with(quantity)) continue;
+      const std::string_view rest = name.substr(quantity.size());
+      std::string_view suffix;
+      if (rest.starts_with(ending) && is_numbered(rest.substr(ending.size()))) {
+        suffix = rest.substr(ending.size());
+      } else if (rest.ends_with(ending)) {
+        suffix = rest.substr(0, rest.size() - ending.size());
+      } else {
+        continue;
+      }
       if (!suffix.empty() && (suffix.front() != '_' || suffix.size() < 2)) continue;
-      found.push_back({dof_name(file.header(), suffix), std::string{suffix}, column.name});
+      found.push_back({dof_name(file.header(), suffix), std::string{rest}, column.name});
     }
   }
   return found;

@@ -172,7 +172,7 @@ std::vector<TrackingError> tracking_of(const RunFileReader& file, const TestRows
   const std::vector<double> time_s = values(control ? "time_s" : "model_time_s");
   std::vector<TrackingError> errors;
   for (const DofColumn& target : dof_columns(file, table, "target_displacement", "m")) {
-    const std::string measured = "measured_displacement" + target.suffix + "_m";
+    const std::string measured = "measured_displacement" + target.rest;
     if (!file.has_column(table, measured) || time_s.empty()) continue;
     const auto error = evaluate_tracking(target.dof, time_s, values(target.name), values(measured));
     if (error) errors.push_back(*error);

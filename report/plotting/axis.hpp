@@ -28,6 +28,9 @@ class Scale {
   /// 0 at the low end, 1 at the high end; not finite for a value that the axis cannot show.
   [[nodiscard]] double share(double value) const noexcept;
   [[nodiscard]] std::vector<Tick> ticks() const;
+  /// The ends of the axis; their logarithms of base 10 on a logarithmic axis.
+  [[nodiscard]] double low() const noexcept { return low_; }
+  [[nodiscard]] double high() const noexcept { return high_; }
 
  private:
   bool is_logarithmic_;

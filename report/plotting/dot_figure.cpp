@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "report/plotting/colours.hpp"
 #include "report/plotting/svg_canvas.hpp"
 
 namespace hybridtest::plot {
@@ -41,11 +42,11 @@ std::string to_svg(const DotFigure& figure) {
   const Box box{left, kDotTop, figure.width - left - widest(figure, &DotRow::note) - 6.0,
                 kRow * static_cast<double>(figure.rows.size())};
   const Scale scale = scale_of(figure);
-  SvgCanvas canvas{figure.width, box.bottom() + kDotBottom};
+  SvgCanvas canvas{figure.width, box.bottom() + kDotBottom, figure.title};
   canvas.text({8.0, 16.0}, figure.title, Anchor::start, 13.0, true);
   double legend_x = 8.0;
   for (std::size_t mark = 0; mark < figure.marks.size(); ++mark) {
-    canvas.dot({legend_x + 5.0, 32.0}, 4.5, kColours[mark % kColours.size()]);
+    canvas.dot({legend_x + 5.0, 32.0}, 4.5, kOtherColours[mark % kOtherColours.size()]);
     canvas.text({legend_x + 14.0, 36.0}, figure.marks[mark], Anchor::start);
     legend_x += 34.0 + kLetter * static_cast<double>(figure.marks[mark].size());
   }
@@ -66,7 +67,8 @@ std::string to_svg(const DotFigure& figure) {
       if (!std::isfinite(share)) continue;
       const bool is_outside = share < 0.0 || share > 1.0;
       canvas.dot({box.left + std::clamp(share, 0.0, 1.0) * box.width, y}, 4.5,
-                 is_outside ? "#ffffff" : kColours[mark % kColours.size()], kColours[mark % kColours.size()]);
+                 is_outside ? "#ffffff" : kOtherColours[mark % kOtherColours.size()],
+                 kOtherColours[mark % kOtherColours.size()]);
     }
   }
   canvas.frame(box);

@@ -19,7 +19,7 @@ struct DotRow {
 struct DotFigure {
   std::string title;
   Axis axis;
-  std::vector<std::string> marks;  // names in the legend, at most seven
+  std::vector<std::string> marks;  // names in the legend, at most six
   std::vector<DotRow> rows;
   double width = 900.0;  // [px]
 };

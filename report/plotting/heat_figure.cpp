@@ -30,7 +30,7 @@ std::string to_svg(const HeatFigure& figure) {
   const double cell_width = box.width / static_cast<double>(columns);
   const double cell_height = box.height / static_cast<double>(rows);
   const double most = figure.shares.empty() ? 0.0 : *std::ranges::max_element(figure.shares);
-  SvgCanvas canvas{figure.width, figure.height};
+  SvgCanvas canvas{figure.width, figure.height, figure.title};
   canvas.text({box.left, box.top - 10.0}, figure.title, Anchor::start, 13.0, true);
   for (std::size_t i = 0; i < figure.shares.size(); ++i) {
     const std::size_t row = i / columns;

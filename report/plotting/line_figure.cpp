@@ -1,16 +1,19 @@
 #include "report/plotting/line_figure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "report/plotting/svg_canvas.hpp"
+#include "report/plotting/thinning.hpp"
 
 namespace hybridtest::plot {
 namespace {
 
-constexpr double kLeft = 62.0;
+constexpr double kLeft = 72.0;
 constexpr double kRight = 14.0;
 constexpr double kTop = 26.0;
 constexpr double kBottom = 40.0;
@@ -19,7 +22,11 @@ constexpr double kLegendLetter = 7.3;  // [px] width
 
 /// After the last colour, the same colours with dashed lines.
 constexpr std::array<std::string_view, 3> kDashes{"", "7 3", "2 2.5"};
-constexpr Stroke kBackground{"#b5b5b5", 3.0, ""};
+constexpr std::string_view kBackgroundColour = "#b5b5b5";
+constexpr double kBackgroundWidth = 3.0;
+constexpr double kLineWidth = 1.6;
+constexpr std::string_view kSecondDashes = "6 3";
+constexpr double kColumnsPerPixel = 2.0;
 
 struct LegendEntry {
   std::string name;
@@ -32,10 +39,16 @@ std::vector<LegendEntry> legend_of(const LineFigure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Line& line : panel.lines) {
       if (std::ranges::find(legend, line.name, &LegendEntry::name) != legend.end()) continue;
-      Stroke stroke = kBackground;
-      if (!line.is_background) {
-        stroke = {kColours[coloured % kColours.size()], line.is_emphasised ? 3.0 : 1.6,
-                  kDashes[(coloured / kColours.size()) % kDashes.size()]};
+      Stroke stroke{colour_of(line.signal),
+                    line.is_background   ? kBackgroundWidth
+                    : line.is_emphasised ? 3.0
+                                         : kLineWidth,
+                    line.is_dashed || line.signal == Signal::limit ? kSecondDashes : ""};
+      if (stroke.colour.empty() && line.is_background) {
+        stroke.colour = kBackgroundColour;
+      } else if (stroke.colour.empty()) {
+        stroke.colour = kOtherColours[coloured % kOtherColours.size()];
+        if (!line.is_dashed) stroke.dashes = kDashes[(coloured / kOtherColours.size()) % kDashes.size()];
         ++coloured;
       }
       legend.push_back({line.name, stroke});
@@ -64,7 +77,9 @@ class PanelPainter {
         y_{scale_of(panel.y, &Line::y)} {}
 
   void paint(const std::vector<LegendEntry>& legend) {
+    canvas_.begin_panel(attributes());
     paint_axes();
+    canvas_.begin_window(box_);
     const auto in_order = [&](bool is_background) {
       for (const Line& line : panel_.lines) {
         if (line.is_background == is_background) {
@@ -74,7 +89,13 @@ class PanelPainter {
     };
     in_order(true);
     in_order(false);
+    for (const Mark& mark : panel_.marks) {
+      const double x = place(mark.x, 0.0).x;
+      if (x >= box_.left && x <= box_.right()) canvas_.mark(x, box_, mark.text, mark.is_fault ? "#b3261e" : "#555");
+    }
+    canvas_.end_window();
     canvas_.frame(box_);
+    canvas_.end_panel();
   }
 
  private:
@@ -90,7 +111,17 @@ class PanelPainter {
     return {box_.left + x_.share(x) * box_.width, box_.bottom() - y_.share(y) * box_.height};
   }
 
+  /// What figures.js must know to zoom and to name values.
+  [[nodiscard]] std::string attributes() const {
+    return fmt::format(
+        R"(data-title="{}" data-x="{:.10g} {:.10g}"{} data-x-label="{}" data-y="{:.10g} {:.10g}"{} data-y-label="{}")",
+        escaped(panel_.title), x_.low(), x_.high(), panel_.x.is_logarithmic ? " data-x-log" : "",
+        escaped(panel_.x.label), y_.low(), y_.high(), panel_.y.is_logarithmic ? " data-y-log" : "",
+        escaped(panel_.y.label));
+  }
+
   void paint_axes() {
+    canvas_.begin_axes();
     for (const Tick& tick : x_.ticks()) {
       const double x = box_.left + x_.share(tick.value) * box_.width;
       canvas_.line({x, box_.top}, {x, box_.bottom()}, {"#e4e4e4", 1.0, ""});
@@ -101,43 +132,23 @@ class PanelPainter {
       canvas_.line({box_.left, y}, {box_.right(), y}, {"#e4e4e4", 1.0, ""});
       canvas_.text({box_.left - 5.0, y + 4.0}, tick.label, Anchor::end, 11.0);
     }
+    canvas_.end_axes();
     canvas_.text({box_.left, box_.top - 8.0}, panel_.title, Anchor::start, 13.0, true);
     canvas_.text({box_.left + box_.width / 2.0, box_.bottom() + 32.0}, panel_.x.label, Anchor::middle);
-    canvas_.vertical_text({box_.left - 47.0, box_.top + box_.height / 2.0}, panel_.y.label);
+    canvas_.vertical_text({box_.left - 57.0, box_.top + box_.height / 2.0}, panel_.y.label);
   }
 
   void paint(const Line& line, const Stroke& stroke) {
-    std::vector<Place> places;
-    const auto end_piece = [&] {
-      canvas_.curve(thinned(places), stroke, box_);
-      places.clear();
-    };
-    for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+    HistoryThinner thinner{box_.left, box_.right(), static_cast<std::size_t>(kColumnsPerPixel * box_.width)};
+    const std::size_t points = std::min(line.x.size(), line.y.size());
+    for (std::size_t i = 0; i < points; ++i) {
       const Place next = place(line.x[i], line.y[i]);
-      if (std::isfinite(next.x) && std::isfinite(next.y)) {
-        places.push_back(next);
-      } else {
-        end_piece();
-      }
+      thinner.add(next.x, next.y);
     }
-    end_piece();
-  }
-
-  /// Keeps the first, lowest, highest and last of the points in one pixel column.
-  [[nodiscard]] std::vector<Place> thinned(const std::vector<Place>& places) const {
-    if (static_cast<double>(places.size()) < 2.0 * box_.width) return places;
-    std::vector<Place> kept;
-    for (auto begin = places.begin(); begin != places.end();) {
-      const double column = std::floor(begin->x);
-      const auto end = std::find_if(begin, places.end(), [&](const Place& p) { return std::floor(p.x) != column; });
-      const auto [low, high] = std::minmax_element(begin, end, [](auto& a, auto& b) { return a.y < b.y; });
-      kept.push_back(*begin);
-      kept.push_back(*std::min(low, high));
-      kept.push_back(*std::max(low, high));
-      kept.push_back(*(end - 1));
-      begin = end;
-    }
-    return kept;
+    const Points thinned = thinner.take();
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < thinned.x.size(); ++i) places.push_back({thinned.x[i], thinned.y[i]});
+    canvas_.curve(places, stroke, box_, line.name);
   }
 
   SvgCanvas& canvas_;
@@ -165,6 +176,12 @@ LegendLayout layout_of(const std::vector<LegendEntry>& legend, double width) {
   return layout;
 }
 
+std::string title_of(const LineFigure& figure) {
+  std::string title;
+  for (const Panel& panel : figure.panels) title += (title.empty() ? "" : "; ") + panel.title;
+  return title;
+}
+
 }  // namespace
 
 std::string to_svg(const LineFigure& figure) {
@@ -174,7 +191,7 @@ std::string to_svg(const LineFigure& figure) {
   const double width = figure.panel_width * static_cast<double>(columns);
   const double panels_height = figure.panel_height * static_cast<double>(rows);
   const LegendLayout layout = layout_of(legend, width);
-  SvgCanvas canvas{width, panels_height + layout.height};
+  SvgCanvas canvas{width, panels_height + layout.height, title_of(figure)};
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::size_t row = i / columns;
     const Box outer{static_cast<double>(i % columns) * figure.panel_width,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "report/plotting/axis.hpp"
+#include "report/plotting/colours.hpp"
 
 namespace hybridtest::plot {
 
@@ -12,8 +13,17 @@ struct Line {
   std::string name;  // in the legend; the same name has the same colour in every panel
   std::vector<double> x{};
   std::vector<double> y{};
-  bool is_background = false;  // grey, behind the others: the reference
+  bool is_background = false;  // thick and behind the others, grey if it is no signal: the reference
   bool is_emphasised = false;  // thicker
+  Signal signal = Signal::other;
+  bool is_dashed = false;  // of two curves of the same signal, the second
+};
+
+/// What happened at a value of the horizontal axis.
+struct Mark {
+  double x = 0.0;
+  std::string text;
+  bool is_fault = false;
 };
 
 struct Panel {
@@ -21,6 +31,7 @@ struct Panel {
   Axis x;
   Axis y;
   std::vector<Line> lines;
+  std::vector<Mark> marks{};
 };
 
 /// Panels in columns with one legend.
@@ -31,7 +42,7 @@ struct LineFigure {
   double panel_height = 260.0;
 };
 
-/// Curves with many points are thinned to the width of the panel; extreme values are kept.
+/// Curves with many points are thinned to two points in half a pixel, so that a zoom shows more; no peak is lost.
 [[nodiscard]] std::string to_svg(const LineFigure& figure);
 
 }  // namespace hybridtest::plot

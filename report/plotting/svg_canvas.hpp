@@ -1,15 +1,10 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace hybridtest::plot {
-
-/// Colours that colour-blind people can distinguish (Okabe and Ito).
-inline constexpr std::array<std::string_view, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                          "#e69f00", "#56b4e9", "#222222"};
 
 /// A place on the canvas [px], from the upper left corner.
 struct Place {
@@ -38,15 +33,27 @@ struct Box {
 /// its labels would become too small to read.
 class SvgCanvas {
  public:
-  SvgCanvas(double width, double height);
+  /// @param title   read out by a screen reader; may be empty.
+  SvgCanvas(double width, double height, std::string_view title);
 
   void line(Place from, Place to, const Stroke& stroke);
-  /// Clipped to the box; points far outside the box are moved nearer to it.
-  void curve(std::span<const Place> places, const Stroke& stroke, const Box& clip);
+  /// What is drawn until end_panel() belongs together; `attributes` tell figures.js what it shows.
+  void begin_panel(std::string_view attributes);
+  void end_panel();
+  /// A window onto the curves until end_window(); outside of it they are cut off. Zooming moves the window.
+  void begin_window(const Box& box);
+  void end_window();
+  /// A curve in a window. A place that is not finite is a gap; places far outside the box are moved nearer to it.
+  void curve(std::span<const Place> places, const Stroke& stroke, const Box& box, std::string_view name);
+  /// A vertical line in a window, which says what happened there.
+  void mark(double x, const Box& box, std::string_view text, std::string_view colour);
   void dot(Place at, double radius, std::string_view colour, std::string_view outline = "none");
   void frame(const Box& box);
   void bar(const Box& box, std::string_view colour);
   void text(Place at, std::string_view text, Anchor anchor, double size = 12.0, bool is_bold = false);
+  /// Grid lines and labels of an axis until end_axes(): figures.js draws them anew where a panel is zoomed.
+  void begin_axes();
+  void end_axes();
   /// Rotated text, read upwards.
   void vertical_text(Place at, std::string_view text, double size = 12.0);
 

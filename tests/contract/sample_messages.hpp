@@ -98,12 +98,19 @@ inline Event sample_event() {
           .clock = Duration{123}};
 }
 
-inline SignalBlock sample_signal(SubstructureIndex substructure) {
-  SignalBlock message{.substructure = substructure, .sample_count = 32};
-  double value = 0.0;
-  for (SignalSample& sample : message.samples) {
-    sample = {value, value + 0.1, value + 0.2, value + 0.3, value + 0.4};
-    value += 1.0;
+inline SignalBlock sample_signals() {
+  SignalBlock message{
+      .participant = "storey_1", .incarnation = 7, .group = "control", .part = 3, .sequence = 1U << 20U};
+  for (std::size_t i = 0; i < kMaxLivePoints; ++i) message.model_time_s.push_back(0.05 * static_cast<double>(i));
+  for (std::size_t k = 0; k < kMaxLiveSignals; ++k) {
+    const std::vector<double> values(kMaxLivePoints, static_cast<double>(k) + 0.5);
+    message.signals.push_back({.name = "displacement",
+                               .subject = "floor_1",
+                               .unit = "m",
+                               .limit = 0.1,
+                               .least = values,
+                               .most = values,
+                               .last = values});
   }
   return message;
 }

@@ -121,7 +121,7 @@ TYPED_TEST(TransportContract, EveryMessageArrivesUnchanged) {
   check(sender->measurement_outbox(), receiver->measurement_inbox(), sample_measurement(31, 6));
   check(sender->control_outbox(), receiver->control_inbox(), sample_control());
   check(sender->event_outbox(), receiver->event_inbox(), sample_event());
-  check(sender->signal_outbox(), receiver->signal_inbox(), sample_signal(31));
+  check(sender->signal_outbox(), receiver->signal_inbox(), sample_signals());
 }
 
 TYPED_TEST(TransportContract, NonFiniteForceArrivesUnchanged) {

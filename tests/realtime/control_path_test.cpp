@@ -30,7 +30,7 @@ class LoopOnRings {
               *rig_,
               compensation(compensates, kPeriod),
               EnergyErrorMonitor{SiteMatrix::Constant(1, 1, 4.0e6), 0.01},
-              ControlLoopPorts{requests_, reports_, signals_},
+              ControlLoopPorts{requests_, reports_},
               record_} {}
 
   void ask(const LoopRequest& request) noexcept { requests_.send(request); }
@@ -46,9 +46,6 @@ class LoopOnRings {
   void advance() noexcept {
     static_cast<void>(loop_.advance(now_));
     now_ += kPeriod;
-    SignalSample sample;
-    while (signals_.take(sample)) {
-    }
   }
   /// Reports that waited. @param fault   set when one of them is a fault.
   int take_reports(bool& fault) noexcept {
@@ -67,7 +64,6 @@ class LoopOnRings {
 
   RingPort<LoopRequest> requests_{64};
   RingPort<LoopReport> reports_{64};
-  RingPort<SignalSample> signals_{1024};
   RowRing record_{ControlLoop::control_layout(1).columns.size(), 1U << 15U};
   std::unique_ptr<SimulatedRig> rig_;
   ControlLoop loop_;

@@ -46,7 +46,7 @@ class LoopThreadTest : public testing::Test {
   }
   void take_rows() {
     for (std::vector<double> row = coupling_.take_control_row(); !row.empty(); row = coupling_.take_control_row()) {
-      rows_.push_back({row[0], row[1], row[4], static_cast<FaultFlags>(static_cast<std::uint32_t>(row.back()))});
+      rows_.push_back({row[0], row[1], row[4], static_cast<FaultFlags>(static_cast<std::uint32_t>(row[10]))});
     }
   }
   [[nodiscard]] std::size_t first_row_with(FaultFlags fault) const {

@@ -117,10 +117,10 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
       loop_{std::make_unique<ControlLoop>(wide_limits(mode, command_age_s), *rig_,
                                           compensation(compensates, kControlPeriod),
                                           EnergyErrorMonitor{SiteMatrix::Constant(1, 1, 4.0e6), 0.01},
-                                          ControlLoopPorts{requests_, reports_, signals_}, control_record_)},
+                                          ControlLoopPorts{requests_, reports_}, control_record_)},
       link_{std::make_unique<SiteLink>(
           SubstructureIndex{0}, 1, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
-          SiteLinkPorts{site_commands_, measurements_, signal_blocks_, requests_, reports_, signals_}, site_record_)},
+          SiteLinkPorts{site_commands_, measurements_, requests_, reports_}, site_record_)},
       numerical_{std::make_unique<NumericalNode>(
           SubstructureIndex{1}, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
           MembershipPorts{numerical_announcements_, numerical_control_, kLease}, numerical_commands_, measurements_,

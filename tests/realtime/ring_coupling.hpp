@@ -89,10 +89,8 @@ class RingCoupling {
   CommandSwitch commands_{{&site_commands_, &numerical_commands_}};
   RingPort<ForceMeasurement> measurements_{64};
   RingPort<Event> events_{256};
-  RingPort<SignalBlock> signal_blocks_{256};
   RingPort<LoopRequest> requests_{64};
   RingPort<LoopReport> reports_{64};
-  RingPort<SignalSample> signals_{1024};
 
   RowRing step_record_;
   RowRing exchange_record_;

@@ -55,7 +55,7 @@ class RecordedSimulation {
     std::vector<RecordedTable> recorded;
     for (const TableLayout& table : tables) recorded.push_back({table, ring_rows_});
     recorders_[id] =
-        std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, 1), recorded);
+        std::make_unique<Recorder>(run_file(directory_, id), run_file_header(scenario_, id, role, 1, {}), recorded);
   }
 
   const Scenario& scenario_;

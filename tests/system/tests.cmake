@@ -2,7 +2,7 @@
 hybridtest_test(system FOLDER system
   SOURCES ${support}/recorded_run.cpp ${support}/recording_checks.cpp ${support}/reference_history.cpp ${support}/started_program.cpp
     ${support}/system_fixture.cpp
-  LINK hybridtest_recording hybridtest_mechanics LABELS system
+  LINK hybridtest_recording hybridtest_mechanics hybridtest_plotting hybridtest_httplib LABELS system
   # One at a time: they start processes, kill them and watch the time.
   PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
 add_dependencies(system programs)

@@ -74,8 +74,13 @@ inline void turn_off_intraprocess_delivery() {
 template <class Generated>
 class CheckedType final : public Generated {
  public:
-  /// @param malformed   counts payloads that are not of this type; outlives the type.
-  explicit CheckedType(std::atomic<std::uint64_t>& malformed) : malformed_{malformed} {}
+  /// @param malformed      counts payloads that are not of this type; outlives the type.
+  /// @param is_described   its description is published for other programs, see describe_live_type().
+  explicit CheckedType(std::atomic<std::uint64_t>& malformed, bool is_described = false) : malformed_{malformed} {
+    // Not the whole description with every discovery: whoever wants it asks.
+    this->auto_fill_type_object(false);
+    this->auto_fill_type_information(is_described);
+  }
 
   bool deserialize(Payload* payload, void* sample) override {
     try {

@@ -43,6 +43,9 @@ struct FastDdsSettings {
   /// Only listens to the statuses, and hears those of every test, whatever its lease: a reader that asks for a shorter
   /// lease than a writer offers is not matched with it. Not for participants of a test.
   bool is_observer = false;
+  /// Readers ask nobody to send anything again, but for the announcement and the statuses, which late joiners need.
+  /// For an observer that a test must not wait for and must not serve.
+  bool reads_best_effort = false;
 };
 
 /// Reads the profile and looks up the host names, as joining a test does later.

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "core/config_error.hpp"
 #include "transport/fast_dds/ports.hpp"
 
 namespace hybridtest::fast_dds {
@@ -11,14 +14,31 @@ namespace {
 
 using CommandMatches = std::array<std::shared_ptr<Matches>, kMaxSubstructures>;
 
+/// The partition of every test, for readers.
+constexpr const char* kEveryTest = "*";
+
+std::string checked_name(std::string_view test_name) {
+  if (test_name.empty() || test_name.size() > 64 || test_name.find_first_of("*?[]/") != std::string_view::npos) {
+    throw ConfigError{"test name '" + std::string{test_name} + "': expected 1 to 64 characters without * ? [ ] /"};
+  }
+  return std::string{test_name};
+}
+
+/// Commands of one substructure travel in a partition of their own, so that the others are neither woken by them nor
+/// sent them.
+std::string partition_of(const std::string& test_name, SubstructureIndex substructure) {
+  return test_name + "/" + std::to_string(substructure);
+}
+
 /// Commands to every substructure, each through a writer of its own.
 class CommandOutbox final : public Outbox<DisplacementCommand> {
  public:
-  CommandOutbox(Participant& participant, std::uint16_t substructure_count, const CommandMatches& matches)
+  CommandOutbox(Participant& participant, const std::string& test_name, std::uint16_t substructure_count,
+                const CommandMatches& matches)
       : participant_{participant} {
     for (SubstructureIndex i = 0; i < substructure_count; ++i) {
       outboxes_.push_back(
-          std::make_unique<DdsOutbox<DisplacementCommand>>(participant, participant.partition(i), matches[i]));
+          std::make_unique<DdsOutbox<DisplacementCommand>>(participant, partition_of(test_name, i), matches[i]));
     }
   }
 
@@ -35,11 +55,12 @@ class CommandOutbox final : public Outbox<DisplacementCommand> {
 
 class FastDdsTransport final : public Transport {
  public:
-  FastDdsTransport(const FastDdsSettings& settings, std::string_view test_name) : participant_{settings, test_name} {
+  FastDdsTransport(std::shared_ptr<Participant> participant, std::string test_name)
+      : participant_{std::move(participant)}, test_name_{std::move(test_name)} {
     for (auto& matches : command_matches_) matches = std::make_shared<Matches>();
   }
 
-  [[nodiscard]] Waker& waker() noexcept override { return participant_.waker; }
+  [[nodiscard]] Waker& waker() noexcept override { return participant_->waker; }
 
   [[nodiscard]] std::unique_ptr<Outbox<TestAnnouncement>> announcement_outbox() override {
     return outbox<TestAnnouncement>();
@@ -53,16 +74,16 @@ class FastDdsTransport final : public Transport {
   [[nodiscard]] std::unique_ptr<Inbox<ParticipantStatus>> status_inbox() override { return inbox<ParticipantStatus>(); }
   [[nodiscard]] std::unique_ptr<Outbox<DisplacementCommand>> command_outbox(std::uint16_t substructure_count) override {
     if (substructure_count > kMaxSubstructures) throw std::invalid_argument{"a test has at most 32 substructures"};
-    return std::make_unique<CommandOutbox>(participant_, substructure_count, command_matches_);
+    return std::make_unique<CommandOutbox>(*participant_, test_name_, substructure_count, command_matches_);
   }
   [[nodiscard]] std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) override {
-    return std::make_unique<DdsInbox<DisplacementCommand>>(participant_, participant_.partition(substructure));
+    return std::make_unique<DdsInbox<DisplacementCommand>>(*participant_, partition_of(test_name_, substructure));
   }
   [[nodiscard]] std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() override {
     return outbox<ForceMeasurement>();
   }
   [[nodiscard]] std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() override {
-    return std::make_unique<DdsInbox<ForceMeasurement>>(participant_, participant_.partition(), measurement_matches_);
+    return std::make_unique<DdsInbox<ForceMeasurement>>(*participant_, test_name_, measurement_matches_);
   }
   [[nodiscard]] std::unique_ptr<Outbox<TestControl>> control_outbox() override { return outbox<TestControl>(); }
   [[nodiscard]] std::unique_ptr<Inbox<TestControl>> control_inbox() override { return inbox<TestControl>(); }
@@ -76,31 +97,55 @@ class FastDdsTransport final : public Transport {
   }
 
   [[nodiscard]] TransportCounters counters() const noexcept override {
-    return {.overflowed = participant_.overflowed,
-            .malformed = participant_.malformed,
-            .unsent = participant_.unsent,
-            .deadlines_missed = participant_.deadlines_missed};
+    return {.overflowed = participant_->overflowed,
+            .malformed = participant_->malformed,
+            .unsent = participant_->unsent,
+            .deadlines_missed = participant_->deadlines_missed};
   }
 
  private:
   template <class Message>
   std::unique_ptr<Outbox<Message>> outbox() {
-    return std::make_unique<DdsOutbox<Message>>(participant_, participant_.partition());
+    return std::make_unique<DdsOutbox<Message>>(*participant_, test_name_);
   }
   template <class Message>
   std::unique_ptr<Inbox<Message>> inbox() {
-    return std::make_unique<DdsInbox<Message>>(participant_, participant_.partition());
+    return std::make_unique<DdsInbox<Message>>(*participant_, test_name_);
   }
 
   CommandMatches command_matches_;
   std::shared_ptr<Matches> measurement_matches_ = std::make_shared<Matches>();
-  Participant participant_;
+  std::shared_ptr<Participant> participant_;
+  const std::string test_name_;
+};
+
+class FastDdsSearch final : public TestSearch {
+ public:
+  explicit FastDdsSearch(const FastDdsSettings& settings) : participant_{std::make_shared<Participant>(settings)} {}
+
+  [[nodiscard]] Waker& waker() noexcept override { return participant_->waker; }
+  [[nodiscard]] std::unique_ptr<Inbox<TestAnnouncement>> announcements() override {
+    return std::make_unique<DdsInbox<TestAnnouncement>>(*participant_, kEveryTest);
+  }
+  [[nodiscard]] std::unique_ptr<Transport> join(std::string_view test_name) override {
+    return std::make_unique<FastDdsTransport>(participant_, checked_name(test_name));
+  }
+
+ private:
+  std::shared_ptr<Participant> participant_;
 };
 
 }  // namespace
 
 std::unique_ptr<Transport> make_fast_dds_transport(const FastDdsSettings& settings, std::string_view test_name) {
-  return std::make_unique<FastDdsTransport>(settings, test_name);
+  const std::string name = checked_name(test_name);
+  return std::make_unique<FastDdsTransport>(std::make_shared<Participant>(settings), name);
+}
+
+std::unique_ptr<TestSearch> make_test_search(FastDdsSettings settings) {
+  settings.is_observer = true;
+  settings.reads_best_effort = true;
+  return std::make_unique<FastDdsSearch>(settings);
 }
 
 }  // namespace hybridtest::fast_dds

@@ -4,18 +4,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/config_error.hpp"
+#include "transport/fast_dds/live_type.hpp"
 #include "transport/fast_dds/participant_qos.hpp"
 
 namespace hybridtest::fast_dds {
 namespace {
-
-std::string checked_name(std::string_view test_name) {
-  if (test_name.empty() || test_name.size() > 64 || test_name.find_first_of("*?[]/") != std::string_view::npos) {
-    throw ConfigError{"test name '" + std::string{test_name} + "': expected 1 to 64 characters without * ? [ ] /"};
-  }
-  return std::string{test_name};
-}
 
 template <class Entity>
 Entity* created(Entity* entity, const char* what) {
@@ -25,9 +18,9 @@ Entity* created(Entity* entity, const char* what) {
 
 }  // namespace
 
-Participant::Participant(const FastDdsSettings& settings, std::string_view test_name)
-    : settings_{settings}, test_name_{checked_name(test_name)} {
+Participant::Participant(const FastDdsSettings& settings) : settings_{settings} {
   turn_off_intraprocess_delivery();
+  describe_live_type();
   const dds::DomainParticipantQos qos = participant_qos(settings_);
   participant_ = created(dds::DomainParticipantFactory::get_instance()->create_participant(settings_.domain, qos, this,
                                                                                            dds::StatusMask::none()),
@@ -38,10 +31,6 @@ Participant::~Participant() {
   participant_->set_listener(nullptr);
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-}
-
-std::string Participant::partition(SubstructureIndex substructure) const {
-  return test_name_ + "/" + std::to_string(substructure);
 }
 
 dds::Topic* Participant::topic(const char* name, const std::function<dds::TypeSupport()>& make_type) {

@@ -27,15 +27,10 @@ namespace hybridtest::fast_dds {
 /// Fast DDS returns nothing.
 class Participant final : private dds::DomainParticipantListener {
  public:
-  Participant(const FastDdsSettings& settings, std::string_view test_name);
+  explicit Participant(const FastDdsSettings& settings);
   ~Participant() override;
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
-
-  /// Commands of one substructure travel in a partition of their own, so that the others are
-  /// neither woken by them nor sent them.
-  [[nodiscard]] std::string partition(SubstructureIndex substructure) const;
-  [[nodiscard]] const std::string& partition() const noexcept { return test_name_; }
 
   template <class Message>
   [[nodiscard]] dds::DataWriter* create_writer(const std::string& partition, dds::DataWriterListener* listener) {
@@ -66,7 +61,7 @@ class Participant final : private dds::DomainParticipantListener {
   template <class Message>
   dds::Topic* topic() {
     return topic(Topic<Message>::kName, [this] {
-      auto* type = new CheckedType<typename Topic<Message>::Type>{malformed};
+      auto* type = new CheckedType<typename Topic<Message>::Type>{malformed, std::is_same_v<Message, SignalBlock>};
       return dds::TypeSupport{type};  // owns it
     });
   }
@@ -79,7 +74,6 @@ class Participant final : private dds::DomainParticipantListener {
   void on_participant_discovery(dds::DomainParticipant* participant, DiscoveryInfo&& info) override;
 
   const FastDdsSettings settings_;
-  const std::string test_name_;
   dds::DomainParticipant* participant_ = nullptr;
   std::mutex mutex_;  // guards what follows
   std::map<std::string, dds::Topic*> topics_;

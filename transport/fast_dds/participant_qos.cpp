@@ -144,6 +144,8 @@ dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
   // that open their socket a little later.
   discovery.initial_announcements.count = 10;
   discovery.initial_announcements.period = to_dds(std::chrono::milliseconds{50});
+  // Tells other programs how the types of our messages are made, when they ask.
+  qos.wire_protocol().builtin.typelookup_config.use_server = true;
   qos.name("hybridtest");
   return qos;
 }

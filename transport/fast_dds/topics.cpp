@@ -55,6 +55,9 @@ dds::DataReaderQos reader_qos(const Delivery& delivery, const FastDdsSettings& s
     qos.liveliness() = dds::DataReaderQos{}.liveliness();
     qos.deadline() = dds::DataReaderQos{}.deadline();
   }
+  if (settings.reads_best_effort && !delivery.for_late_joiners) {
+    qos.reliability().kind = dds::BEST_EFFORT_RELIABILITY_QOS;
+  }
   return qos;
 }
 

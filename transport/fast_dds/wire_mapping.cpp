@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <vector>
+
+#include "core/assert.hpp"
 
 namespace hybridtest::fast_dds {
 namespace {
@@ -15,7 +18,6 @@ namespace {
 template <class Array>
 constexpr std::size_t kSize = std::tuple_size_v<std::remove_cvref_t<Array>>;
 static_assert(kSize<decltype(wire::TestAnnouncement{}.substructures())> == kMaxSubstructures);
-static_assert(kSize<decltype(wire::SignalBlock{}.samples())> == kMaxSignalSamples);
 static_assert(wire::Name::max_size == ParticipantId::kCapacity);
 
 static_assert(kSize<decltype(wire::DisplacementCommand{}.points())> == kCommandPoints);
@@ -281,35 +283,97 @@ bool decode(const wire::Event& sample, Event& message) noexcept {
 
 // --- signal_block
 
-void encode(const SignalBlock& message, wire::SignalBlock& sample) noexcept {
-  sample.substructure(message.substructure);
-  sample.sample_count(message.sample_count);
-  for (std::size_t i = 0; i < message.samples.size(); ++i) {
-    const SignalSample& from = message.samples[i];
-    wire::SignalSample& to = sample.samples()[i];
-    to.model_time_s(from.model_time_s);
-    to.target_displacement_m(from.target_displacement_m);
-    to.command_displacement_m(from.command_displacement_m);
-    to.measured_displacement_m(from.measured_displacement_m);
-    to.force_n(from.force_n);
+namespace {
+
+/// A text and the end of its line. A text does not go over several lines.
+template <std::size_t Capacity>
+void add_line(const FixedText<Capacity>& text, std::string& lines) {
+  const auto begin = lines.insert(lines.end(), text.view().begin(), text.view().end());
+  std::replace(begin, lines.end(), '\n', ' ');
+  lines += '\n';
+}
+
+/// Takes the first line off. @return false without one, and for one that is too long.
+template <std::size_t Capacity>
+bool take_line(std::string_view& lines, FixedText<Capacity>& text) noexcept {
+  const auto end = lines.find('\n');
+  if (end == std::string_view::npos || end > Capacity) return false;
+  text = FixedText<Capacity>{lines.substr(0, end)};
+  lines.remove_prefix(end + 1);
+  return true;
+}
+
+template <std::size_t Capacity>
+std::string_view view_of(const eprosima::fastrtps::fixed_string<Capacity>& field) noexcept {
+  return {field.c_str(), field.size()};
+}
+
+}  // namespace
+
+void encode(const SignalBlock& message, wire::SignalBlock& sample) {
+  encode_text(message.participant, sample.participant());
+  encode_text(message.group, sample.group());
+  sample.part(message.part);
+  sample.incarnation(message.incarnation);
+  sample.sequence_number(message.sequence);
+  sample.model_time_s(message.model_time_s);
+  const std::size_t count = message.signals.size();
+  HYBRIDTEST_ASSERT(count <= kMaxLiveSignals && message.model_time_s.size() <= kMaxLivePoints);
+  sample.limits().resize(count);
+  for (Values* values : {&sample.least(), &sample.most(), &sample.last()}) values->clear();
+  std::string names;
+  std::string subjects;
+  std::string units;
+  for (std::size_t i = 0; i < count; ++i) {
+    const LiveSignal& signal = message.signals[i];
+    add_line(signal.name, names);
+    add_line(signal.subject, subjects);
+    add_line(signal.unit, units);
+    sample.limits()[i] = signal.limit;
+    sample.least().insert(sample.least().end(), signal.least.begin(), signal.least.end());
+    sample.most().insert(sample.most().end(), signal.most.begin(), signal.most.end());
+    sample.last().insert(sample.last().end(), signal.last.begin(), signal.last.end());
   }
+  sample.names() = names.c_str();
+  sample.subjects() = subjects.c_str();
+  sample.units() = units.c_str();
 }
 
 bool decode(const wire::SignalBlock& sample, SignalBlock& message) noexcept {
-  message.substructure = sample.substructure();
-  message.sample_count = sample.sample_count();
-  if (!is_substructure(message.substructure) || message.sample_count > kMaxSignalSamples) return false;
-  for (std::size_t i = 0; i < message.samples.size(); ++i) {
-    const wire::SignalSample& from = sample.samples()[i];
-    SignalSample& to = message.samples[i];
-    to.model_time_s = from.model_time_s();
-    to.target_displacement_m = from.target_displacement_m();
-    to.command_displacement_m = from.command_displacement_m();
-    to.measured_displacement_m = from.measured_displacement_m();
-    to.force_n = from.force_n();
-    if (!is_time(to.model_time_s)) return false;
+  message.participant = decode_text(sample.participant());
+  message.group = decode_text(sample.group());
+  message.part = sample.part();
+  message.incarnation = sample.incarnation();
+  message.sequence = sample.sequence_number();
+  message.model_time_s = sample.model_time_s();
+  const std::size_t points = message.model_time_s.size();
+  const std::size_t count = sample.limits().size();
+  if (points > kMaxLivePoints || count > kMaxLiveSignals) return false;
+  if (!std::ranges::all_of(message.model_time_s, is_time) || !std::ranges::is_sorted(message.model_time_s))
+    return false;
+  std::string_view names = view_of(sample.names());
+  std::string_view subjects = view_of(sample.subjects());
+  std::string_view units = view_of(sample.units());
+  for (const Values* values : {&sample.least(), &sample.most(), &sample.last()}) {
+    if (values->size() != count * points) return false;
   }
-  return true;
+  message.signals.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    LiveSignal& signal = message.signals[i];
+    if (!take_line(names, signal.name) || !take_line(subjects, signal.subject) || !take_line(units, signal.unit)) {
+      return false;
+    }
+    signal.limit = sample.limits()[i];
+    if (signal.limit < 0.0) return false;
+    const auto piece = [&](const Values& values) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(i * points);
+      return Values{begin, begin + static_cast<std::ptrdiff_t>(points)};
+    };
+    signal.least = piece(sample.least());
+    signal.most = piece(sample.most());
+    signal.last = piece(sample.last());
+  }
+  return names.empty() && subjects.empty() && units.empty();
 }
 
 }  // namespace hybridtest::fast_dds

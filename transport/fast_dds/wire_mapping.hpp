@@ -19,7 +19,7 @@ void encode(const DisplacementCommand& message, wire::DisplacementCommand& sampl
 void encode(const ForceMeasurement& message, wire::ForceMeasurement& sample);
 void encode(const TestControl& message, wire::TestControl& sample) noexcept;
 void encode(const Event& message, wire::Event& sample);
-void encode(const SignalBlock& message, wire::SignalBlock& sample) noexcept;
+void encode(const SignalBlock& message, wire::SignalBlock& sample);
 
 [[nodiscard]] bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noexcept;
 [[nodiscard]] bool decode(const wire::ParticipantStatus& sample, ParticipantStatus& message) noexcept;

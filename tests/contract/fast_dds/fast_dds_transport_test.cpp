@@ -3,6 +3,7 @@
 
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -23,6 +24,8 @@
 #include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
+#include "tests/support/started_program.hpp"
+#include "tests/unit/recording/temporary_directory.hpp"
 #include "transport/fast_dds/dds_version.hpp"
 #include "transport/fast_dds/participant_qos.hpp"
 #include "transport/fast_dds/topics.hpp"
@@ -156,6 +159,40 @@ struct Forgery {
   std::vector<std::uint8_t> bytes;
 };
 
+/// The value of `key` in the first message that starts after `begin`, as the foreign listener prints it.
+std::string printed(const std::string& text, const std::string& key) {
+  const auto place = text.find("\n" + key + "=");
+  if (place == std::string::npos) return "not printed: " + key;
+  const auto value = place + key.size() + 2;
+  return text.substr(value, text.find('\n', value) - value);
+}
+
+TEST(FastDdsTransport, ForeignProgramReadsLiveSignalsByTheirPublishedType) {
+  TemporaryDirectory folder;
+  StartedProgram listener{CONTRACT_FOREIGN_LISTENER,
+                          {std::to_string(kTestDomain), unique_test_name(), "hybridtest/3/signal_block"},
+                          folder / "listener"};
+  const auto sender = FastDdsUdpNetwork::join(unique_test_name());
+  const auto outbox = sender->signal_outbox();
+  SignalBlock block = sample_signals();
+  block.signals[5].last[3] = -0.12345678901234567;
+  ASSERT_TRUE(wait_until([&] {
+    outbox->send(block);
+    return listener.standard_output().find("\nend\n") != std::string::npos;
+  })) << listener.standard_error();
+  const std::string text = "\n" + listener.standard_output();
+  EXPECT_EQ(printed(text, "participant"), "storey_1");
+  EXPECT_EQ(printed(text, "group"), "control");
+  EXPECT_EQ(printed(text, "part"), "3");
+  EXPECT_EQ(printed(text, "sequence_number"), "1048576");
+  EXPECT_EQ(printed(text, "model_time_s[15]"), fmt::format("{:.17g}", block.model_time_s[15]));
+  EXPECT_EQ(printed(text, "names"), "displacement") << "and more lines";
+  EXPECT_EQ(printed(text, "units"), "m");
+  EXPECT_EQ(printed(text, "limits[5]"), fmt::format("{:.17g}", 0.1));
+  EXPECT_EQ(printed(text, "last[83]"), fmt::format("{:.17g}", block.signals[5].last[3]));
+  EXPECT_EQ(printed(text, "most[255]"), "15.5");
+}
+
 class ForgedControl : public ::testing::TestWithParam<Forgery> {};
 
 TEST_P(ForgedControl, IsDroppedAndCountedWithoutLosingLaterMessages) {
@@ -168,7 +205,7 @@ TEST_P(ForgedControl, IsDroppedAndCountedWithoutLosingLaterMessages) {
   ASSERT_NE(forger, nullptr);
   const dds::TypeSupport type{new ForgedType{GetParam().bytes}};
   type.register_type(forger);
-  auto* topic = forger->create_topic("hybridtest/2/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  auto* topic = forger->create_topic("hybridtest/3/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   dds::PublisherQos publisher_qos;
   publisher_qos.partition().push_back(unique_test_name().c_str());
   auto* writer = forger->create_publisher(publisher_qos)->create_datawriter(topic, dds::DATAWRITER_QOS_DEFAULT);

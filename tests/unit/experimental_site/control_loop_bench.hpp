@@ -47,7 +47,7 @@ class LoopBench {
              rig,
              compensation(settings.dofs, compensates),
              EnergyErrorMonitor{kStiffness_n_per_m * SiteMatrix::Identity(settings.dofs, settings.dofs), 0.005},
-             ControlLoopPorts{requests, reports, signals},
+             ControlLoopPorts{requests, reports},
              record} {}
 
   static SiteCompensation compensation(int dofs, bool compensates) {
@@ -107,7 +107,6 @@ class LoopBench {
   ControlLoopSettings settings_;
   RingPort<LoopRequest> requests{64};
   RingPort<LoopReport> reports{64};
-  RingPort<SignalSample> signals{1024};
   ScriptedRig rig;
   KeptRows record;
   ControlLoop loop;

@@ -396,7 +396,11 @@ TEST(ControlLoop, RecordsEveryPeriodInNamedColumns) {
   // The force is constant: the integral over the error at its end, half the target at each dof.
   EXPECT_NEAR(value("energy_error_j"), (7.0 + 8.0) * 0.0002, 1e-15);
   EXPECT_EQ(value("faults"), 0.0);
-  EXPECT_EQ(ControlLoop::control_layout(1).columns.size(), 11U);
+  // The last period of a step in which the target moves by 0.0004 m.
+  EXPECT_NEAR(value("target_velocity_m_per_s_1"), 0.1, 1e-12);
+  EXPECT_EQ(value("follows_targets"), 1.0);
+  EXPECT_EQ(value("command_age_s"), 0.0);
+  EXPECT_EQ(ControlLoop::control_layout(1).columns.size(), 15U);
   EXPECT_EQ(ControlLoop::control_layout(1).columns[4].name, "command_displacement_m");
 }
 

@@ -109,10 +109,8 @@ class SiteLinkTest : public testing::Test {
   RingPort<TestControl> control_{16};
   RingPort<DisplacementCommand> commands_{64};
   RingPort<ForceMeasurement> measurements_{64};
-  RingPort<SignalBlock> signal_blocks_{64};
   RingPort<LoopRequest> requests_{64};
   RingPort<LoopReport> reports_{64};
-  RingPort<SignalSample> signals_{1024};
   KeptRows steps_{SiteLink::steps_layout(1)};
   Presence presence_{Identity{"site", Role::experimental_site, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
                      events_};
@@ -120,7 +118,7 @@ class SiteLinkTest : public testing::Test {
                  1,
                  presence_,
                  MembershipPorts{announcements_, control_, seconds{30}},
-                 SiteLinkPorts{commands_, measurements_, signal_blocks_, requests_, reports_, signals_},
+                 SiteLinkPorts{commands_, measurements_, requests_, reports_},
                  steps_};
   Instant now_{};
 };
@@ -333,21 +331,6 @@ TEST_F(SiteLinkTest, PassesPauseAndResume) {
   ASSERT_EQ(requests.size(), 2U);
   EXPECT_TRUE(std::holds_alternative<loop_request::Pause>(requests[0]));
   EXPECT_TRUE(std::holds_alternative<loop_request::Resume>(requests[1]));
-}
-
-TEST_F(SiteLinkTest, BatchesSignalsForLiveViews) {
-  start();
-  for (int i = 0; i < kMaxSignalSamples + 1; ++i) {
-    SignalSample sample;
-    sample.force_n = i;
-    signals_.send(sample);
-  }
-  advance();
-  const auto blocks = take_all(signal_blocks_);
-  ASSERT_EQ(blocks.size(), 1U);
-  EXPECT_EQ(blocks[0].substructure, kIndex);
-  EXPECT_EQ(blocks[0].sample_count, kMaxSignalSamples);
-  EXPECT_EQ(blocks[0].samples.back().force_n, kMaxSignalSamples - 1);
 }
 
 /// Reaches every target at once.

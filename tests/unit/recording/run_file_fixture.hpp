@@ -24,6 +24,9 @@ inline RunFileHeader example_header() {
   header.substructure_ids = {"storey_1", "s2"};
   header.structure_dofs = {"floor_1", "floor_2"};
   header.interface_dofs = {"floor_1"};
+  header.t0_utc = "2024-03-01T11:59:58.250000Z";
+  header.t0_unix_s = 1709294398.25;
+  header.model_time_step_s = 0.001;
   return header;
 }
 

@@ -89,6 +89,27 @@ TEST(RunFileWriter, WrittenRowsAreReadBack) {
   EXPECT_EQ(reader.counters().tables[2], (TableCounter{"events", 2, 0}));
 }
 
+TEST(RunFileWriter, NotesOfTablesAreReadBackInTheirOrder) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "storey_1.h5";
+  const TableNote steps{"steps", "One row per step.", "model_time_s", 0.001};
+  const TableNote control{"control", "Rows that come when they come.", "", 0.0};
+  RunFileHeader header = example_header();
+  header.table_notes = {control, {"absent", "Of a table that this file does not have.", "", 0.0}, steps};
+  RunFileWriter{path, header, {example_layout(), {"control", {{"sample", "-"}}}, {"plain", {{"x", "m"}}}}}.close();
+  EXPECT_EQ(RunFileReader{path}.header().table_notes, (std::vector{steps, control}));
+}
+
+TEST(RunFileWriter, ColumnNamesMayExceedAnOrdinaryAttribute) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "coordinator.h5";
+  // One long name makes all of them long: 1200 of 60 bytes are more than the 64 KiB of an ordinary attribute.
+  TableLayout wide{"steps", {{std::string(60, 'x'), "m"}}};
+  for (int i = 1; i < 1200; ++i) wide.columns.push_back({"u_" + std::to_string(i) + "_m", "m"});
+  RunFileWriter{path, example_header(), {wide}}.close();
+  EXPECT_EQ(RunFileReader{path}.tables().front(), wide);
+}
+
 TEST(RunFileWriter, UnknownColumnOrTableIsAnError) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";

@@ -49,10 +49,15 @@ class ProgressTest : public ::testing::Test {
       status.id = scenario_.substructures[i].id;
       progress_->learn(status);
       SignalBlock block;
-      block.substructure = static_cast<SubstructureIndex>(i);
-      block.sample_count = 1;
-      block.samples[0].measured_displacement_m = displacement_m;
-      block.samples[0].force_n = -3400.0;
+      block.participant = status.id;
+      block.group = FixedText<32>{"control"};
+      block.model_time_s = {0.0};
+      const auto add = [&](const char* name, double value) {
+        block.signals.push_back(
+            {.name = name, .subject = "", .unit = "", .least = {value}, .most = {value}, .last = {value}});
+      };
+      add("measured_displacement", displacement_m);
+      add("force", -3400.0);
       progress_->learn(block);
     }
   }

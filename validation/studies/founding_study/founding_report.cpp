@@ -83,9 +83,9 @@ std::string ranking_table(std::span<const MethodRun> runs) {
                     fmt::format("{:.2f}", std::ranges::max(d.peak_percent)), std::to_string(d.jumps),
                     d.is_complete ? "completed" : fmt::format("ended after {:.2f} s", d.lasted_s), kMethods[i].figure});
   }
-  return plot::html_table({"method", "rms error [%]", "floor 1 [%]", "floor 2 [%]", "largest error [%]",
-                           "jumps of force", "test", "in the study"},
-                          rows);
+  return plot::number_table({"method", "rms error [%]", "floor 1 [%]", "floor 2 [%]", "largest error [%]",
+                             "jumps of force", "test", "in the study"},
+                            rows);
 }
 
 const MethodRun& run_named(std::span<const MethodRun> runs, std::string_view name) {

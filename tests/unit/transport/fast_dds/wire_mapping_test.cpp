@@ -4,6 +4,7 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -64,6 +65,13 @@ class Draw {
   FixedText<Capacity> text() {
     std::string result(up_to(Capacity), ' ');
     for (char& letter : result) letter = static_cast<char>(1 + up_to(254));  // any byte but the end of text
+    return FixedText<Capacity>{result};
+  }
+  /// Names of signals stand in lines.
+  template <std::size_t Capacity>
+  FixedText<Capacity> line() {
+    std::string result = text<Capacity>().text();
+    std::ranges::replace(result, '\n', ' ');
     return FixedText<Capacity>{result};
   }
   ScenarioDigest digest() {
@@ -144,9 +152,22 @@ class Draw {
   }
   SignalBlock signal() {
     SignalBlock m;
-    m.substructure = static_cast<SubstructureIndex>(up_to(kMaxSubstructures - 1));
-    m.sample_count = static_cast<std::uint8_t>(up_to(kMaxSignalSamples));
-    for (auto& sample : m.samples) sample = {time_s(), value(), value(), value(), value()};
+    m.participant = text<48>();
+    m.incarnation = any<Incarnation>();
+    m.group = text<32>();
+    m.part = any<std::uint16_t>();
+    m.sequence = any<std::uint64_t>();
+    const std::size_t points = up_to(kMaxLivePoints);
+    for (std::size_t i = 0; i < points; ++i) m.model_time_s.push_back(static_cast<double>(i) * 0.05);
+    const auto values = [&] {
+      std::vector<double> result;
+      for (std::size_t i = 0; i < points; ++i) result.push_back(value());
+      return result;
+    };
+    m.signals.resize(1 + up_to(kMaxLiveSignals - 1));
+    for (LiveSignal& signal : m.signals) {
+      signal = {line<48>(), line<128>(), line<16>(), time_s(), values(), values(), values()};
+    }
     return m;
   }
 
@@ -288,9 +309,27 @@ TEST(WireMapping, RejectsControlAndEventOutOfRange) {
 
 TEST(WireMapping, RejectsSignalBlockOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::SignalBlock>(Draw{9}.signal(), change); };
-  EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
-  EXPECT_TRUE(refused([](auto& s) { s.sample_count(kMaxSignalSamples + 1); }));
-  EXPECT_TRUE(refused([](auto& s) { s.samples()[31].model_time_s(kNaN); }));
+  EXPECT_TRUE(refused([](auto& s) { s.model_time_s().resize(kMaxLivePoints + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.names() = ""; })) << "a line for each signal";
+  EXPECT_TRUE(refused([](auto& s) { s.units() = (std::string{s.units().c_str()} + "m\n").c_str(); })) << "no more";
+  EXPECT_TRUE(refused([](auto& s) { s.units() = (std::string(17, 'm') + std::string(16, '\n')).c_str(); }))
+      << "too long";
+  EXPECT_TRUE(refused([](auto& s) { s.limits().push_back(0.0); }));
+  EXPECT_TRUE(refused([](auto& s) { s.model_time_s().push_back(kNaN); }));
+  EXPECT_TRUE(refused([](auto& s) { s.least().push_back(0.0); }));
+  EXPECT_TRUE(refused([](auto& s) { s.limits()[0] = -1.0; }));
+  EXPECT_FALSE(refused([](auto& s) { s.limits()[0] = kNaN; }));
+}
+
+TEST(WireMapping, RejectsSignalTimesThatGoBack) {
+  const auto refused = [](std::vector<double> times) {
+    wire::SignalBlock sample;
+    sample.model_time_s(std::move(times));
+    SignalBlock message;
+    return !decode(sample, message);
+  };
+  EXPECT_FALSE(refused({0.0, 0.05, 0.05}));
+  EXPECT_TRUE(refused({0.05, 0.0}));
 }
 
 /// Of a command with its history, for an interface of so many degrees of freedom.
@@ -328,7 +367,6 @@ TEST(WireMapping, SiteMessagesFitOneEthernetFrame) {
   constexpr std::size_t kRoom = 1500 - 20 - 8 - 20 - 12 - 24 - 24 - 32 - 4;
   EXPECT_LE(command_bytes(kMaxSiteDofs), kRoom);
   EXPECT_LE(measurement_bytes(kMaxSiteDofs), kRoom);
-  EXPECT_LE(wire::SignalBlock::getMaxCdrSerializedSize(), kRoom);
 }
 
 }  // namespace
