@@ -52,6 +52,14 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSou
   if (has_forces) forces_n_.setZero(restoring_force_n_.size());
   row_.resize(4 + std::max<std::size_t>(1, settings_.load.ground_count()) +
               (has_forces ? 5 : 4) * settings_.recorded_dofs.size());
+  if (is_real_time()) {
+    HYBRIDTEST_ASSERT(record_.bridges != nullptr);
+    rehearsal_.emplace(settings_.substructures.size(), from_seconds(settings_.step_s));
+    misses_.resize(settings_.substructures.size());
+    for (const CoupledSubstructure& substructure : settings_.substructures) {
+      bridges_.emplace_back(settings_.bridging, substructure.initial_stiffness_n_per_m, substructure.interface.size());
+    }
+  }
   // In paced mode a site answers one step after the command: when its actuators have reached the target.
   if (settings_.mode == CouplingMode::paced) {
     settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
@@ -79,6 +87,7 @@ Instant Coordinator::advance(Instant now) noexcept {
   if (phase_ == Phase::settling) settle(now);
   if (phase_ == Phase::assembling) assemble(now);
   if (phase_ == Phase::arming) arm(now);
+  if (phase_ == Phase::rehearsing) rehearse(now);
   if (phase_ == Phase::running) run(now);
   if (phase_ == Phase::stopping) stop(now);
   presence_.set_last_step(completed_steps_ - 1);
@@ -112,6 +121,10 @@ void Coordinator::take_control_messages(Instant now) noexcept {
         begin_stop(now, StopReason::emergency_stop, kOperatorId);
         break;
       case ControlVerb::pause:
+        if (is_real_time()) {
+          report(now, Severity::warning, EventCode::pause_refused);
+          break;
+        }
         // Reported again when it is asked for again: whoever asks has not heard the answer.
         is_paused_ = true;
         report(now, Severity::information, EventCode::test_paused);
@@ -180,7 +193,12 @@ void Coordinator::arm(Instant now) noexcept {
   if (phase_ != Phase::arming) return;
   if (everyone_is(LifecycleState::armed)) {
     report(now, Severity::information, EventCode::test_armed);
-    start(now);
+    if (!rehearsal_) {
+      start(now);
+      return;
+    }
+    rehearsal_->begin(now);
+    phase_ = Phase::rehearsing;
     return;
   }
   if (now - phase_began_ >= settings_.arm_timeout) {
@@ -191,6 +209,54 @@ void Coordinator::arm(Instant now) noexcept {
     control(ControlVerb::arm);
     control_repeat_due_ = now + kControlRepeat;
   }
+}
+
+void Coordinator::rehearse(Instant now) noexcept {
+  watch_participants(now);
+  if (phase_ != Phase::rehearsing) return;
+  while (ports_.measurements.take(measurement_)) rehearsal_->take(measurement_, now);
+  if (const std::optional<std::uint16_t> round = rehearsal_->next_round(now)) {
+    for (std::size_t i = 0; i < commands_.size(); ++i) {
+      DisplacementCommand& command = commands_[i];
+      const Eigen::Index dofs = settings_.substructures[i].interface.size();
+      command.substructure = static_cast<SubstructureIndex>(i);
+      command.coordinator = presence_.identity().incarnation;
+      command.is_rehearsal = true;
+      command.iteration = *round;
+      command.point_count = dofs <= kMaxSiteDofs ? kCommandPoints : 1;  // as large as those of the test
+      for (CommandPoint& point : command.points) {
+        point.step = 0;
+        point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 = InterfaceVector::Zero(dofs);
+      }
+      send_command(static_cast<SubstructureIndex>(i), now);
+    }
+  }
+  if (!rehearsal_->is_over(now)) return;
+  const Duration available = from_seconds(settings_.step_s) - settings_.bridging.deadline;
+  bool fits = true;
+  const CoupledSubstructure* slowest = nullptr;
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const Duration round_trip = rehearsal_->percentile(static_cast<SubstructureIndex>(i), 99);
+    usual_round_trip_ = std::max(
+        usual_round_trip_, std::min(rehearsal_->percentile(static_cast<SubstructureIndex>(i), 50), available));
+    const bool is_in_time = round_trip <= available;
+    const bool starts = is_in_time || settings_.bridging.start_anyway;
+    const double round_trip_s =
+        round_trip == Duration::max() ? std::numeric_limits<double>::infinity() : to_seconds(round_trip);
+    Severity severity = Severity::information;
+    if (!is_in_time) severity = starts ? Severity::warning : Severity::fault;
+    report(now, severity, is_in_time ? EventCode::round_trip_rehearsed : EventCode::network_too_slow,
+           settings_.substructures[i].id, {round_trip_s, to_seconds(available)});
+    if (!starts && slowest == nullptr) slowest = &settings_.substructures[i];
+    fits = fits && starts;
+    commands_[i].is_rehearsal = false;
+    commands_[i].point_count = 0;
+  }
+  if (!fits) {
+    begin_stop(now, StopReason::network_too_slow, slowest->id);
+    return;
+  }
+  start(now);
 }
 
 void Coordinator::start(Instant now) noexcept {
@@ -219,7 +285,18 @@ void Coordinator::run(Instant now) noexcept {
       record_step(now);
     }
     while (!ledger_.is_complete() && ports_.measurements.take(measurement_)) {
-      if (ledger_.enter(measurement_, now) == LedgerEntry::accepted) last_to_answer_ = measurement_.substructure;
+      switch (ledger_.enter(measurement_, now)) {
+        case LedgerEntry::accepted: last_to_answer_ = measurement_.substructure; break;
+        case LedgerEntry::stale:
+          if (is_real_time()) bridges_[measurement_.substructure].take_late(measurement_.step, measurement_.force_n);
+          break;
+        case LedgerEntry::duplicate:
+        case LedgerEntry::foreign: break;
+      }
+    }
+    if (!ledger_.is_complete() && has_deadline()) {
+      if (now < time_of(ledger_.step()) + settings_.bridging.deadline) return;
+      bridge_unanswered();
     }
     if (!ledger_.is_complete()) {
       repeat_unanswered(now);
@@ -388,9 +465,60 @@ void Coordinator::repeat_unanswered(Instant now) noexcept {
   }
 }
 
+void Coordinator::bridge_unanswered() noexcept {
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto index = static_cast<SubstructureIndex>(i);
+    if (ledger_.has_answered(index)) continue;
+    ledger_.bridge(index, bridges_[i].bridge(ledger_.step(), commands_[i].newest().displacement_m));
+  }
+}
+
+bool Coordinator::watch_deadlines(Instant now) noexcept {
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto index = static_cast<SubstructureIndex>(i);
+    const ForceMeasurement& answer = ledger_.answer(index);
+    if (!ledger_.is_bridged(index)) {
+      bridges_[i].take(ledger_.step(), commands_[i].newest().displacement_m, answer.force_n);
+    }
+    Misses& misses = misses_[i];
+    if (!any(answer.flags & (MeasurementFlags::bridged | MeasurementFlags::missed))) {
+      misses.in_a_row = 0;
+      continue;
+    }
+    ++misses.in_a_row;
+    ++misses.total;
+    const ParticipantId& id = settings_.substructures[i].id;
+    if (misses.in_a_row > settings_.bridging.most_in_a_row) {
+      report(now, Severity::fault, EventCode::deadlines_missed, id,
+             {static_cast<double>(misses.in_a_row), static_cast<double>(settings_.bridging.most_in_a_row)});
+      begin_stop(now, StopReason::deadlines_missed, id);
+      return false;
+    }
+    // Of many gaps those that are longer than all before are reported; the summary counts all.
+    if (misses.in_a_row <= misses.longest) continue;
+    misses.longest = misses.in_a_row;
+    report(now, Severity::warning, EventCode::answers_bridged, id,
+           {static_cast<double>(misses.in_a_row), static_cast<double>(misses.total)});
+  }
+  record_bridges(false);
+  return true;
+}
+
+void Coordinator::record_bridges(bool at_end) noexcept {
+  for (std::size_t i = 0; i < bridges_.size(); ++i) {
+    for (const BridgedStep& bridged : bridges_[i].closed(at_end)) {
+      const std::array<double, 5> row{static_cast<double>(bridged.step), static_cast<double>(i),
+                                      static_cast<double>(bridged.in_a_row), bridged.energy_added_j,
+                                      bridged.came_late ? 1.0 : 0.0};
+      record_.bridges->append(row);
+    }
+  }
+}
+
 void Coordinator::complete_command(Instant now) noexcept {
   record_exchanges();
   if (!collect_forces(now)) return;
+  if (is_real_time() && !watch_deadlines(now)) return;
   settings_.load.ground_at(ledger_.step(), applied_force_n_);
   if (settings_.load.has_forces()) {
     settings_.load.forces_at(ledger_.step(), forces_n_);
@@ -442,6 +570,12 @@ void Coordinator::complete_step(Instant now) noexcept {
     begin_stop(now, StopReason::completed);
     return;
   }
+  if (is_real_time()) {
+    // A site starts its time when the first command after this one comes, and its answers need their way back.
+    if (step == 0) step_zero_ = now + usual_round_trip_;
+    step_due_ = step == 0 ? now : time_of(step);
+    return;
+  }
   if (settings_.mode != CouplingMode::paced) return;
   // A step is sent one step ahead of its own time and not earlier. Lost time is not made up for.
   step_due_ = std::max(step_due_ + from_seconds(settings_.step_s * settings_.time_scale), now);
@@ -487,9 +621,11 @@ void Coordinator::record_exchanges() noexcept {
                               static_cast<double>(ledger_.iteration())};
     if (ledger_.has_answered(index)) {
       const ForceMeasurement& answer = ledger_.answer(index);
-      row[2] = to_seconds(ledger_.round_trip(index)) * 1e6;
       row[4] = static_cast<double>(static_cast<std::uint32_t>(answer.flags));
-      row[5] = to_seconds(answer.send_time - answer.receive_time) * 1e6;
+      if (!ledger_.is_bridged(index)) {
+        row[2] = to_seconds(ledger_.round_trip(index)) * 1e6;
+        row[5] = to_seconds(answer.send_time - answer.receive_time) * 1e6;
+      }
     }
     record_.exchanges.append(row);
   }
@@ -498,12 +634,13 @@ void Coordinator::record_exchanges() noexcept {
 void Coordinator::begin_stop(Instant now, StopReason reason, const ParticipantId& who) noexcept {
   if (phase_ == Phase::stopping || phase_ == Phase::done) return;
   reason_ = reason;
-  const bool was_armed = phase_ == Phase::arming || phase_ == Phase::running;
+  const bool was_armed = phase_ >= Phase::arming;
   stop_by_ = now + (was_armed ? settings_.stop_timeout : std::min(settings_.stop_timeout, kLeaveUnarmed));
   if (phase_ == Phase::running) {
     running_time_ = now - started_;
     record_step(now);
     if (command_is_sent_ && !ledger_.is_complete()) record_exchanges();
+    record_bridges(true);
   }
   report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, who,
          {static_cast<double>(reason), 0.0});
@@ -552,10 +689,13 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
     case Phase::settling: return std::min(presence_wake, phase_began_ + settings_.settle);
     case Phase::assembling: return std::min(presence_wake, phase_began_ + settings_.discovery_timeout);
     case Phase::arming: return std::min(presence_wake, control_repeat_due_);
+    case Phase::rehearsing: return std::min(presence_wake, rehearsal_->wake());
     case Phase::running: {
       if (!command_is_open_) return std::min(presence_wake, source_->wake());
       if (is_paused_) return presence_wake;
-      return std::min(presence_wake, command_is_sent_ ? repeat_due_ : std::max(step_due_, now));
+      if (!command_is_sent_) return std::min(presence_wake, std::max(step_due_, now));
+      return std::min(presence_wake,
+                      has_deadline() ? time_of(ledger_.step()) + settings_.bridging.deadline : repeat_due_);
     }
     case Phase::stopping: return std::min({presence_wake, control_repeat_due_, stop_by_});
     case Phase::done: return kNever;
@@ -608,6 +748,11 @@ TableLayout Coordinator::steps_layout(const std::vector<std::string>& dofs, std:
   }
   layout.columns.push_back({"iterations", ""});
   return layout;
+}
+
+TableLayout Coordinator::bridges_layout() {
+  return {"bridges",
+          {{"step", ""}, {"substructure", ""}, {"in_a_row", ""}, {"energy_added_j", "J"}, {"came_late", ""}}};
 }
 
 TableLayout Coordinator::exchanges_layout() {

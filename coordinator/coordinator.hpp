@@ -3,10 +3,13 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "coordinator/excitation/applied_load.hpp"
+#include "coordinator/force_bridge.hpp"
 #include "coordinator/motion_source.hpp"
+#include "coordinator/rehearsal.hpp"
 #include "coordinator/step_ledger.hpp"
 #include "core/messages.hpp"
 #include "core/node.hpp"
@@ -22,6 +25,7 @@ struct CoupledSubstructure {
   ParticipantId id;
   Role role = Role::numerical_substructure;
   InterfaceMap interface;
+  Eigen::MatrixXd initial_stiffness_n_per_m{};  // over the interface; for bridges in real time
 };
 
 struct CoordinatorSettings {
@@ -44,6 +48,7 @@ struct CoordinatorSettings {
   Duration stop_timeout = std::chrono::seconds{10};  // for the other participants to come to rest
   /// An unanswered command is sent again after this time; in paced mode the length of a step is added.
   Duration repeat_after = std::chrono::milliseconds{200};
+  BridgingSettings bridging;  // in real time
 };
 
 struct CoordinatorPorts {
@@ -58,6 +63,7 @@ struct CoordinatorPorts {
 struct CoordinatorRecord {
   RowSink& steps;
   RowSink& exchanges;
+  RowSink* bridges = nullptr;  // of a test in real time
 };
 
 /// State of the test, for the progress display and the summary.
@@ -72,6 +78,10 @@ struct CoordinatorReport {
 /// structure through the test. In each step it sends one command to every substructure and
 /// takes one force from it, several where the source of motion iterates. It ends the test after the last step or at the
 /// first fault.
+///
+/// In real time, step n has its own time, at which its answers are expected: n steps and a usual round trip after the start
+/// of step 1. Its command is sent one step earlier, or as soon as the forces of the step before are there. An answer that
+/// has not come by its deadline is bridged.
 class Coordinator final : public Node {
  public:
   Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSource> source, Presence& presence,
@@ -94,14 +104,16 @@ class Coordinator final : public Node {
   [[nodiscard]] static TableLayout steps_layout(const std::vector<std::string>& dofs, std::size_t ground_motions,
                                                 bool has_forces);
   [[nodiscard]] static TableLayout exchanges_layout();
+  [[nodiscard]] static TableLayout bridges_layout();
 
  private:
-  enum class Phase : std::uint8_t { settling, assembling, arming, running, stopping, done };
+  enum class Phase : std::uint8_t { settling, assembling, arming, rehearsing, running, stopping, done };
 
   void take_control_messages(Instant now) noexcept;
   void settle(Instant now) noexcept;
   void assemble(Instant now) noexcept;
   void arm(Instant now) noexcept;
+  void rehearse(Instant now) noexcept;
   void start(Instant now) noexcept;
   void run(Instant now) noexcept;
   void stop(Instant now) noexcept;
@@ -114,6 +126,16 @@ class Coordinator final : public Node {
   void open_command(Instant now) noexcept;
   void send_command(SubstructureIndex substructure, Instant now) noexcept;
   void repeat_unanswered(Instant now) noexcept;
+  /// The open step has a deadline.
+  [[nodiscard]] bool has_deadline() const noexcept { return is_real_time() && ledger_.step() > 0; }
+  [[nodiscard]] bool is_real_time() const noexcept { return settings_.mode == CouplingMode::real_time; }
+  [[nodiscard]] Instant time_of(Step step) const noexcept {
+    return step_zero_ + from_seconds(static_cast<double>(step) * settings_.step_s);
+  }
+  void bridge_unanswered() noexcept;
+  /// Counts what missed its deadline in the step. @return false when there are too many in a row, which ends the test.
+  [[nodiscard]] bool watch_deadlines(Instant now) noexcept;
+  void record_bridges(bool at_end) noexcept;
   void complete_command(Instant now) noexcept;
   /// @return false when a force is not finite, which ends the test.
   [[nodiscard]] bool collect_forces(Instant now) noexcept;
@@ -156,6 +178,17 @@ class Coordinator final : public Node {
   bool command_is_open_ = false;  // the source has given one
   bool command_is_sent_ = false;
   bool is_paused_ = false;
+  // In real time:
+  std::optional<Rehearsal> rehearsal_;
+  std::vector<ForceBridge> bridges_;  // one per substructure
+  struct Misses {
+    int in_a_row = 0;
+    int longest = 0;
+    std::int64_t total = 0;
+  };
+  std::vector<Misses> misses_;  // likewise
+  Duration usual_round_trip_{};  // of the slowest substructure
+  Instant step_zero_{};
   StopReason requested_stop_ = StopReason::none;
   bool lead_has_left_ = false;
   StopReason reason_ = StopReason::none;

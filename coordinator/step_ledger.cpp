@@ -34,4 +34,15 @@ LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) 
   return LedgerEntry::accepted;
 }
 
+void StepLedger::bridge(SubstructureIndex substructure, const InterfaceVector& force_n) noexcept {
+  Account& account = accounts_[substructure];
+  if (account.answered) return;
+  account.answered = true;
+  account.answer.step = step_;
+  account.answer.iteration = iteration_;
+  account.answer.force_n = force_n;
+  account.answer.flags = MeasurementFlags::bridged;
+  ++answered_;
+}
+
 }  // namespace hybridtest

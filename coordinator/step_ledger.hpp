@@ -37,6 +37,11 @@ class StepLedger {
   [[nodiscard]] bool has_answered(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answered;
   }
+  /// Puts a force in the place of an answer that missed its deadline. Its flags say so.
+  void bridge(SubstructureIndex substructure, const InterfaceVector& force_n) noexcept;
+  [[nodiscard]] bool is_bridged(SubstructureIndex substructure) const noexcept {
+    return accounts_[substructure].answered && any(accounts_[substructure].answer.flags & MeasurementFlags::bridged);
+  }
   /// The answer to the open command; valid once has_answered().
   [[nodiscard]] const ForceMeasurement& answer(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answer;

@@ -168,6 +168,20 @@ std::string describe(const Event& event) {
       return "the model of " + subject +
              " failed: " + describe(ModelFailure{code_of<ModelFault>(event.values[0]), event.values[1]}) +
              "; see the end of its output in the run directory";
+    case EventCode::round_trip_rehearsed:
+      return "round trip to " + subject + ": 99 % within " + number(1e6 * event.values[0]) + " us; a step has " +
+             number(1e6 * event.values[1]) + " us for it";
+    case EventCode::network_too_slow:
+      return "the round trip to " + subject + " takes up to " + number(1e6 * event.values[0]) +
+             " us (99 %), or too many answers are lost, and a step has " + number(1e6 * event.values[1]) +
+             " us for it: lengthen step_s, shorten bridging.deadline_s, or set bridging.start_anyway: true";
+    case EventCode::answers_bridged:
+      return number(event.values[0]) + " answers of " + subject + " in a row missed their deadline (" +
+             number(event.values[1]) + " so far in the test)";
+    case EventCode::deadlines_missed:
+      return subject + " missed " + number(event.values[0]) + " deadlines in a row; bridging.most_in_a_row is " +
+             number(event.values[1]);
+    case EventCode::pause_refused: return "a real-time test cannot pause; stop it instead";
   }
   return "unknown event";
 }

@@ -24,7 +24,7 @@ struct TestEnd {
 };
 
 /// All of them, one row per StopReason; docs/ends.md describes each.
-inline constexpr std::array<TestEnd, 16> kTestEnds{{
+inline constexpr std::array<TestEnd, 18> kTestEnds{{
     {StopReason::none, "none", "end unknown", kExitEndedEarly},
     {StopReason::completed, "completed", "completed", kExitCompleted},
     {StopReason::interrupted, "interrupted", "stopped by the operator", kExitEndedEarly},
@@ -41,6 +41,9 @@ inline constexpr std::array<TestEnd, 16> kTestEnds{{
     {StopReason::opensees_lost, "opensees_lost", "ended: OpenSees was lost", kExitEndedEarly},
     {StopReason::opensees_iterates, "opensees_iterates", "ended: OpenSees iterates on a specimen", kExitEndedEarly},
     {StopReason::model_failed, "model_failed", "ended: a numerical model failed", kExitEndedEarly},
+    {StopReason::deadlines_missed, "deadlines_missed", "ended: too many deadlines missed in a row", kExitEndedEarly},
+    {StopReason::network_too_slow, "network_too_slow", "never started: the round trip does not fit into a step",
+     kExitConfiguration},
 }};
 
 /// @return the row of `none` for a number that is no reason.

@@ -72,6 +72,11 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::opensees_silent: return "opensees_silent";
     case EventCode::opensees_iterates: return "opensees_iterates";
     case EventCode::model_failed: return "model_failed";
+    case EventCode::round_trip_rehearsed: return "round_trip_rehearsed";
+    case EventCode::network_too_slow: return "network_too_slow";
+    case EventCode::answers_bridged: return "answers_bridged";
+    case EventCode::deadlines_missed: return "deadlines_missed";
+    case EventCode::pause_refused: return "pause_refused";
   }
   return "unknown";
 }

@@ -48,6 +48,9 @@ enum class MeasurementFlags : std::uint32_t {
   saturated = 1U << 2U,     // a limit clipped the command
   late = 1U << 3U,          // the target came after its own time
   repeated = 1U << 4U,      // stored answer to a repeated command
+  // Of a real-time test:
+  bridged = 1U << 5U,  // not measured: it had not come by its deadline, and the coordinator put a force in its place
+  missed = 1U << 6U,   // measured without the target, which had not come by its time
 };
 HYBRIDTEST_FLAG_OPERATORS(MeasurementFlags)
 
@@ -69,6 +72,8 @@ enum class StopReason : std::uint8_t {
   opensees_lost,       // that leads: its connection closed, or it asks for nothing
   opensees_iterates,   // that leads: several trials in a step, with a specimen
   model_failed,        // of a numerical substructure
+  deadlines_missed,    // real time: too many in a row
+  network_too_slow,    // real time: the round trip does not fit into a step
 };
 
 enum class EventCode : std::uint16_t {
@@ -109,6 +114,12 @@ enum class EventCode : std::uint16_t {
   opensees_silent,    // values[0]: time without a question [s]
   opensees_iterates,  // subject: the substructure that was to move again
   model_failed,       // subject: the substructure; values: ModelFault, its value
+  // Real time:
+  round_trip_rehearsed,  // subject: the substructure; values: 99th percentile [s], what a step has for it [s]
+  network_too_slow,      // likewise
+  answers_bridged,       // subject: the substructure; values: in a row, in the test so far
+  deadlines_missed,      // subject: the substructure; values: in a row, allowed in a row
+  pause_refused,
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

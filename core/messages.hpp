@@ -47,7 +47,17 @@ inline constexpr Step kNoStep = -1;
 
 enum class Role : std::uint8_t { coordinator, numerical_substructure, experimental_site, operator_tool };
 
-enum class CouplingMode : std::uint8_t { lockstep, paced };
+enum class CouplingMode : std::uint8_t { lockstep, paced, real_time };
+
+/// As scenarios have it.
+[[nodiscard]] constexpr std::string_view name(CouplingMode mode) noexcept {
+  switch (mode) {
+    case CouplingMode::lockstep: return "lockstep";
+    case CouplingMode::paced: return "paced";
+    case CouplingMode::real_time: return "real_time";
+  }
+  return "unknown";
+}
 
 /// Life of a participant. `lost` is never sent: the transport reports it for a participant
 /// whose liveliness lease ran out.
@@ -129,6 +139,9 @@ struct DisplacementCommand {
   std::uint16_t iteration = 0;
   /// The substructure answers the force and keeps the state of the step before. Otherwise the step ends here.
   bool is_trial = false;
+  /// Before a real-time test, to measure the round trip: answered at once with the iteration and without a force. Nothing
+  /// moves.
+  bool is_rehearsal = false;
   std::uint8_t point_count = 0;                       // 1 to kCommandPoints
   std::array<CommandPoint, kCommandPoints> points{};  // newest first; consecutive steps
   std::uint16_t attempt = 0;                          // 0 when first sent, counts repeats

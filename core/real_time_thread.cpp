@@ -47,4 +47,18 @@ RealTimeGrant enter_real_time(const RealTimeRequest& request) noexcept {
   return grant;
 }
 
+InheritedRealTime::InheritedRealTime(int priority) noexcept {
+  sched_param before{};
+  if (pthread_getschedparam(pthread_self(), &policy_before_, &before) != 0) return;
+  priority_before_ = before.sched_priority;
+  const sched_param wanted{.sched_priority = priority};
+  is_changed_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
+}
+
+InheritedRealTime::~InheritedRealTime() {
+  if (!is_changed_) return;
+  const sched_param before{.sched_priority = priority_before_};
+  static_cast<void>(pthread_setschedparam(pthread_self(), policy_before_, &before));
+}
+
 }  // namespace hybridtest

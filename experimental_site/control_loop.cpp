@@ -17,6 +17,10 @@ constexpr int kPeriodsPerAdvance = 256;
 /// Shortest time from motion to standing.
 constexpr double kHalt_s_min = 0.02;
 
+/// By which a control period may be longer or shorter to follow the clock of the coordinator: four times what two
+/// quartz clocks drift apart.
+constexpr double kClockSlewMost = 4e-4;
+
 /// Motion smaller than this share of the displacement limit does not scale the tracking indicator.
 constexpr double kMotionShareMin = 0.05;
 
@@ -84,6 +88,7 @@ void ControlLoop::obey(const LoopRequest& request, Instant now) noexcept {
     void operator()(const loop_request::Arm&) const noexcept { loop.arm(now); }
     void operator()(const loop_request::Start&) const noexcept { loop.start(now); }
     void operator()(const loop_request::Target& target) const noexcept { loop.take_target(target.point, now); }
+    void operator()(const loop_request::ClockShift& clock) const noexcept { loop.wanted_clock_shift_ = clock.shift; }
     void operator()(const loop_request::Pause&) const noexcept { loop.is_paused_ = true; }
     void operator()(const loop_request::Resume&) const noexcept { loop.resume(now); }
     void operator()(const loop_request::Stop&) const noexcept { loop.stop(); }
@@ -186,7 +191,7 @@ void ControlLoop::begin_return() noexcept {
 }
 
 Instant ControlLoop::period_due() const noexcept {
-  return armed_at_ + from_seconds(static_cast<double>(command_.sample) * period_s_);
+  return armed_at_ + clock_shift_ + from_seconds(static_cast<double>(command_.sample) * period_s_);
 }
 
 bool ControlLoop::has_due_period(Instant now) const noexcept {
@@ -235,6 +240,8 @@ void ControlLoop::run_period() noexcept {
   }
   record();
   ++command_.sample;
+  const Duration slew = from_seconds(kClockSlewMost * period_s_);
+  clock_shift_ += std::clamp(wanted_clock_shift_ - clock_shift_, -slew, slew);
   if (phase_ == Phase::closing && closing_.is_over()) come_to_rest();
 }
 

@@ -127,6 +127,8 @@ class ControlLoop final : public Node {
   FaultFlags faults_ = FaultFlags::none;
   InterlockState interlocks_;
   Instant armed_at_{};
+  Duration clock_shift_{};         // of the control periods
+  Duration wanted_clock_shift_{};  // approached slowly
   Instant last_target_at_{};
   double command_age_s_ = 0.0;
   bool rig_fault_ = false;

@@ -20,6 +20,11 @@ struct Start {};
 struct Target {
   TargetPoint point;
 };
+/// In real time: the control periods are to be this much later than they would be by the site's clock alone, which
+/// drifts against that of the coordinator.
+struct ClockShift {
+  Duration shift{};
+};
 struct Pause {};
 struct Resume {};
 struct Stop {};
@@ -28,8 +33,8 @@ struct EmergencyStop {};
 }  // namespace loop_request
 
 /// From the site link to the control loop.
-using LoopRequest = std::variant<loop_request::Arm, loop_request::Start, loop_request::Target, loop_request::Pause,
-                                 loop_request::Resume, loop_request::Stop, loop_request::EmergencyStop>;
+using LoopRequest = std::variant<loop_request::Arm, loop_request::Start, loop_request::Target,
+                                 loop_request::ClockShift, loop_request::Pause, loop_request::Resume, loop_request::Stop, loop_request::EmergencyStop>;
 
 /// The target of a step, reached and measured.
 struct StepMeasurement {

@@ -7,6 +7,9 @@
 namespace hybridtest {
 namespace {
 
+/// Of the estimate of the drift. Long enough for several hundred commands at the rates of real-time tests.
+constexpr Duration kClockWindow = std::chrono::milliseconds{500};
+
 TargetPoint target_of(const CommandPoint& point) {
   return {.step = point.step,
           .model_time_s = point.model_time_s,
@@ -17,10 +20,11 @@ TargetPoint target_of(const CommandPoint& point) {
 
 }  // namespace
 
-SiteLink::SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership,
-                   SiteLinkPorts ports, RowSink& steps)
+SiteLink::SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence,
+                   MembershipPorts membership, SiteLinkPorts ports, RowSink& steps)
     : index_{index},
       dofs_{dofs},
+      mode_{mode},
       presence_{presence},
       membership_{presence, membership},
       ports_{ports},
@@ -82,6 +86,11 @@ void SiteLink::begin_stop(StopReason reason) noexcept {
 
 void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept {
   if (command.coordinator != membership_.coordinator()) return;
+  if (mode_ == CouplingMode::real_time) follow_clock(command, now);
+  if (command.is_rehearsal) {
+    if (presence_.state() == LifecycleState::armed) answer_rehearsal(command, now);
+    return;
+  }
   // A command can overtake the start message; it then starts the loop.
   if (presence_.state() == LifecycleState::armed) follow(Request::start);
   if (presence_.state() != LifecycleState::running) return;
@@ -94,12 +103,50 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
     if (measured_.step == newest) answer(now, MeasurementFlags::repeated);
     return;
   }
+  if (mode_ == CouplingMode::real_time && passed_on_ != kNoStep) {
+    pass_on_in_time(command);
+    return;
+  }
   for (int i = command.point_count - 1; i >= 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
     if (point.step != passed_on_ + 1) continue;
     if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
     passed_on_ = point.step;
   }
+}
+
+void SiteLink::pass_on_in_time(const DisplacementCommand& command) noexcept {
+  // The first one after the initial target starts the time of the site: the newest step is the one that is due.
+  const int oldest = passed_on_ == 0 ? 0 : command.point_count - 1;
+  for (int i = oldest; i >= 0; --i) {
+    const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
+    if (point.step <= passed_on_) continue;
+    if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
+    passed_on_ = point.step;
+  }
+}
+
+void SiteLink::answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept {
+  ForceMeasurement& answer = answer_;
+  answer = {};
+  answer.substructure = index_;
+  answer.sender = presence_.identity().incarnation;
+  answer.iteration = command.iteration;
+  answer.imposed_displacement_m = answer.measured_displacement_m = answer.force_n = InterfaceVector::Zero(dofs_);
+  answer.receive_time = answer.send_time = now.time_since_epoch();
+  answer.command_send_time = command.send_time;
+  ports_.measurements.send(answer);
+  answer.iteration = 0;
+}
+
+void SiteLink::follow_clock(const DisplacementCommand& command, Instant now) noexcept {
+  if (window_began_ == kNever) window_began_ = now;
+  least_delay_ = std::min(least_delay_, now.time_since_epoch() - command.send_time);
+  if (now - window_began_ < kClockWindow) return;
+  window_began_ = now;
+  const Duration least = std::exchange(least_delay_, Duration::max());
+  if (!first_delay_) first_delay_ = least;
+  ports_.requests.send(loop_request::ClockShift{least - *first_delay_});
 }
 
 void SiteLink::handle(const LoopReport& report, Instant now) noexcept {

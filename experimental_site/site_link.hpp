@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "core/membership.hpp"
 #include "core/messages.hpp"
 #include "core/node.hpp"
@@ -17,12 +20,16 @@ struct SiteLinkPorts {
   Inbox<LoopReport>& reports;
 };
 
-/// The network side of a site, without deadlines. It passes each target once and in order to the
-/// control loop, and the measurements and faults of the loop back to the coordinator.
+/// The network side of a site. It passes each target once and in order to the control loop, and the measurements and
+/// faults of the loop back to the coordinator.
+///
+/// In real time it passes every new target on, also behind a gap, and keeps the control periods in step with the clock of
+/// the coordinator: the smallest of `receive_time - send_time` in a window of time is the difference of the clocks plus the
+/// shortest latency, and its change since the first window is the drift.
 class SiteLink final : public Node {
  public:
-  SiteLink(SubstructureIndex index, int dofs, Presence& presence, MembershipPorts membership, SiteLinkPorts ports,
-           RowSink& steps);
+  SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence, MembershipPorts membership,
+           SiteLinkPorts ports, RowSink& steps);
 
   /// Both halves, for a link whose loop has its own thread.
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -46,6 +53,9 @@ class SiteLink final : public Node {
   void follow(Request request) noexcept;
   void begin_stop(StopReason reason) noexcept;
   void pass_on(const DisplacementCommand& command, Instant now) noexcept;
+  void pass_on_in_time(const DisplacementCommand& command) noexcept;
+  void answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept;
+  void follow_clock(const DisplacementCommand& command, Instant now) noexcept;
   void handle(const LoopReport& report, Instant now) noexcept;
   void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;
   void answer(Instant now, MeasurementFlags flags) noexcept;
@@ -53,6 +63,7 @@ class SiteLink final : public Node {
 
   SubstructureIndex index_;
   int dofs_;
+  CouplingMode mode_;
   Presence& presence_;
   Membership membership_;
   SiteLinkPorts ports_;
@@ -62,7 +73,11 @@ class SiteLink final : public Node {
   Step passed_on_ = kNoStep;      // newest target given to the loop
   Duration command_send_time_{};  // of the newest command, coordinator's clock
   Duration receive_time_{};
-  StepMeasurement measured_;     // newest answer
+  // In real time:
+  Instant window_began_ = kNever;
+  Duration least_delay_ = Duration::max();  // in the window
+  std::optional<Duration> first_delay_;     // least of the first window
+  StepMeasurement measured_;                // newest answer
   DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
   std::vector<double> row_;

@@ -12,6 +12,9 @@ namespace {
 /// sampling intervals.
 constexpr double kSameTime = 1e-7;
 
+/// In real time a target that comes later in its step is too late to be reached smoothly.
+constexpr double kJoinBefore = 0.8;
+
 /// Below this rate the path counts as held.
 constexpr double kHeldBelow = 0.05;
 
@@ -26,6 +29,11 @@ void Trajectory::reset(const SiteVector& displacement_m) noexcept {
   const SiteVector zero = SiteVector::Zero(displacement_m.size());
   is_running_ = false;
   has_target_ = false;
+  aims_ = false;
+  stands_ = false;
+  last_step_ = kNoStep;
+  missed_ = 0;
+  early_count_ = 0;
   path_time_s_ = 0.0;
   rate_ = 1.0;
   interval_begin_s_ = 0.0;
@@ -43,16 +51,18 @@ void Trajectory::reset(const SiteVector& displacement_m) noexcept {
 }
 
 void Trajectory::set_target(const TargetPoint& target) noexcept {
+  if (settings_.keeps_time && is_running_) {
+    learn_target(target);
+    return;
+  }
   is_first_target_ = !is_running_;
   if (is_first_target_) {
+    last_step_ = target.step - 1;
     is_running_ = true;
     path_time_s_ = target.model_time_s * time_scale_;
     interval_begin_s_ = path_time_s_ - step_s_;
   }
-  target_ = target;
-  has_target_ = true;
-  end_velocity_m_per_s_ = target.velocity_m_per_s / time_scale_;
-  end_acceleration_m_per_s2_ = target.acceleration_m_per_s2 / (time_scale_ * time_scale_);
+  adopt(target);
 
   if (!is_first_target_) {
     const double slow_down_s = interval_begin_s_ + kSlowDownAt * step_s_;
@@ -60,21 +70,126 @@ void Trajectory::set_target(const TargetPoint& target) noexcept {
     if (path_time_s_ > slow_down_s + kSameTime * step_s_) flags_ |= MeasurementFlags::late;
     path_time_s_ = std::min(path_time_s_, slow_down_s);
   }
+  begin_segment();
+}
+
+void Trajectory::adopt(const TargetPoint& target) noexcept {
+  target_ = target;
+  known_ = target;
+  has_target_ = true;
+  aims_ = false;
+  end_velocity_m_per_s_ = target.velocity_m_per_s / time_scale_;
+  end_acceleration_m_per_s2_ = target.acceleration_m_per_s2 / (time_scale_ * time_scale_);
+}
+
+void Trajectory::begin_segment() noexcept {
   segment_begin_s_ = path_time_s_;
   begin_displacement_m_ = point_.displacement_m;
   begin_velocity_m_per_s_ = slope_m_per_s_;
 }
 
+void Trajectory::learn_target(const TargetPoint& target) noexcept {
+  if (stands_) {
+    if (target.step <= last_step_) return;
+    stands_ = false;
+    // Behind lost commands the path joins at the step that is due.
+    last_step_ = target.step - 1;
+    path_time_s_ = interval_begin_s_ = target.model_time_s * time_scale_ - step_s_;
+    begin_segment();
+    adopt(target);
+    return;
+  }
+  if (target.step > last_step_ + 1) {
+    const bool is_next = early_count_ == 0 || target.step > early_[early_count_ - 1].step;
+    if (is_next && early_count_ < early_.size()) early_[early_count_++] = target;
+    return;
+  }
+  if (target.step <= known_.step || has_target_) return;
+  known_ = target;
+  const double share = (path_time_s_ - interval_begin_s_) / step_s_;
+  if (target.step == last_step_ + 1 && share <= kJoinBefore + kSameTime) {
+    if (share > kSlowDownAt + kSameTime) flags_ |= MeasurementFlags::late;
+    begin_segment();
+    adopt(target);
+  } else if (share <= kJoinBefore + kSameTime) {
+    begin_segment();
+    aim();
+  }
+}
+
+/// Makes the end of the present step the point to which the newest known target leads.
+void Trajectory::aim() noexcept {
+  aims_ = true;
+  if (missed_ >= settings_.missed_most) {
+    const double left_s = interval_begin_s_ + step_s_ - segment_begin_s_;
+    target_.displacement_m = begin_displacement_m_ + 0.75 * left_s * begin_velocity_m_per_s_;
+    end_velocity_m_per_s_ = 0.5 * begin_velocity_m_per_s_;
+    end_acceleration_m_per_s2_.setZero();
+    return;
+  }
+  const double ahead_s = step_s_ * static_cast<double>(last_step_ + 1 - known_.step);
+  const SiteVector velocity = known_.velocity_m_per_s / time_scale_;
+  target_.displacement_m = known_.displacement_m + ahead_s * velocity;
+  end_velocity_m_per_s_ = velocity;
+  end_acceleration_m_per_s2_ = known_.acceleration_m_per_s2 / (time_scale_ * time_scale_);
+  if (settings_.order < 2) return;
+  target_.displacement_m += (0.5 * ahead_s * ahead_s) * end_acceleration_m_per_s2_;
+  end_velocity_m_per_s_ += ahead_s * end_acceleration_m_per_s2_;
+}
+
+/// The step is over without its target.
+void Trajectory::miss_target(ReachedTarget& reached) noexcept {
+  evaluate();  // at the end of the step
+  ++missed_;
+  reached.target = {.step = last_step_ + 1,
+                    .model_time_s = (interval_begin_s_ + step_s_) / time_scale_,
+                    .displacement_m = point_.displacement_m,
+                    .velocity_m_per_s = slope_m_per_s_ * time_scale_,
+                    .acceleration_m_per_s2 = point_.acceleration_m_per_s2 * (time_scale_ * time_scale_)};
+  flags_ |= MeasurementFlags::extrapolated | MeasurementFlags::late | MeasurementFlags::missed;
+  if (missed_ > settings_.missed_most) flags_ |= MeasurementFlags::held;
+  interval_begin_s_ += step_s_;
+  has_left_target_ = false;
+  begin_segment();
+}
+
+/// After the end of a step: the target of the next one, if it came early, or where the known ones lead.
+void Trajectory::begin_step_in_time() noexcept {
+  ++last_step_;
+  aims_ = false;
+  if (early_count_ > 0 && early_[0].step == last_step_ + 1) {
+    adopt(early_[0]);
+    std::move(early_.begin() + 1, early_.begin() + static_cast<std::ptrdiff_t>(early_count_), early_.begin());
+    --early_count_;
+    return;
+  }
+  // Behind a target that was reached, the predictor goes on from it.
+  if (missed_ > 0) aim();
+}
+
 bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
-  if (!is_running_) return false;
+  if (!is_running_ || stands_) return false;
   const double before_s = path_time_s_;
   const double target_time_s = interval_begin_s_ + step_s_;
+  const bool is_initial = is_first_target_;
   const bool waits = !has_target_ && settings_.type == TrajectoryType::ramp_and_hold;
   if (!std::exchange(is_first_target_, false) && !waits) {
     choose_rate(interval_s);
     path_time_s_ += rate_ * interval_s;
   }
   if (has_target_ && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_) path_time_s_ = target_time_s;
+  if (settings_.keeps_time && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_) path_time_s_ = target_time_s;
+  const bool is_missed = settings_.keeps_time && !has_target_ && path_time_s_ >= target_time_s;
+  if (is_missed) {
+    const double now_s = std::exchange(path_time_s_, target_time_s);
+    reached.fraction = now_s > before_s ? (target_time_s - before_s) / (now_s - before_s) : 1.0;
+    miss_target(reached);
+    reached.flags = std::exchange(flags_, MeasurementFlags::none);
+    begin_step_in_time();
+    path_time_s_ = now_s;
+    evaluate();
+    return true;
+  }
   if (!has_target_ || path_time_s_ < target_time_s) {
     evaluate();
     return false;
@@ -83,11 +198,24 @@ bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
   reached.fraction = path_time_s_ > before_s ? (target_time_s - before_s) / (path_time_s_ - before_s) : 1.0;
   reached.flags = std::exchange(flags_, MeasurementFlags::none);
   leave_target();
+  if (settings_.keeps_time && is_initial) {
+    last_step_ = target_.step;
+    stands_ = true;
+  } else if (settings_.keeps_time) {
+    missed_ = 0;
+    begin_step_in_time();
+  }
   evaluate();
+  if (stands_) point_.velocity_m_per_s.setZero();
   return true;
 }
 
 void Trajectory::choose_rate(double interval_s) noexcept {
+  if (settings_.keeps_time) {
+    rate_ = 1.0;
+    if (!has_target_) flags_ |= MeasurementFlags::extrapolated;
+    return;
+  }
   if (has_target_) {
     rate_ = std::min(1.0, rate_ + kRateRecovery * interval_s / step_s_);
     return;
@@ -122,7 +250,7 @@ void Trajectory::evaluate() noexcept {
   const double since_s = path_time_s_ - segment_begin_s_;
   if (settings_.type == TrajectoryType::ramp_and_hold) {
     ramp(since_s);
-  } else if (has_target_) {
+  } else if (has_target_ || aims_) {
     correct(since_s);
   } else {
     predict(since_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/interface_vector.hpp"
@@ -34,6 +35,10 @@ struct TrajectorySettings {
   int order = 2;
   /// Ramp and hold: share of the step at its end in which the target is held, 0 to below 1.
   double hold_share = 0.2;
+  /// In real time: steps end at their time, whether their target has come or not.
+  bool keeps_time = false;
+  /// Likewise: after this number of steps without a target the path comes to rest.
+  int missed_most = 3;
 };
 
 /// Event-driven predictor-corrector between coupling steps (Mosqueda, Stojadinovic and Mahin,
@@ -52,6 +57,10 @@ struct TrajectorySettings {
 /// Ramp and hold, for quasi-static tests: from rest to rest along a raised cosine, held for the
 /// last share of the step, measured at its end; without prediction and without late targets.
 ///
+/// In real time (`keeps_time`) path time starts when the first target after the initial one comes, and never slows down. A step whose target has not come ends where the motion of the
+/// newest known target leads, and counts as missed. A target that comes within the last share of its step, or after it,
+/// corrects where the next step ends. After `missed_most` steps without a target, the velocity halves in each further one.
+///
 /// Site time is model time times the time scale. Real-time safe.
 class Trajectory {
  public:
@@ -67,7 +76,8 @@ class Trajectory {
   void reset(const SiteVector& displacement_m) noexcept;
 
   /// The next target; steps in order, one at a time. The first one starts path time and must
-  /// be the present position of the path.
+  /// be the present position of the path. In real time steps may be left out, be over, or come early: up to
+  /// kCommandPoints wait.
   void set_target(const TargetPoint& target) noexcept;
 
   /// Moves on by `interval_s` of site time.
@@ -87,6 +97,12 @@ class Trajectory {
  private:
   void choose_rate(double interval_s) noexcept;
   void leave_target() noexcept;
+  void begin_segment() noexcept;
+  void learn_target(const TargetPoint& target) noexcept;
+  void adopt(const TargetPoint& target) noexcept;
+  void miss_target(ReachedTarget& reached) noexcept;
+  void begin_step_in_time() noexcept;
+  void aim() noexcept;
   void evaluate() noexcept;
   void correct(double since_s) noexcept;
   void predict(double since_s) noexcept;
@@ -99,6 +115,14 @@ class Trajectory {
   bool has_target_ = false;
   bool is_first_target_ = false;
   TargetPoint target_;
+  // In real time:
+  bool stands_ = false;  // at the initial target
+  bool aims_ = false;    // the end of the step is not its target, but where older targets lead
+  TargetPoint known_;   // the newest that has come for this step or one before
+  Step last_step_ = kNoStep;  // that has ended
+  int missed_ = 0;      // steps in a row
+  std::array<TargetPoint, kCommandPoints> early_{};  // for later steps, in order
+  std::size_t early_count_ = 0;
   double path_time_s_ = 0.0;
   double rate_ = 0.0;
   double interval_begin_s_ = 0.0;  // path time of the last target reached

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "core/config_error.hpp"
 #include "core/event_text.hpp"
@@ -40,6 +42,7 @@ struct SimulateOptions {
   double reordering = 0.0;
   std::vector<std::string> outages;
   std::vector<std::string> kills;
+  std::vector<std::string> pauses;
 };
 
 /// `id:number` or `id:number:number`, numbers in seconds of simulated time.
@@ -69,12 +72,20 @@ SimulationSettings settings_from(const SimulateOptions& options, const Scenario&
   settings.network.loss = options.loss;
   settings.network.duplication = options.duplication;
   settings.network.reordering = options.reordering;
-  for (const std::string& text : options.outages) {
-    const auto [id, times] = id_and_times(text, 2, scenario, "--outage");
+  const auto id_and_span = [&](const std::string& text, const std::string& option) {
+    auto [id, times] = id_and_times(text, 2, scenario, option);
     if (times[1] <= times[0]) {
-      throw ConfigError{"--outage " + text + ": the end is not after the begin; expected ID:BEGIN:END in s"};
+      throw ConfigError{option + " " + text + ": the end is not after the begin; expected ID:BEGIN:END in s"};
     }
-    settings.network.outages.push_back({id, times[0], times[1]});
+    return std::tuple{std::move(id), times[0], times[1]};
+  };
+  for (const std::string& text : options.outages) {
+    const auto [id, begin, end] = id_and_span(text, "--outage");
+    settings.network.outages.push_back({id, begin, end});
+  }
+  for (const std::string& text : options.pauses) {
+    const auto [id, begin, end] = id_and_span(text, "--pause");
+    settings.pauses.push_back({id, begin, end});
   }
   for (const std::string& text : options.kills) {
     const auto [id, times] = id_and_times(text, 1, scenario, "--kill");
@@ -93,6 +104,9 @@ void warn_of_unreached(const SimulateOptions& options, const SimulationSettings&
   };
   for (std::size_t i = 0; i < settings.kills.size(); ++i) {
     if (settings.kills[i].at >= end) warn("--kill", options.kills[i]);
+  }
+  for (std::size_t i = 0; i < settings.pauses.size(); ++i) {
+    if (settings.pauses[i].begin >= end) warn("--pause", options.pauses[i]);
   }
   for (std::size_t i = 0; i < settings.network.outages.size(); ++i) {
     if (settings.network.outages[i].begin >= end) warn("--outage", options.outages[i]);
@@ -256,11 +270,15 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
   command->add_option("--outage", options->outages,
                       "ID:BEGIN:END: no message from or to this participant arrives between these two times, in s of "
                       "simulated time; repeatable");
+  command->add_option("--pause", options->pauses,
+                      "ID:BEGIN:END: the process of this participant does nothing between these two times, as if its "
+                      "machine were busy, in s of simulated time; repeatable");
   command->add_option("--kill", options->kills,
                       "ID:AT: this participant is killed at this time, in s of simulated time; repeatable");
   command->footer(
       "Simulated time starts with the processes and is not model time. With mode lockstep a step takes as long as\n"
-      "its messages travel; with mode paced it takes step_s x time_scale.");
+      "its messages travel; with mode paced it takes step_s x time_scale,\n"
+      "and in real time step_s.");
   command->callback([options, &action] { action = [options] { return simulate_scenario(*options); }; });
 }
 

@@ -4,10 +4,11 @@
 
 namespace hybridtest {
 
-NumericalNode::NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
-                             MembershipPorts membership, Inbox<DisplacementCommand>& commands,
+NumericalNode::NumericalNode(SubstructureIndex index, CouplingMode mode, std::unique_ptr<SubstructureModel> model,
+                             Presence& presence, MembershipPorts membership, Inbox<DisplacementCommand>& commands,
                              Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded)
     : index_{index},
+      mode_{mode},
       model_{std::move(model)},
       presence_{presence},
       membership_{presence, membership},
@@ -54,6 +55,10 @@ void NumericalNode::obey(Request request) noexcept {
 
 void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexcept {
   if (command.coordinator != membership_.coordinator()) return;
+  if (command.is_rehearsal) {
+    if (presence_.state() == LifecycleState::armed) answer_rehearsal(command, now);
+    return;
+  }
   // A command can overtake the start message; it then starts the test.
   if (presence_.state() == LifecycleState::armed) presence_.set_state(LifecycleState::running);
   if (presence_.state() != LifecycleState::running) return;
@@ -67,12 +72,30 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
     answer(command, now, MeasurementFlags::repeated);
     return;
   }
+  // In real time the model goes on behind a gap that the points of the command do not fill.
+  const bool may_skip = mode_ == CouplingMode::real_time && last_step_ != kNoStep;
+  const auto is_next = [&](const CommandPoint& point) {
+    return may_skip ? point.step > last_step_ : point.step == last_step_ + 1;
+  };
   for (int i = command.point_count - 1; i > 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
-    if (point.step == last_step_ + 1 && !compute(point, false, now)) return;
+    if (is_next(point) && !compute(point, false, now)) return;
   }
-  if (newest.step != last_step_ + 1 || !compute(newest, command.is_trial, now)) return;
+  if (!is_next(newest) || !compute(newest, command.is_trial, now)) return;
   answer_newest(now);
+}
+
+void NumericalNode::answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept {
+  answer_.substructure = index_;
+  answer_.sender = presence_.identity().incarnation;
+  answer_.step = kNoStep;
+  answer_.iteration = command.iteration;
+  answer_.model_time_s = 0.0;
+  answer_.imposed_displacement_m = answer_.measured_displacement_m = answer_.force_n = 0.0 * force_n_;
+  answer_.flags = MeasurementFlags::none;
+  answer_.receive_time = answer_.send_time = now.time_since_epoch();
+  answer_.command_send_time = command.send_time;
+  measurements_.send(answer_);
 }
 
 void NumericalNode::answer_newest(Instant now) noexcept {

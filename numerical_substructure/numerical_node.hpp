@@ -24,8 +24,8 @@ class NumericalNode final : public Node {
  public:
   /// @param index      position of this substructure in the scenario.
   /// @param recorded   positions of interface degrees of freedom, for the rows of `steps`.
-  NumericalNode(SubstructureIndex index, std::unique_ptr<SubstructureModel> model, Presence& presence,
-                MembershipPorts membership, Inbox<DisplacementCommand>& commands,
+  NumericalNode(SubstructureIndex index, CouplingMode mode, std::unique_ptr<SubstructureModel> model,
+                Presence& presence, MembershipPorts membership, Inbox<DisplacementCommand>& commands,
                 Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded);
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -57,11 +57,13 @@ class NumericalNode final : public Node {
   /// The force of the point that the model computes is there, or is not.
   bool conclude(ModelAnswer answer, Instant now) noexcept;
   void record_step(const CommandPoint& point) noexcept;
+  void answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept;
   /// The force at the newest point of the command.
   void answer_newest(Instant now) noexcept;
   void answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept;
 
   SubstructureIndex index_;
+  CouplingMode mode_;
   std::unique_ptr<SubstructureModel> model_;
   Presence& presence_;
   Membership membership_;

@@ -28,10 +28,12 @@ CoordinatorSettings coordinator_settings(const Scenario& scenario) {
   settings.stop_timeout = scenario.timeouts.stop;
   settings.stiffness_n_per_m = scenario.structure.stiffness_n_per_m;
   settings.recorded_dofs = scenario.recorded_dofs;
+  settings.bridging = scenario.real_time.bridging;
   settings.load = scenario.excitation.load(scenario.structure);
   if (scenario.opensees) settings.last_step = std::numeric_limits<Step>::max();  // its model ends the test
   for (const SubstructureScenario& substructure : scenario.substructures) {
-    settings.substructures.push_back({substructure.id, substructure.role, substructure.interface});
+    settings.substructures.push_back(
+        {substructure.id, substructure.role, substructure.interface, substructure.initial_stiffness_n_per_m});
   }
   return settings;
 }
@@ -109,7 +111,8 @@ CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const P
   coordinator_ = std::make_unique<Coordinator>(
       coordinator_settings(scenario), std::move(source), presence_,
       CoordinatorPorts{*announcements_, *control_in_, *control_out_, *measurements_, *commands_},
-      CoordinatorRecord{surroundings.sink("steps"), surroundings.sink("exchanges")});
+      CoordinatorRecord{surroundings.sink("steps"), surroundings.sink("exchanges"),
+                        scenario.time.mode == CouplingMode::real_time ? &surroundings.sink("bridges") : nullptr});
 }
 
 std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario) {
@@ -118,6 +121,7 @@ std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario
                                 !scenario.excitation.forces.empty()),
       Coordinator::exchanges_layout()};
   if (scenario.opensees) tables.push_back(OpenSeesLead::trials_layout());
+  if (scenario.time.mode == CouplingMode::real_time) tables.push_back(Coordinator::bridges_layout());
   return tables;
 }
 
@@ -130,7 +134,7 @@ NumericalParticipant::NumericalParticipant(const Scenario& scenario, const Subst
   std::unique_ptr<SubstructureModel> model = substructure.make_model();
   model->start(model_surroundings(substructure, surroundings));
   numerical_ =
-      std::make_unique<NumericalNode>(scenario.index_of(substructure), std::move(model), presence_,
+      std::make_unique<NumericalNode>(scenario.index_of(substructure), scenario.time.mode, std::move(model), presence_,
                                       MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
                                       *commands_, *measurements_, surroundings.sink("steps"), substructure.recorded);
 }
@@ -158,7 +162,7 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
                                         std::move(energy_error), ControlLoopPorts{requests_, waking_reports_},
                                         surroundings.sink("control"));
-  link_ = std::make_unique<SiteLink>(scenario.index_of(substructure), settings.dofs, presence_,
+  link_ = std::make_unique<SiteLink>(scenario.index_of(substructure), settings.dofs, scenario.time.mode, presence_,
                                      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
                                      SiteLinkPorts{*commands_, *measurements_, requests_, reports_},
                                      surroundings.sink("steps"));

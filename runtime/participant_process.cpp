@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -15,6 +16,7 @@
 #include "recording/recorder.hpp"
 #include "recording/recorder_thread.hpp"
 #include "recording/summary/run_summary.hpp"
+#include "runtime/deferring_transport.hpp"
 #include "runtime/event_log.hpp"
 #include "runtime/executor.hpp"
 #include "runtime/incarnation.hpp"
@@ -22,6 +24,7 @@
 #include "runtime/live/live_signals.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/network_options.hpp"
+#include "runtime/node_thread.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/progress.hpp"
 #include "runtime/recording_watch.hpp"
@@ -37,6 +40,12 @@ constexpr std::size_t kRingRows = 1U << 17U;
 
 /// After an emergency stop, with the rig at rest: longer than a discovery takes.
 constexpr Duration kLinger = std::chrono::milliseconds{500};
+
+/// In real time: how often what waits is sent and written.
+constexpr Duration kDeskPeriod = std::chrono::milliseconds{2};
+
+/// Threads of the network, and the node of a site beside its control loop, come after the thread with deadlines.
+constexpr int kNetworkBelow = 5;
 
 /// What a process that was started by hand shows on standard error: what it waits for, then how far the test is.
 class ParticipantProgress {
@@ -68,6 +77,14 @@ class ParticipantProgress {
   Instant next_look_{};
 };
 
+/// What the thread of the node requests in real time. That of a site comes after its control loop.
+RealTimeRequest real_time_of(const Scenario& scenario, const std::string& id, Role role) {
+  if (role == Role::coordinator) return scenario.real_time.coordinator;
+  RealTimeRequest request = scenario.find(id)->real_time;
+  if (role == Role::experimental_site) request.priority = std::max(1, request.priority - kNetworkBelow);
+  return request;
+}
+
 /// All parts of a process except its node.
 class ProcessSurroundings {
  public:
@@ -75,8 +92,10 @@ class ProcessSurroundings {
                       const std::vector<TableLayout>& tables, const ProcessClock& clock)
       : run_directory_{options.run_directory},
         incarnation_{draw_incarnation()},
-        transport_{fast_dds::make_fast_dds_transport(options.network, scenario.name)},
-        network_events_{transport_->event_outbox()},
+        transport_{make_transport(scenario, options, role)},
+        deferring_{scenario.time.mode == CouplingMode::real_time ? std::make_unique<DeferringTransport>(*transport_)
+                                                                 : nullptr},
+        network_events_{transport().event_outbox()},
         live_{options.id, incarnation_, transport_->signal_outbox()},
         recorder_{run_file(options.run_directory, options.id),
                   run_file_header(scenario, options.id, role, incarnation_, clock.zero_unix_s()), recorded(tables)},
@@ -87,10 +106,17 @@ class ProcessSurroundings {
   }
 
   [[nodiscard]] ParticipantSurroundings surroundings() {
-    return {*transport_, event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
+    return {transport(), event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
             incarnation_, run_directory_};
   }
-  [[nodiscard]] Transport& transport() { return *transport_; }
+  [[nodiscard]] Transport& transport() {
+    if (deferring_) return *deferring_;
+    return *transport_;
+  }
+  /// In real time: what the node left to another thread.
+  void send_waiting() {
+    if (deferring_) deferring_->send_waiting();
+  }
   [[nodiscard]] Recorder& recorder() { return recorder_; }
 
   /// Writes the events that wait to `events.log` and to the terminal.
@@ -137,6 +163,16 @@ class ProcessSurroundings {
     }
   }
 
+  /// In real time the threads of the network have to run when a message comes, too.
+  static std::unique_ptr<Transport> make_transport(const Scenario& scenario, const ParticipantProcessOptions& options,
+                                                   Role role) {
+    if (scenario.time.mode != CouplingMode::real_time) {
+      return fast_dds::make_fast_dds_transport(options.network, scenario.name);
+    }
+    const InheritedRealTime inherited{real_time_of(scenario, options.id, role).priority};
+    return fast_dds::make_fast_dds_transport(options.network, scenario.name);
+  }
+
   static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
     std::vector<RecordedTable> result;
     for (const TableLayout& table : tables) result.push_back({table, kRingRows});
@@ -146,6 +182,7 @@ class ProcessSurroundings {
   std::filesystem::path run_directory_;
   Incarnation incarnation_;
   std::unique_ptr<Transport> transport_;
+  std::unique_ptr<DeferringTransport> deferring_;  // in real time
   std::unique_ptr<Outbox<Event>> network_events_;
   LiveSignals live_;  // used by the recorder until it is closed
   Recorder recorder_;
@@ -187,6 +224,30 @@ class Housekeeping {
   RecordingWatch watch_;
 };
 
+/// Runs after each advance() of a node with deadlines: what may neither wait nor write.
+class DeadlineHousekeeping {
+ public:
+  DeadlineHousekeeping(Participant& participant, const Recorder& recorder)
+      : participant_{participant}, recorder_{recorder} {}
+
+  /// By the thread of the node.
+  void operator()(Instant now) noexcept {
+    if (stop_was_requested() && !std::exchange(stop_passed_on_, true)) {
+      participant_.request_stop(StopReason::interrupted);
+    }
+    if (watch_.look(recorder_, participant_.presence(), now)) recording_failed_ = true;
+  }
+  /// By the other one.
+  [[nodiscard]] bool take_recording_failure() noexcept { return recording_failed_.exchange(false); }
+
+ private:
+  Participant& participant_;
+  const Recorder& recorder_;
+  bool stop_passed_on_ = false;
+  RecordingWatch watch_;
+  std::atomic<bool> recording_failed_{false};
+};
+
 /// Exit code of the process, after its records are closed. A completed part is valid only with all its records.
 int exit_code_of(const Participant& participant, const Recorder& recorder) {
   const int exit_code = exit_code_for(participant.stop_reason());
@@ -213,42 +274,6 @@ void run_to_the_end(
   at_the_end();
 }
 
-int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
-  std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
-  std::ranges::move(test_tables(), std::back_inserter(tables));
-  ProcessSurroundings process{scenario, options, Role::coordinator, tables, clock};
-  CoordinatorParticipant participant{scenario, process.surroundings()};
-  wake_on_stop(process.transport().waker());
-  std::optional<LeadProcess> lead;
-  if (scenario.opensees) lead.emplace(*scenario.opensees, options.run_directory);
-  const auto watch_lead = [&](Instant now) {
-    if (!lead || participant.report().reason != StopReason::none || !lead->has_left(now)) return;
-    process.print(lead->end_text());
-    participant.lead_has_left();
-  };
-  run_to_the_end(participant, process, clock, scenario, watch_lead, [&] {
-    const CoordinatorReport report = participant.report();
-    if (lead) {
-      const bool is_completed = report.reason == StopReason::completed;
-      if (const std::string told = lead->finish(is_completed, scenario.timeouts.stop); !told.empty())
-        process.print(told);
-    }
-    write_test_tables(scenario, report, exit_code_for(report.reason),
-                      [&](std::string_view table) -> RowSink& { return process.recorder().sink(table); });
-  });
-  return exit_code_of(participant, process.recorder());
-}
-
-int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
-                  const ParticipantProcessOptions& options, const ProcessClock& clock) {
-  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure), clock};
-  NumericalParticipant participant{scenario, substructure, process.surroundings()};
-  wake_on_stop(process.transport().waker());
-  run_to_the_end(participant, process, clock, scenario);
-  if (const std::string text = participant.failure_text(); !text.empty()) process.print(text);
-  return exit_code_of(participant, process.recorder());
-}
-
 void report_grant(Presence& presence, Instant now, const RealTimeRequest& request, const RealTimeGrant& grant) {
   const auto report = [&](const char* what, int error, double asked_for) {
     if (error == 0) {
@@ -263,27 +288,114 @@ void report_grant(Presence& presence, Instant now, const RealTimeRequest& reques
   report("memory", grant.memory_error, 0.0);
 }
 
+/// @throws ConfigError when a request was refused and the scenario insists on it.
+void require_grant(const Presence& presence, const RealTimeRequest& request, const RealTimeGrant& grant) {
+  if (grant.is_complete() || request.allow_degraded) return;
+  throw ConfigError{
+      presence.identity().id.text() +
+      ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
+      "real_time.allow_degraded: true to start without them"};
+}
+
+/// As run_to_the_end(), with the node on a thread of its own.
+/// @throws ConfigError when the operating system does not grant what the scenario insists on.
+void run_in_real_time(
+    Participant& participant, ProcessSurroundings& process, const ProcessClock& clock, const RealTimeRequest& request,
+    const std::function<void()>& at_the_end = [] {}) {
+  RecorderThread recording{process.recorder()};
+  DeadlineHousekeeping housekeeping{participant, process.recorder()};
+  {
+    NodeThread thread{request};
+    report_grant(participant.presence(), clock.now(), request, thread.grant());
+    process.write_events();
+    require_grant(participant.presence(), request, thread.grant());
+    thread.run(
+        participant.node(), process.transport().waker(), clock, [&] { return participant.is_done(); },
+        [&](Instant now) { housekeeping(now); });
+    bool told_stop = false;
+    while (!thread.is_over()) {
+      process.send_waiting();
+      process.write_events();
+      if (housekeeping.take_recording_failure()) {
+        process.print("the recording failed: " + process.recorder().error_text());
+      }
+      if (stop_was_requested() && !std::exchange(told_stop, true)) {
+        process.print("received " + stop_signal() + ": stopping safely");
+      }
+      rest_until(clock, clock.now() + kDeskPeriod);
+    }
+  }
+  process.send_waiting();
+  process.write_events();
+  // As in run_to_the_end().
+  if (participant.stop_reason() == StopReason::emergency_stop) rest_until(clock, clock.now() + kLinger);
+  at_the_end();
+}
+
+int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
+  std::ranges::move(test_tables(), std::back_inserter(tables));
+  ProcessSurroundings process{scenario, options, Role::coordinator, tables, clock};
+  CoordinatorParticipant participant{scenario, process.surroundings()};
+  wake_on_stop(process.transport().waker());
+  std::optional<LeadProcess> lead;
+  if (scenario.opensees) lead.emplace(*scenario.opensees, options.run_directory);
+  const auto watch_lead = [&](Instant now) {
+    if (!lead || participant.report().reason != StopReason::none || !lead->has_left(now)) return;
+    process.print(lead->end_text());
+    participant.lead_has_left();
+  };
+  const auto finish = [&] {
+    const CoordinatorReport report = participant.report();
+    if (lead) {
+      const bool is_completed = report.reason == StopReason::completed;
+      if (const std::string told = lead->finish(is_completed, scenario.timeouts.stop); !told.empty())
+        process.print(told);
+    }
+    write_test_tables(scenario, report, exit_code_for(report.reason),
+                      [&](std::string_view table) -> RowSink& { return process.recorder().sink(table); });
+  };
+  if (scenario.time.mode == CouplingMode::real_time) {
+    run_in_real_time(participant, process, clock, scenario.real_time.coordinator, finish);
+  } else {
+    run_to_the_end(participant, process, clock, scenario, watch_lead, finish);
+  }
+  return exit_code_of(participant, process.recorder());
+}
+
+int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
+                  const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure), clock};
+  NumericalParticipant participant{scenario, substructure, process.surroundings()};
+  wake_on_stop(process.transport().waker());
+  if (scenario.time.mode == CouplingMode::real_time) {
+    run_in_real_time(participant, process, clock, real_time_of(scenario, options.id, substructure.role));
+  } else {
+    run_to_the_end(participant, process, clock, scenario);
+  }
+  if (const std::string text = participant.failure_text(); !text.empty()) process.print(text);
+  return exit_code_of(participant, process.recorder());
+}
+
 /// Runs the link on this thread and the control loop on its own thread.
 void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings& process, const ProcessClock& clock,
                                const Scenario& scenario, const SubstructureScenario& substructure) {
-  const RealTimeRequest& request = substructure.site.real_time;
+  const RealTimeRequest& request = substructure.real_time;
   LoopThread loop{participant.control_loop(), clock, request,
                   from_seconds(scenario.time.step_s * scenario.time.time_scale / substructure.site.periods_per_step)};
   report_grant(participant.presence(), clock.now(), request, loop.grant());
   process.write_events();
-  if (!loop.grant().is_complete() && !request.allow_degraded) {
-    throw ConfigError{
-        substructure.id +
-        ": the operating system did not grant all of `real_time`, see the lines above; raise the limits, or set "
-        "real_time.allow_degraded: true to start without them"};
+  require_grant(participant.presence(), request, loop.grant());
+  const auto finish = [&] {
+    loop.stop();
+    record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
+                       process.recorder().sink("loop_start_lateness"));
+  };
+  if (scenario.time.mode == CouplingMode::real_time) {
+    run_in_real_time(participant, process, clock, real_time_of(scenario, substructure.id, substructure.role), finish);
+  } else {
+    run_to_the_end(participant, process, clock, scenario, [](Instant) {}, finish);
   }
-  run_to_the_end(
-      participant, process, clock, scenario, [](Instant) {},
-      [&] {
-        loop.stop();
-        record_loop_timing(loop.timing(), request, loop.grant(), process.recorder().sink("loop_timing"),
-                           process.recorder().sink("loop_start_lateness"));
-      });
 }
 
 int run_site(const Scenario& scenario, const SubstructureScenario& substructure,

@@ -145,6 +145,10 @@ class Simulation {
       const bool has_arrival = network_.take_arrival(participant.id);
       const bool has_started = now_ >= Instant{participant.clock.start()};
       if (participant.is_over() || !has_started || (!has_arrival && participant.wake > now_)) continue;
+      if (const Instant end = end_of_pause(participant.id); end > now_) {
+        participant.wake = end;
+        continue;
+      }
       const Instant local = participant.clock.local(now_);
       const Instant wake = participant.participant->node().advance(local);
       // A node that is due at once runs a nanosecond later, so that time moves on.
@@ -154,6 +158,15 @@ class Simulation {
         if (observer_.progress(report())) participant.participant->request_stop(StopReason::interrupted);
       }
     }
+  }
+
+  /// Of the one that lasts now; an earlier instant without one.
+  [[nodiscard]] Instant end_of_pause(const std::string& id) const {
+    Instant end{};
+    for (const SimulatedPause& pause : settings_.pauses) {
+      if (pause.participant == id && Instant{pause.begin} <= now_) end = std::max(end, Instant{pause.end});
+    }
+    return end;
   }
 
   void keep_house() {

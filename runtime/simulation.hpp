@@ -19,10 +19,18 @@ struct SimulatedKill {
   Duration at{};  // simulated time
 };
 
+/// A time in which the machine of a participant does nothing, as when its process is stopped. Messages wait.
+struct SimulatedPause {
+  std::string participant;
+  Duration begin{};  // simulated time
+  Duration end{};
+};
+
 struct SimulationSettings {
   std::uint64_t seed = 0;
-  simulated::NetworkConditions network;
-  std::vector<SimulatedKill> kills;
+  simulated::NetworkConditions network{};
+  std::vector<SimulatedKill> kills{};
+  std::vector<SimulatedPause> pauses{};
   /// Largest drift of a clock; the drift is drawn from the seed.
   double clock_drift_ppm_max = 50.0;
   /// A simulation that takes longer is ended and reported; no test needs this time.

@@ -147,8 +147,10 @@ class SafetySections {
     if (rule.clears != ClearCondition::never && rule.action > SafetyAction::hold) {
       section.error("clears", "a site that returns or releases has left the test: expected never");
     }
-    if (rule.clears != ClearCondition::never && rule.action == SafetyAction::hold && mode_ == CouplingMode::lockstep) {
-      section.error("clears", "in lockstep a site that holds measures nothing that could clear: expected never");
+    if (rule.clears != ClearCondition::never && rule.action == SafetyAction::hold && mode_ != CouplingMode::paced) {
+      section.error("clears", mode_ == CouplingMode::lockstep
+                                  ? "in lockstep a site that holds measures nothing that could clear: expected never"
+                                  : "in real time the test does not wait for a site that holds: expected never");
     }
     section.finish();
   }
@@ -191,10 +193,10 @@ LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s, con
   return loop;
 }
 
-RealTimeRequest read_real_time(Section& site, CouplingMode mode) {
+RealTimeRequest read_real_time(Section& parent, bool has_deadlines) {
   RealTimeRequest request;
-  if (mode == CouplingMode::lockstep && !site.has("real_time")) return request;
-  Section section = site.section_or_empty("real_time");
+  if (!has_deadlines && !parent.has("real_time")) return request;
+  Section section = parent.section_or_empty("real_time");
   request.priority = static_cast<int>(section.integer("priority", 1, 99, request.priority));
   if (section.has("cpu")) request.cpu = static_cast<int>(section.integer("cpu", 0, 1023));
   request.allow_degraded = section.boolean("allow_degraded", true);

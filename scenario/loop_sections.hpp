@@ -42,7 +42,8 @@ struct TrackingExpectation {
 [[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s,
                                      const TrackingExpectation& rig);
 
-/// Reads `real_time`. In lockstep, where the loop has no thread and no deadlines, it is not read.
-[[nodiscard]] RealTimeRequest read_real_time(config::Section& site, CouplingMode mode);
+/// Reads `real_time`, of a site, a numerical substructure or the coordinator.
+/// @param has_deadlines   of the thread in question; without them the section is read where it stands, and not used.
+[[nodiscard]] RealTimeRequest read_real_time(config::Section& parent, bool has_deadlines);
 
 }  // namespace hybridtest

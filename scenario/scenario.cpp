@@ -16,6 +16,7 @@
 #include "mechanics/structure/stiffness_matrix.hpp"
 #include "mechanics/structure/vibration_modes.hpp"
 #include "numerical_substructure/scaled_model.hpp"
+#include "scenario/bridging_section.hpp"
 #include "scenario/catalogue/compensators.hpp"
 #include "scenario/catalogue/force_compensators.hpp"
 #include "scenario/catalogue/numerical_effects.hpp"
@@ -47,7 +48,7 @@ std::string plain_name(Section& section, std::string_view key, std::size_t longe
 }
 
 void read_time(Section section, TimeScenario& time) {
-  time.mode = section.choice("mode", {"lockstep", "paced"}) == 0 ? CouplingMode::lockstep : CouplingMode::paced;
+  time.mode = static_cast<CouplingMode>(section.choice("mode", {"lockstep", "paced", "real_time"}));
   time.step_s = section.number("step_s", {.low = 1e-6, .high = 10.0});
   time.duration_s = section.number("duration_s", {.low = 0.0, .high = 1e6, .low_open = true});
   if (time.mode == CouplingMode::paced) {
@@ -261,7 +262,8 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.displacement_noise_m = rig.displacement_noise_m;
   site.force_noise_n = rig.force_noise_n;
   if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
-    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced`");
+    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced` or "
+                         "`real_time`");
   }
   substructure.make_rig = std::move(rig.make);
   substructure.make_reference = std::move(rig.make_specimen);
@@ -296,7 +298,14 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
                        std::ranges::any_of(forces, [](const auto& reading) { return bool{reading.make_at}; });
   site.loop = read_loop(section, time.mode, site_step_s,
                         tracking_expectation(rig, site.delays, site_step_s / site.periods_per_step));
-  site.real_time = read_real_time(section, time.mode);
+  substructure.real_time = read_real_time(section, time.mode != CouplingMode::lockstep);
+  if (time.mode == CouplingMode::real_time) {
+    if (site.loop.trajectory.type == TrajectoryType::ramp_and_hold) {
+      section.error("trajectory", "ramp_and_hold waits for its targets, and real time does not: use predictor_corrector");
+    }
+    site.loop.trajectory.keeps_time = true;
+    site.loop.trajectory.missed_most = scenario.real_time.bridging.most_in_a_row;
+  }
 }
 
 SubstructureScenario read_substructure(Section& section, Scenario& scenario, const DofTable& table,
@@ -313,6 +322,8 @@ SubstructureScenario read_substructure(Section& section, Scenario& scenario, con
     substructure.make_model = read_model(section.section("model"), named_interface(substructure, table), directory,
                                          scenario.time.step_s, scenario.files);
     substructure.make_reference = substructure.make_model;
+    const bool has_deadlines = scenario.time.mode == CouplingMode::real_time;
+    if (has_deadlines) substructure.real_time = read_real_time(section, has_deadlines);
   } else {
     read_site(section, scenario, directory, substructure);
   }
@@ -384,6 +395,10 @@ void check_substructures(Section& root, const Scenario& scenario) {
 /// A specimen cannot go back to the state before a trial.
 void check_trials(Section& integrator, const Scenario& scenario) {
   if (!scenario.integrator.needs.tries_displacements) return;
+  if (scenario.time.mode == CouplingMode::real_time) {
+    integrator.error("type", "'" + scenario.integrator.type +
+                                 "' tries several displacements in a step; a step in real time has time for one");
+  }
   for (const SubstructureScenario& substructure : scenario.substructures) {
     if (substructure.role != Role::experimental_site) continue;
     integrator.error("type", "'" + scenario.integrator.type +
@@ -648,6 +663,10 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   if (root.has("description")) static_cast<void>(root.text("description", ""));
   read_time(root.section("time"), scenario.time);
   scenario.opensees = read_opensees_lead(root, document.directory(), scenario.files);
+  if (scenario.time.mode == CouplingMode::real_time) {
+    scenario.real_time = {read_bridging(root, scenario.time.step_s), read_real_time(root, true)};
+    if (scenario.opensees) root.error("coordinator", "OpenSees, which leads, has no deadlines: use `paced`");
+  }
   if (scenario.opensees) {
     read_led(document, root, scenario);
   } else {

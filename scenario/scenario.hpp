@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/coordinator.hpp"
+#include "coordinator/force_bridge.hpp"
 #include "core/messages.hpp"
 #include "core/real_time_thread.hpp"
 #include "experimental_site/control_loop.hpp"
@@ -34,6 +35,12 @@ struct TimeScenario {
   double duration_s = 0.0;
   double time_scale = 1.0;
   Step last_step = 0;
+};
+
+/// Of a test in real time, besides its sites.
+struct RealTimeScenario {
+  BridgingSettings bridging;
+  RealTimeRequest coordinator;  // what its thread requests
 };
 
 struct TimeoutScenario {
@@ -61,7 +68,6 @@ struct SiteScenario {
   double control_rate_hz = 0.0;
   int periods_per_step = 1;  // the control rate, rounded up so that whole periods fill a step
   LoopScenario loop;
-  RealTimeRequest real_time;  // not in lockstep
   std::string rig_type;
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
@@ -79,6 +85,7 @@ struct SubstructureScenario {
   std::string id;
   Role role = Role::numerical_substructure;
   InterfaceMap interface;
+  RealTimeRequest real_time;                 // of the control loop of a site; of the node, in real time
   std::vector<std::string> interface_names;  // `floor_2_floor_1` for relative ones
   /// Positions in the interface that a numerical substructure records: all, or of a wide interface those of `output`.
   std::vector<Eigen::Index> recorded;
@@ -106,6 +113,7 @@ struct Scenario {
   std::filesystem::path file;
   std::string name;
   TimeScenario time;
+  RealTimeScenario real_time;
   TimeoutScenario timeouts;
   bool stop_on_recording_failure = false;
   std::vector<std::string> dofs;

@@ -19,6 +19,8 @@ Codes causes_of(StopReason reason) {
     case StopReason::opensees_lost: return {EventCode::opensees_lost, EventCode::opensees_silent};
     case StopReason::opensees_iterates: return {EventCode::opensees_iterates};
     case StopReason::model_failed: return {EventCode::model_failed};
+    case StopReason::deadlines_missed: return {EventCode::deadlines_missed};
+    case StopReason::network_too_slow: return {EventCode::network_too_slow};
     case StopReason::not_assembled:
       return {EventCode::participant_missing, EventCode::opensees_refused, EventCode::opensees_missing};
     case StopReason::refused:
@@ -76,6 +78,8 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::opensees_lost:
     case StopReason::opensees_iterates:
     case StopReason::model_failed:
+    case StopReason::deadlines_missed:
+    case StopReason::network_too_slow:
     case StopReason::refused:
     case StopReason::recording_failed:
     case StopReason::emergency_stop: return false;

@@ -386,7 +386,7 @@ nlohmann::json TestView::test_json(Instant now) const {
   test["steps_per_second"] = rate;  // NaN becomes null
   if (!announcement_) return test;
   const double last_step = std::round(announcement_->duration_s / announcement_->step_s);
-  test["mode"] = announcement_->mode == CouplingMode::paced ? "paced" : "lockstep";
+  test["mode"] = hybridtest::name(announcement_->mode);
   test["duration_s"] = announcement_->duration_s;
   test["step_s"] = announcement_->step_s;
   test["time_scale"] = announcement_->time_scale;

@@ -119,10 +119,10 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
                                           EnergyErrorMonitor{SiteMatrix::Constant(1, 1, 4.0e6), 0.01},
                                           ControlLoopPorts{requests_, reports_}, control_record_)},
       link_{std::make_unique<SiteLink>(
-          SubstructureIndex{0}, 1, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
+          SubstructureIndex{0}, 1, mode, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
           SiteLinkPorts{site_commands_, measurements_, requests_, reports_}, site_record_)},
       numerical_{std::make_unique<NumericalNode>(
-          SubstructureIndex{1}, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
+          SubstructureIndex{1}, mode, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
           MembershipPorts{numerical_announcements_, numerical_control_, kLease}, numerical_commands_, measurements_,
           numerical_record_, std::vector<Eigen::Index>{0})},
       coordinator_{std::make_unique<Coordinator>(

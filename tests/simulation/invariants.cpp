@@ -195,6 +195,8 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::opensees_lost:
     case StopReason::opensees_iterates:
     case StopReason::model_failed:
+    case StopReason::deadlines_missed:
+    case StopReason::network_too_slow:
     case StopReason::refused:
     case StopReason::emergency_stop:
     case StopReason::participant_failed:

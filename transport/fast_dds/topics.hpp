@@ -31,7 +31,7 @@ template <>
 struct Topic<TestAnnouncement> {
   using Sample = wire::TestAnnouncement;
   using Type = wire::TestAnnouncementPubSubType;
-  static constexpr const char* kName = "hybridtest/3/test_announcement";
+  static constexpr const char* kName = "hybridtest/4/test_announcement";
   static constexpr Delivery kDelivery{.for_late_joiners = true, .depth = 1};
 };
 
@@ -39,7 +39,7 @@ template <>
 struct Topic<ParticipantStatus> {
   using Sample = wire::ParticipantStatus;
   using Type = wire::ParticipantStatusPubSubType;
-  static constexpr const char* kName = "hybridtest/3/participant_status";
+  static constexpr const char* kName = "hybridtest/4/participant_status";
   // The reader keeps more than one because two participants that claim one id write to one
   // instance, and both must be heard for the second to be refused.
   static constexpr Delivery kDelivery{
@@ -50,7 +50,7 @@ template <>
 struct Topic<DisplacementCommand> {
   using Sample = wire::DisplacementCommand;
   using Type = wire::DisplacementCommandPubSubType;
-  static constexpr const char* kName = "hybridtest/3/displacement_command";
+  static constexpr const char* kName = "hybridtest/4/displacement_command";
   static constexpr Delivery kDelivery{.has_many_sizes = true};
 };
 
@@ -58,7 +58,7 @@ template <>
 struct Topic<ForceMeasurement> {
   using Sample = wire::ForceMeasurement;
   using Type = wire::ForceMeasurementPubSubType;
-  static constexpr const char* kName = "hybridtest/3/force_measurement";
+  static constexpr const char* kName = "hybridtest/4/force_measurement";
   static constexpr Delivery kDelivery{.instances = kMaxSubstructures, .has_many_sizes = true};
 };
 
@@ -66,7 +66,7 @@ template <>
 struct Topic<TestControl> {
   using Sample = wire::TestControl;
   using Type = wire::TestControlPubSubType;
-  static constexpr const char* kName = "hybridtest/3/test_control";
+  static constexpr const char* kName = "hybridtest/4/test_control";
   static constexpr Delivery kDelivery{};
 };
 
@@ -74,7 +74,7 @@ template <>
 struct Topic<Event> {
   using Sample = wire::Event;
   using Type = wire::EventPubSubType;
-  static constexpr const char* kName = "hybridtest/3/event";
+  static constexpr const char* kName = "hybridtest/4/event";
   static constexpr Delivery kDelivery{.depth = 64, .instances = 128};
 };
 
@@ -82,7 +82,7 @@ template <>
 struct Topic<SignalBlock> {
   using Sample = wire::SignalBlock;
   using Type = wire::SignalBlockPubSubType;
-  static constexpr const char* kName = "hybridtest/3/signal_block";
+  static constexpr const char* kName = "hybridtest/4/signal_block";
   static constexpr Delivery kDelivery{.reliable = false, .depth = 4, .instances = 512, .has_many_sizes = true};
 };
 

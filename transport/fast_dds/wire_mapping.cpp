@@ -66,7 +66,8 @@ bool to_faults(std::uint32_t bits, FaultFlags& faults) noexcept {
 
 bool to_flags(std::uint32_t bits, MeasurementFlags& flags) noexcept {
   constexpr MeasurementFlags kKnown = MeasurementFlags::extrapolated | MeasurementFlags::held |
-                                      MeasurementFlags::saturated | MeasurementFlags::late | MeasurementFlags::repeated;
+                                      MeasurementFlags::saturated | MeasurementFlags::late |
+                                      MeasurementFlags::repeated | MeasurementFlags::bridged | MeasurementFlags::missed;
   flags = static_cast<MeasurementFlags>(bits);
   return (bits & ~static_cast<std::uint32_t>(kKnown)) == 0;
 }
@@ -140,7 +141,7 @@ bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noe
   message.duration_s = sample.duration_s();
   message.time_scale = sample.time_scale();
   message.substructure_count = sample.substructure_count();
-  if (!to_enum(sample.mode(), CouplingMode::paced, message.mode)) return false;
+  if (!to_enum(sample.mode(), CouplingMode::real_time, message.mode)) return false;
   if (!is_time(message.step_s) || !is_time(message.duration_s) || !is_time(message.time_scale)) return false;
   if (message.substructure_count > kMaxSubstructures) return false;
   for (std::size_t i = 0; i < message.substructures.size(); ++i) {
@@ -184,6 +185,7 @@ void encode(const DisplacementCommand& message, wire::DisplacementCommand& sampl
   sample.attempt(message.attempt);
   sample.iteration(message.iteration);
   sample.is_trial(message.is_trial);
+  sample.is_rehearsal(message.is_rehearsal);
   sample.coordinator(message.coordinator);
   sample.send_time_ns(message.send_time.count());
   sample.point_count(message.point_count);
@@ -195,6 +197,7 @@ bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& messag
   message.attempt = sample.attempt();
   message.iteration = sample.iteration();
   message.is_trial = sample.is_trial();
+  message.is_rehearsal = sample.is_rehearsal();
   message.coordinator = sample.coordinator();
   message.send_time = Duration{sample.send_time_ns()};
   if (!is_substructure(message.substructure)) return false;

@@ -170,7 +170,7 @@ std::string printed(const std::string& text, const std::string& key) {
 TEST(FastDdsTransport, ForeignProgramReadsLiveSignalsByTheirPublishedType) {
   TemporaryDirectory folder;
   StartedProgram listener{CONTRACT_FOREIGN_LISTENER,
-                          {std::to_string(kTestDomain), unique_test_name(), "hybridtest/3/signal_block"},
+                          {std::to_string(kTestDomain), unique_test_name(), "hybridtest/4/signal_block"},
                           folder / "listener"};
   const auto sender = FastDdsUdpNetwork::join(unique_test_name());
   const auto outbox = sender->signal_outbox();
@@ -205,7 +205,7 @@ TEST_P(ForgedControl, IsDroppedAndCountedWithoutLosingLaterMessages) {
   ASSERT_NE(forger, nullptr);
   const dds::TypeSupport type{new ForgedType{GetParam().bytes}};
   type.register_type(forger);
-  auto* topic = forger->create_topic("hybridtest/3/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  auto* topic = forger->create_topic("hybridtest/4/test_control", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   dds::PublisherQos publisher_qos;
   publisher_qos.partition().push_back(unique_test_name().c_str());
   auto* writer = forger->create_publisher(publisher_qos)->create_datawriter(topic, dds::DATAWRITER_QOS_DEFAULT);

@@ -116,6 +116,7 @@ class SiteLinkTest : public testing::Test {
                      events_};
   SiteLink link_{kIndex,
                  1,
+                 CouplingMode::paced,
                  presence_,
                  MembershipPorts{announcements_, control_, seconds{30}},
                  SiteLinkPorts{commands_, measurements_, requests_, reports_},

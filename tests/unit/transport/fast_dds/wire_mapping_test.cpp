@@ -130,20 +130,20 @@ class Draw {
             vector(),
             vector(),
             vector(),
-            static_cast<MeasurementFlags>(up_to(0x1f)),
+            static_cast<MeasurementFlags>(up_to(0x7f)),
             clock(),
             clock(),
             clock()};
   }
   TestControl control() {
     return {one_of(ControlVerb::emergency_stop), any<Incarnation>(), one_of(Role::operator_tool),
-            one_of(StopReason::model_failed)};
+            one_of(StopReason::network_too_slow)};
   }
   Event event() {
     return {text<48>(),
             any<Incarnation>(),
             one_of(Severity::fault),
-            one_of(EventCode::model_failed),
+            one_of(EventCode::pause_refused),
             step(),
             time_s(),
             text<48>(),
