@@ -295,7 +295,7 @@ void Coordinator::run(Instant now) noexcept {
       }
     }
     if (!ledger_.is_complete() && has_deadline()) {
-      if (now < time_of(ledger_.step()) + settings_.bridging.deadline) return;
+      if (now < deadline_of(ledger_.step())) return;
       bridge_unanswered();
     }
     if (!ledger_.is_complete()) {
@@ -571,9 +571,9 @@ void Coordinator::complete_step(Instant now) noexcept {
     return;
   }
   if (is_real_time()) {
-    // A site starts its time when the first command after this one comes, and its answers need their way back.
-    if (step == 0) step_zero_ = now + usual_round_trip_;
-    step_due_ = step == 0 ? now : time_of(step);
+    // A site starts its time when the first command after this one comes.
+    if (step == 0) step_zero_ = now;
+    step_due_ = time_of(step);
     return;
   }
   if (settings_.mode != CouplingMode::paced) return;
@@ -695,7 +695,7 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
       if (is_paused_) return presence_wake;
       if (!command_is_sent_) return std::min(presence_wake, std::max(step_due_, now));
       return std::min(presence_wake,
-                      has_deadline() ? time_of(ledger_.step()) + settings_.bridging.deadline : repeat_due_);
+                      has_deadline() ? deadline_of(ledger_.step()) : repeat_due_);
     }
     case Phase::stopping: return std::min({presence_wake, control_repeat_due_, stop_by_});
     case Phase::done: return kNever;

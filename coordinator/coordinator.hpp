@@ -79,9 +79,9 @@ struct CoordinatorReport {
 /// takes one force from it, several where the source of motion iterates. It ends the test after the last step or at the
 /// first fault.
 ///
-/// In real time, step n has its own time, at which its answers are expected: n steps and a usual round trip after the start
-/// of step 1. Its command is sent one step earlier, or as soon as the forces of the step before are there. An answer that
-/// has not come by its deadline is bridged.
+/// In real time, the command of step n is sent n - 1 steps after that of step 1, or as soon as the forces of the step before
+/// are there. Its answers are expected a step and a usual round trip later; what has not come by its deadline after that is
+/// bridged.
 class Coordinator final : public Node {
  public:
   Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSource> source, Presence& presence,
@@ -129,8 +129,12 @@ class Coordinator final : public Node {
   /// The open step has a deadline.
   [[nodiscard]] bool has_deadline() const noexcept { return is_real_time() && ledger_.step() > 0; }
   [[nodiscard]] bool is_real_time() const noexcept { return settings_.mode == CouplingMode::real_time; }
+  /// In real time: when a site ends the step, if a message takes no time.
   [[nodiscard]] Instant time_of(Step step) const noexcept {
     return step_zero_ + from_seconds(static_cast<double>(step) * settings_.step_s);
+  }
+  [[nodiscard]] Instant deadline_of(Step step) const noexcept {
+    return time_of(step) + usual_round_trip_ + settings_.bridging.deadline;
   }
   void bridge_unanswered() noexcept;
   /// Counts what missed its deadline in the step. @return false when there are too many in a row, which ends the test.

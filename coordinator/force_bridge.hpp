@@ -22,7 +22,7 @@ enum class BridgeType : std::uint8_t {
 struct BridgingSettings {
   BridgeType type = BridgeType::polynomial;
   int order = 1;             // of the polynomial, 1 to 3
-  Duration deadline{};       // of an answer, after the time of its step
+  Duration deadline{};        // of an answer, after the time at which it is expected
   int most_in_a_row = 3;     // more than these end the test
   bool start_anyway = false;  // also when the rehearsed round trip does not fit into a step
 };

@@ -32,7 +32,7 @@ void Trajectory::reset(const SiteVector& displacement_m) noexcept {
   aims_ = false;
   stands_ = false;
   last_step_ = kNoStep;
-  missed_ = 0;
+  has_missed_ = false;
   early_count_ = 0;
   path_time_s_ = 0.0;
   rate_ = 1.0;
@@ -120,14 +120,15 @@ void Trajectory::learn_target(const TargetPoint& target) noexcept {
 /// Makes the end of the present step the point to which the newest known target leads.
 void Trajectory::aim() noexcept {
   aims_ = true;
-  if (missed_ >= settings_.missed_most) {
+  const Step ahead = last_step_ + 1 - known_.step;
+  if (ahead > settings_.missed_most) {
     const double left_s = interval_begin_s_ + step_s_ - segment_begin_s_;
     target_.displacement_m = begin_displacement_m_ + 0.75 * left_s * begin_velocity_m_per_s_;
     end_velocity_m_per_s_ = 0.5 * begin_velocity_m_per_s_;
     end_acceleration_m_per_s2_.setZero();
     return;
   }
-  const double ahead_s = step_s_ * static_cast<double>(last_step_ + 1 - known_.step);
+  const double ahead_s = step_s_ * static_cast<double>(ahead);
   const SiteVector velocity = known_.velocity_m_per_s / time_scale_;
   target_.displacement_m = known_.displacement_m + ahead_s * velocity;
   end_velocity_m_per_s_ = velocity;
@@ -140,14 +141,14 @@ void Trajectory::aim() noexcept {
 /// The step is over without its target.
 void Trajectory::miss_target(ReachedTarget& reached) noexcept {
   evaluate();  // at the end of the step
-  ++missed_;
+  has_missed_ = true;
   reached.target = {.step = last_step_ + 1,
                     .model_time_s = (interval_begin_s_ + step_s_) / time_scale_,
                     .displacement_m = point_.displacement_m,
                     .velocity_m_per_s = slope_m_per_s_ * time_scale_,
                     .acceleration_m_per_s2 = point_.acceleration_m_per_s2 * (time_scale_ * time_scale_)};
   flags_ |= MeasurementFlags::extrapolated | MeasurementFlags::late | MeasurementFlags::missed;
-  if (missed_ > settings_.missed_most) flags_ |= MeasurementFlags::held;
+  if (last_step_ + 1 - known_.step > settings_.missed_most) flags_ |= MeasurementFlags::held;
   interval_begin_s_ += step_s_;
   has_left_target_ = false;
   begin_segment();
@@ -164,7 +165,7 @@ void Trajectory::begin_step_in_time() noexcept {
     return;
   }
   // Behind a target that was reached, the predictor goes on from it.
-  if (missed_ > 0) aim();
+  if (has_missed_) aim();
 }
 
 bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
@@ -202,7 +203,7 @@ bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
     last_step_ = target_.step;
     stands_ = true;
   } else if (settings_.keeps_time) {
-    missed_ = 0;
+    has_missed_ = false;
     begin_step_in_time();
   }
   evaluate();

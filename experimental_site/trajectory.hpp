@@ -120,7 +120,7 @@ class Trajectory {
   bool aims_ = false;    // the end of the step is not its target, but where older targets lead
   TargetPoint known_;   // the newest that has come for this step or one before
   Step last_step_ = kNoStep;  // that has ended
-  int missed_ = 0;      // steps in a row
+  bool has_missed_ = false;   // the step before
   std::array<TargetPoint, kCommandPoints> early_{};  // for later steps, in order
   std::size_t early_count_ = 0;
   double path_time_s_ = 0.0;

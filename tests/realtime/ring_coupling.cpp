@@ -46,8 +46,13 @@ CoordinatorSettings settings(CouplingMode mode, Step last_step) {
   settings.step_s = RingCoupling::kStep_s;
   settings.duration_s = RingCoupling::kStep_s * static_cast<double>(last_step);
   settings.last_step = last_step;
-  settings.substructures = {{"storey_1", Role::experimental_site, InterfaceMap{2, {{0}}}},
-                            {"storey_2", Role::numerical_substructure, InterfaceMap{2, {{1, 0}}}}};
+  const Eigen::MatrixXd stiffness = Eigen::MatrixXd::Constant(1, 1, kStorey.stiffness_n_per_m);
+  settings.substructures = {{"storey_1", Role::experimental_site, InterfaceMap{2, {{0}}}, stiffness},
+                            {"storey_2", Role::numerical_substructure, InterfaceMap{2, {{1, 0}}}, stiffness}};
+  settings.bridging = {.type = BridgeType::initial_stiffness,
+                       .deadline = kControlPeriod,
+                       .most_in_a_row = 20,
+                       .start_anyway = true};
   settings.recorded_dofs = {0, 1};
   GroundLoad ground{two_storeys().load_per_ground_acceleration_kg(), {}};
   for (Step step = 0; step <= last_step; ++step) {
@@ -90,6 +95,7 @@ SiteCompensation compensation(bool compensates, Duration control_period) {
 ControlLoopSettings wide_limits(CouplingMode mode, double command_age_s) {
   ControlLoopSettings settings;
   settings.mode = mode;
+  settings.trajectory.keeps_time = mode == CouplingMode::real_time;
   settings.periods_per_step = kPeriodsPerStep;
   settings.step_s = RingCoupling::kStep_s;
   settings.limits.displacement_m = 0.5;
@@ -105,6 +111,7 @@ ControlLoopSettings wide_limits(CouplingMode mode, double command_age_s) {
 RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, double command_age_s)
     : step_record_{width(Coordinator::steps_layout({"floor_1", "floor_2"}, 1, false)), kRows},
       exchange_record_{width(Coordinator::exchanges_layout()), kRows},
+      bridge_record_{width(Coordinator::bridges_layout()), kRows},
       numerical_record_{width(NumericalNode::steps_layout({"floor_2"})), kRows},
       site_record_{width(SiteLink::steps_layout(1)), kRows},
       control_record_{width(ControlLoop::control_layout(1)), kRows},
@@ -128,7 +135,7 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
       coordinator_{std::make_unique<Coordinator>(
           settings(mode, last_step), std::make_unique<CentralDifference>(two_storeys(), kStep_s), coordinator_presence_,
           CoordinatorPorts{announcements_, coordinator_control_, control_, measurements_, commands_},
-          CoordinatorRecord{step_record_, exchange_record_})} {}
+          CoordinatorRecord{step_record_, exchange_record_, &bridge_record_})} {}
 
 void RingCoupling::advance_all_but_loop(Instant now) noexcept {
   static_cast<void>(coordinator_->advance(now));

@@ -34,12 +34,17 @@ class Broadcast final : public Outbox<Message> {
 class CommandSwitch final : public Outbox<DisplacementCommand> {
  public:
   explicit CommandSwitch(std::array<RingPort<DisplacementCommand>*, 2> ports) noexcept : ports_{ports} {}
+  /// From now on every so many-th command is lost; 0: none.
+  void lose_every(int commands) noexcept { lose_every_ = commands; }
   bool send(const DisplacementCommand& command) noexcept override {
+    if (lose_every_ > 0 && ++sent_ % lose_every_ == 0) return true;
     return ports_[command.substructure]->send(command);
   }
 
  private:
   std::array<RingPort<DisplacementCommand>*, 2> ports_;
+  int lose_every_ = 0;
+  int sent_ = 0;
 };
 
 /// A coordinator, a numerical substructure and a site with a simulated rig, coupled by lock-free
@@ -61,6 +66,9 @@ class RingCoupling {
   [[nodiscard]] std::vector<double> take_control_row();
   [[nodiscard]] FaultFlags site_faults() const noexcept { return site_presence_.faults(); }
 
+  void lose_commands(int every) noexcept { commands_.lose_every(every); }
+  /// Steps without an answer of a substructure.
+  [[nodiscard]] std::size_t bridged() const noexcept { return bridge_record_.size(); }
   [[nodiscard]] CoordinatorReport report() const noexcept { return coordinator_->report(); }
   [[nodiscard]] bool is_done() const noexcept {
     return coordinator_->is_done() && link_->is_done() && numerical_->is_done();
@@ -94,6 +102,7 @@ class RingCoupling {
 
   RowRing step_record_;
   RowRing exchange_record_;
+  RowRing bridge_record_;
   RowRing numerical_record_;
   RowRing site_record_;
   RowRing control_record_;

@@ -72,6 +72,16 @@ bool to_flags(std::uint32_t bits, MeasurementFlags& flags) noexcept {
   return (bits & ~static_cast<std::uint32_t>(kKnown)) == 0;
 }
 
+/// What a command is for, on the wire.
+constexpr std::uint8_t kStep = 0;
+constexpr std::uint8_t kTrial = 1;
+constexpr std::uint8_t kRehearsal = 2;
+
+std::uint8_t purpose_of(const DisplacementCommand& command) noexcept {
+  if (command.is_rehearsal) return kRehearsal;
+  return command.is_trial ? kTrial : kStep;
+}
+
 // --- parts
 
 void encode_values(const InterfaceVector& vector, Values& values) { values.assign(vector.begin(), vector.end()); }
@@ -184,8 +194,7 @@ void encode(const DisplacementCommand& message, wire::DisplacementCommand& sampl
   sample.substructure(message.substructure);
   sample.attempt(message.attempt);
   sample.iteration(message.iteration);
-  sample.is_trial(message.is_trial);
-  sample.is_rehearsal(message.is_rehearsal);
+  sample.purpose(purpose_of(message));
   sample.coordinator(message.coordinator);
   sample.send_time_ns(message.send_time.count());
   sample.point_count(message.point_count);
@@ -196,8 +205,9 @@ bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& messag
   message.substructure = sample.substructure();
   message.attempt = sample.attempt();
   message.iteration = sample.iteration();
-  message.is_trial = sample.is_trial();
-  message.is_rehearsal = sample.is_rehearsal();
+  if (sample.purpose() > kRehearsal) return false;
+  message.is_trial = sample.purpose() == kTrial;
+  message.is_rehearsal = sample.purpose() == kRehearsal;
   message.coordinator = sample.coordinator();
   message.send_time = Duration{sample.send_time_ns()};
   if (!is_substructure(message.substructure)) return false;

@@ -249,3 +249,131 @@ TEST(TrajectoryTest, ContinuesFromRestAfterHalt) {
 
 }  // namespace
 }  // namespace hybridtest
+
+namespace hybridtest {
+namespace {
+
+/// A trajectory that keeps time, four sampling intervals in a step, at step 0.
+class TrajectoryInTime : public testing::Test {
+ protected:
+  static constexpr int kSamples = 4;
+
+  void SetUp() override {
+    trajectory_.set_target(sine_target(0));
+    ASSERT_TRUE(advance());
+  }
+  bool advance() { return trajectory_.advance(kStep / kSamples, reached_); }
+  /// To the end of the step. @return whether it ended exactly then.
+  bool end_step() {
+    bool early = false;
+    for (int i = 1; i < kSamples; ++i) early = advance() || early;
+    return advance() && !early;
+  }
+  [[nodiscard]] double position() const { return trajectory_.point().displacement_m[0]; }
+  [[nodiscard]] bool is_missed() const { return any(reached_.flags & MeasurementFlags::missed); }
+
+  Trajectory trajectory_{1, kStep, 1.0, {.keeps_time = true, .missed_most = 3}};
+  ReachedTarget reached_;
+};
+
+TEST_F(TrajectoryInTime, StandsUntilTheFirstTargetComes) {
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(advance());
+  EXPECT_EQ(position(), 0.0);
+  trajectory_.set_target(sine_target(1));
+  EXPECT_TRUE(end_step());
+  EXPECT_EQ(reached_.target.step, 1);
+  EXPECT_FALSE(is_missed());
+  EXPECT_EQ(position(), sine_target(1).displacement_m[0]);
+}
+
+TEST_F(TrajectoryInTime, ReachesTargetsInTimeAsOtherModesDo) {
+  for (Step step = 1; step <= 100; ++step) {
+    trajectory_.set_target(sine_target(step));
+    ASSERT_TRUE(end_step());
+    EXPECT_EQ(reached_.target.step, step);
+    EXPECT_FALSE(any(reached_.flags));
+    EXPECT_EQ(position(), sine_target(step).displacement_m[0]) << "to the last bit";
+  }
+}
+
+TEST_F(TrajectoryInTime, StepWithoutTargetEndsWhereTheMotionLeads) {
+  for (Step step = 1; step <= 20; ++step) {
+    trajectory_.set_target(sine_target(step));
+    ASSERT_TRUE(end_step());
+  }
+  ASSERT_TRUE(end_step());
+  EXPECT_EQ(reached_.target.step, 21);
+  EXPECT_TRUE(is_missed());
+  // Taylor's series of second order leaves h^3/6 max|x'''|.
+  const double bound = std::pow(kStep, 3) / 6.0 * kAmplitude * std::pow(kOmega, 3);
+  EXPECT_NEAR(position(), sine_target(21).displacement_m[0], bound);
+  EXPECT_GT(std::abs(position() - sine_target(20).displacement_m[0]), 100.0 * bound) << "it moved";
+  // The target of the step after it is reached again.
+  trajectory_.set_target(sine_target(22));
+  ASSERT_TRUE(end_step());
+  EXPECT_FALSE(is_missed());
+  EXPECT_EQ(position(), sine_target(22).displacement_m[0]);
+}
+
+TEST_F(TrajectoryInTime, LateTargetCorrectsTheNextStep) {
+  for (Step step = 1; step <= 20; ++step) {
+    trajectory_.set_target(sine_target(step));
+    ASSERT_TRUE(end_step());
+  }
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(end_step());  // 21 to 23 are missed
+  const double before = std::abs(position() - sine_target(23).displacement_m[0]);
+  trajectory_.set_target(sine_target(23));  // too late for its own step
+  ASSERT_TRUE(end_step());
+  EXPECT_TRUE(is_missed());
+  const double after = std::abs(position() - sine_target(24).displacement_m[0]);
+  EXPECT_LT(after, 0.1 * before) << "from one step behind it instead of four";
+}
+
+TEST_F(TrajectoryInTime, EarlyTargetsWaitForTheirStep) {
+  trajectory_.set_target(sine_target(1));
+  trajectory_.set_target(sine_target(2));
+  trajectory_.set_target(sine_target(3));
+  for (Step step = 1; step <= 3; ++step) {
+    ASSERT_TRUE(end_step());
+    EXPECT_EQ(reached_.target.step, step);
+    EXPECT_FALSE(is_missed());
+    EXPECT_EQ(position(), sine_target(step).displacement_m[0]);
+  }
+}
+
+TEST_F(TrajectoryInTime, ComesToRestWithoutTargets) {
+  for (Step step = 1; step <= 20; ++step) {
+    trajectory_.set_target(sine_target(step));
+    ASSERT_TRUE(end_step());
+  }
+  for (int i = 0; i < 13; ++i) ASSERT_TRUE(end_step());
+  EXPECT_TRUE(any(reached_.flags & MeasurementFlags::held));
+  const double then = position();
+  ASSERT_TRUE(end_step());
+  // The velocity of at most 0.31 m/s was halved ten times.
+  EXPECT_LT(std::abs(position() - then), kAmplitude * kOmega / 1024.0 * kStep);
+}
+
+TEST_F(TrajectoryInTime, PathIsContinuousWhateverComes) {
+  Random random{3, 1};
+  double before = position();
+  double velocity_before = 0.0;
+  Step sent = 0;
+  for (int sample = 0; sample < 4000; ++sample) {
+    const Step due = sample / kSamples + 1;
+    if (due > sent && random.uniform() < 0.3) {
+      sent = std::max(sent, due - static_cast<Step>(random.below(3)));
+      trajectory_.set_target(sine_target(++sent));
+    }
+    static_cast<void>(advance());
+    const double velocity = (position() - before) / (kStep / kSamples);
+    // Twice the largest velocity; and no jump of it beyond what reaching a target in a fifth of a step asks.
+    ASSERT_LT(std::abs(velocity), 4.0 * kAmplitude * kOmega) << sample;
+    ASSERT_LT(std::abs(velocity - velocity_before), 4.0 * kAmplitude * kOmega) << sample;
+    velocity_before = velocity;
+    before = position();
+  }
+}
+
+}  // namespace
+}  // namespace hybridtest

@@ -115,6 +115,7 @@ class Draw {
     m.coordinator = any<Incarnation>();
     m.iteration = any<std::uint16_t>();
     m.is_trial = up_to(1) == 1;
+    m.is_rehearsal = !m.is_trial && up_to(1) == 1;
     m.point_count = static_cast<std::uint8_t>(1 + up_to(kCommandPoints - 1));
     for (auto& point : m.points) point = {step(), time_s(), vector(), vector(), vector()};
     m.attempt = any<std::uint16_t>();
@@ -250,6 +251,7 @@ TEST(WireMapping, RejectsCommandOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::DisplacementCommand>(Draw{3}.command(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.substructure(kMaxSubstructures); }));
   EXPECT_TRUE(refused([](auto& s) { s.point_count(0); }));
+  EXPECT_TRUE(refused([](auto& s) { s.purpose(3); }));
   EXPECT_TRUE(refused([](auto& s) { s.point_count(kCommandPoints + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[3].step(-2); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[3].model_time_s(-1e-9); }));
@@ -264,7 +266,7 @@ TEST(WireMapping, RejectsCommandOutOfRange) {
 TEST(WireMapping, RejectsMeasurementOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::ForceMeasurement>(Draw{4}.measurement(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.substructure(65535); }));
-  EXPECT_TRUE(refused([](auto& s) { s.flags(1U << 5U); }));
+  EXPECT_TRUE(refused([](auto& s) { s.flags(1U << 7U); }));
   EXPECT_TRUE(refused([](auto& s) { s.step(-2); }));
   EXPECT_TRUE(refused([](auto& s) { s.model_time_s(std::numeric_limits<double>::infinity()); }));
   EXPECT_TRUE(refused([](auto& s) { s.imposed_displacement_m().resize(kMaxInterfaceDofs + 1); }));
@@ -285,7 +287,7 @@ TEST(WireMapping, RejectsAnnouncementOutOfRange) {
   const auto refused = [](auto change) {
     return refused_after<wire::TestAnnouncement>(Draw{6}.announcement(), change);
   };
-  EXPECT_TRUE(refused([](auto& s) { s.mode(2); }));
+  EXPECT_TRUE(refused([](auto& s) { s.mode(3); }));
   EXPECT_TRUE(refused([](auto& s) { s.substructure_count(kMaxSubstructures + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.step_s(kNaN); }));
   EXPECT_TRUE(refused([](auto& s) { s.duration_s(-1.0); }));
