@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/assert.hpp"
@@ -56,6 +57,13 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSou
     HYBRIDTEST_ASSERT(record_.bridges != nullptr);
     rehearsal_.emplace(settings_.substructures.size(), from_seconds(settings_.step_s));
     misses_.resize(settings_.substructures.size());
+    // Of the size of their answers, so that keeping one does not allocate.
+    for (const CoupledSubstructure& substructure : settings_.substructures) {
+      ForceMeasurement free;
+      free.imposed_displacement_m = free.measured_displacement_m = free.force_n =
+          InterfaceVector::Zero(substructure.interface.size());
+      early_.insert(early_.end(), early_each(), free);
+    }
     for (const CoupledSubstructure& substructure : settings_.substructures) {
       bridges_.emplace_back(settings_.bridging, substructure.initial_stiffness_n_per_m, substructure.interface.size());
     }
@@ -284,15 +292,9 @@ void Coordinator::run(Instant now) noexcept {
       // The previous step is recorded now, while the substructures work on this one.
       record_step(now);
     }
+    if (is_real_time()) take_early(now);
     while (!ledger_.is_complete() && ports_.measurements.take(measurement_)) {
-      switch (ledger_.enter(measurement_, now)) {
-        case LedgerEntry::accepted: last_to_answer_ = measurement_.substructure; break;
-        case LedgerEntry::stale:
-          if (is_real_time()) bridges_[measurement_.substructure].take_late(measurement_.step, measurement_.force_n);
-          break;
-        case LedgerEntry::duplicate:
-        case LedgerEntry::foreign: break;
-      }
+      take_answer(measurement_, now);
     }
     if (!ledger_.is_complete() && has_deadline()) {
       if (now < deadline_of(ledger_.step())) return;
@@ -462,6 +464,34 @@ void Coordinator::repeat_unanswered(Instant now) noexcept {
     if (commands_[i].attempt == 1) {
       report(now, Severity::warning, EventCode::command_repeated, settings_.substructures[i].id, {1.0, 0.0});
     }
+  }
+}
+
+void Coordinator::take_answer(const ForceMeasurement& answer, Instant now) noexcept {
+  switch (ledger_.enter(answer, now)) {
+    case LedgerEntry::accepted: last_to_answer_ = answer.substructure; break;
+    case LedgerEntry::stale:
+      if (is_real_time()) bridges_[answer.substructure].take_late(answer.step, answer.force_n);
+      break;
+    case LedgerEntry::early:
+      if (is_real_time()) keep_early(answer);
+      break;
+    case LedgerEntry::duplicate:
+    case LedgerEntry::foreign: break;
+  }
+}
+
+void Coordinator::keep_early(const ForceMeasurement& answer) noexcept {
+  const auto slots = std::span{early_}.subspan(answer.substructure * early_each(), early_each());
+  const auto free = std::ranges::find(slots, kNoStep, &ForceMeasurement::step);
+  if (free != slots.end()) *free = answer;  // what does not fit is bridged
+}
+
+void Coordinator::take_early(Instant now) noexcept {
+  for (ForceMeasurement& answer : early_) {
+    if (answer.step == kNoStep || answer.step > ledger_.step()) continue;
+    take_answer(answer, now);
+    answer.step = kNoStep;
   }
 }
 

@@ -136,6 +136,13 @@ class Coordinator final : public Node {
   [[nodiscard]] Instant deadline_of(Step step) const noexcept {
     return time_of(step) + usual_round_trip_ + settings_.bridging.deadline;
   }
+  void take_answer(const ForceMeasurement& answer, Instant now) noexcept;
+  void keep_early(const ForceMeasurement& answer) noexcept;
+  /// Answers kept of each substructure.
+  [[nodiscard]] std::size_t early_each() const noexcept {
+    return static_cast<std::size_t>(settings_.bridging.most_in_a_row) + 1;
+  }
+  void take_early(Instant now) noexcept;
   void bridge_unanswered() noexcept;
   /// Counts what missed its deadline in the step. @return false when there are too many in a row, which ends the test.
   [[nodiscard]] bool watch_deadlines(Instant now) noexcept;
@@ -185,6 +192,8 @@ class Coordinator final : public Node {
   // In real time:
   std::optional<Rehearsal> rehearsal_;
   std::vector<ForceBridge> bridges_;  // one per substructure
+  /// Answers to later steps: a site goes on while the coordinator waits for others. Free where the step is kNoStep.
+  std::vector<ForceMeasurement> early_;
   struct Misses {
     int in_a_row = 0;
     int longest = 0;

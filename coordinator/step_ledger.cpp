@@ -24,7 +24,8 @@ LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) 
   Account& account = accounts_[measurement.substructure];
   const std::pair answered{measurement.step, measurement.iteration};
   const std::pair opened{step_, iteration_};
-  if (measurement.sender != account.bound || answered > opened) return LedgerEntry::foreign;
+  if (measurement.sender != account.bound) return LedgerEntry::foreign;
+  if (answered > opened) return LedgerEntry::early;
   if (answered < opened) return LedgerEntry::stale;
   if (account.answered) return LedgerEntry::duplicate;
   account.answered = true;

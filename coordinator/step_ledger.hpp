@@ -14,7 +14,8 @@ enum class LedgerEntry : std::uint8_t {
   accepted,   // the first answer of its substructure to the open command
   duplicate,  // this command has already been answered
   stale,      // an answer to a step or an iteration that is closed
-  foreign,    // not from the process this test armed, or to a command that was never given
+  early,      // from the process that was armed, for a step that is not open yet: a site in real time ran ahead
+  foreign,    // not from the process this test armed
 };
 
 /// State of the open command, which is a step and an iteration of it: which substructures have answered, and how long

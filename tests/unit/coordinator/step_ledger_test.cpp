@@ -40,7 +40,7 @@ TEST_F(StepLedgerTest, CountsEachAnswerOnce) {
 
 TEST_F(StepLedgerTest, RejectsAnswersToOtherSteps) {
   EXPECT_EQ(ledger_.enter(answer(1, 3, 11), now_), LedgerEntry::stale);
-  EXPECT_EQ(ledger_.enter(answer(1, 5, 11), now_), LedgerEntry::foreign);
+  EXPECT_EQ(ledger_.enter(answer(1, 5, 11), now_), LedgerEntry::early);
   EXPECT_EQ(ledger_.enter(answer(1, 4, 12), now_), LedgerEntry::foreign) << "another process than the one armed";
   EXPECT_EQ(ledger_.enter(answer(7, 4, 11), now_), LedgerEntry::foreign);
   EXPECT_FALSE(ledger_.has_answered(1));
@@ -64,8 +64,8 @@ TEST_F(StepLedgerTest, MatchesAnswersByIteration) {
   EXPECT_EQ(ledger_.iteration(), 2);
   EXPECT_EQ(ledger_.enter(answer_to(3, 9), now_), LedgerEntry::stale);
   EXPECT_EQ(ledger_.enter(answer_to(4, 1), now_), LedgerEntry::stale);
-  EXPECT_EQ(ledger_.enter(answer_to(4, 3), now_), LedgerEntry::foreign);
-  EXPECT_EQ(ledger_.enter(answer_to(5, 0), now_), LedgerEntry::foreign);
+  EXPECT_EQ(ledger_.enter(answer_to(4, 3), now_), LedgerEntry::early);
+  EXPECT_EQ(ledger_.enter(answer_to(5, 0), now_), LedgerEntry::early);
   EXPECT_EQ(ledger_.enter(answer_to(4, 2), now_), LedgerEntry::accepted);
   EXPECT_EQ(ledger_.enter(answer_to(4, 2), now_), LedgerEntry::duplicate);
 }
