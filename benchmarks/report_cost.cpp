@@ -14,9 +14,9 @@
 #include <functional>
 #include <string>
 
+#include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
 #include "report/run_report/run_report.hpp"
-#include "report/run_report/signal_curve.hpp"
 
 namespace {
 
@@ -63,7 +63,7 @@ void read_all(const std::filesystem::path& run) {
     const RunFileReader file{entry.path()};
     for (const TableLayout& table : file.tables()) {
       double sum = 0.0;
-      run_report::read_rows(file, table.name, [&](std::span<const double> row) {
+      read_rows(file, table.name, [&](std::span<const double> row) {
         sum += row.front();
         return true;
       });

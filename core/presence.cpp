@@ -30,18 +30,10 @@ Presence::Presence(const Identity& identity, Duration lease, Inbox<ParticipantSt
 }
 
 Instant Presence::advance(Instant now) noexcept {
-  ParticipantStatus status;
-  while (inbox_.take(status)) learn(status, now);
-
-  Instant next_lease = kNever;
-  for (Peer& peer : std::span{peers_}.first(peer_count_)) {
-    if (has_left(peer.status.state)) continue;
-    if (now - peer.last_seen >= lease_) {
-      peer.status.state = LifecycleState::lost;
-    } else {
-      next_lease = std::min(next_lease, peer.last_seen + lease_);
-    }
-  }
+  bool has_heard = false;
+  for (ParticipantStatus status; inbox_.take(status); has_heard = true) learn(status, now);
+  // Leases begin anew with a status and end at the time that was found: in between there is nothing to look at.
+  if (has_heard || now >= next_lease_) check_leases(now);
 
   if (status_changed_ || now >= next_heartbeat_) {
     own_.clock = now.time_since_epoch();
@@ -49,7 +41,19 @@ Instant Presence::advance(Instant now) noexcept {
     status_changed_ = false;
     next_heartbeat_ = now + lease_ / 4;
   }
-  return std::min(next_lease, next_heartbeat_);
+  return std::min(next_lease_, next_heartbeat_);
+}
+
+void Presence::check_leases(Instant now) noexcept {
+  next_lease_ = kNever;
+  for (Peer& peer : std::span{peers_}.first(peer_count_)) {
+    if (has_left(peer.status.state)) continue;
+    if (now - peer.last_seen >= lease_) {
+      peer.status.state = LifecycleState::lost;
+    } else {
+      next_lease_ = std::min(next_lease_, peer.last_seen + lease_);
+    }
+  }
 }
 
 void Presence::set_state(LifecycleState state) noexcept {

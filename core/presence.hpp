@@ -63,6 +63,7 @@ class Presence {
 
  private:
   void learn(const ParticipantStatus& status, Instant now) noexcept;
+  void check_leases(Instant now) noexcept;
   void judge_duplicate(const ParticipantStatus& other, Instant now) noexcept;
 
   Identity identity_;
@@ -75,6 +76,7 @@ class Presence {
   bool is_duplicate_ = false;
   bool duplicate_reported_ = false;
   Instant next_heartbeat_{};
+  Instant next_lease_ = kNever;  // of those that are there
   std::array<Peer, kMaxSubstructures + 8> peers_{};
   std::size_t peer_count_ = 0;
 };

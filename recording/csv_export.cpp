@@ -9,13 +9,11 @@
 
 #include "core/faults.hpp"
 #include "recording/error.hpp"
+#include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
 
 namespace hybridtest {
 namespace {
-
-/// Rows held in memory at once.
-constexpr std::size_t kBlockRows = 8192;
 
 void append_number(std::string& text, double value) {
   if (std::isnan(value)) {
@@ -51,8 +49,8 @@ void export_table(const RunFileReader& file, const TableLayout& layout, CsvFile&
   for (const Column& column : layout.columns) text += (text.empty() ? "" : ",") + column.name;
   csv.write(text + "\n");
   const std::size_t width = layout.columns.size();
-  for (std::size_t first = 0; first < file.row_count(layout.name); first += kBlockRows) {
-    const std::vector<double> values = file.rows(layout.name, first, kBlockRows);
+  for (std::size_t first = 0; first < file.row_count(layout.name); first += kRowsInMemory) {
+    const std::vector<double> values = file.rows(layout.name, first, kRowsInMemory);
     text.clear();
     for (std::size_t i = 0; i < values.size(); ++i) {
       append_number(text, values[i]);

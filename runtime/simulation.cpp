@@ -141,8 +141,9 @@ class Simulation {
   }
 
   void advance_participants() {
-    for (SimulatedParticipant& participant : participants_) {
-      const bool has_arrival = network_.take_arrival(participant.id);
+    for (std::size_t i = 0; i < participants_.size(); ++i) {
+      SimulatedParticipant& participant = participants_[i];
+      const bool has_arrival = network_.take_arrival(i);
       const bool has_started = now_ >= Instant{participant.clock.start()};
       if (participant.is_over() || !has_started || (!has_arrival && participant.wake > now_)) continue;
       if (const Instant end = end_of_pause(participant.id); end > now_) {
@@ -153,7 +154,7 @@ class Simulation {
       const Instant wake = participant.participant->node().advance(local);
       // A node that is due at once runs a nanosecond later, so that time moves on.
       participant.wake = std::max(participant.clock.simulated(wake), now_ + Duration{1});
-      if (&participant == &participants_.front() && ++coordinator_runs_ % kProgressEvery == 0) {
+      if (i == 0 && ++coordinator_runs_ % kProgressEvery == 0) {
         keep_house();
         if (observer_.progress(report())) participant.participant->request_stop(StopReason::interrupted);
       }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <complex>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -35,5 +37,31 @@ struct FrequencyEvaluation {
 [[nodiscard]] std::optional<FrequencyEvaluation> evaluate_tracking_frequency(std::span<const double> target,
                                                                              std::span<const double> measured,
                                                                              double period_s);
+
+/// The same of signals that are too long for one transform: the sums over the frequencies go over blocks of them, as in
+/// the estimator H1 of Bendat and Piersol, Random Data. Each block is less its mean and tapered.
+class FrequencyEvaluationSum {
+ public:
+  /// @param length   of the transforms, a power of two of at least 16 and the size of every block: a shorter one is
+  /// followed by
+  ///                 zeros.
+  FrequencyEvaluationSum(double period_s, std::size_t length);
+
+  /// @param target, measured   of equal size, at least one value.
+  void add(std::span<const double> target, std::span<const double> measured);
+  /// @return nothing where evaluate_tracking_frequency() returns nothing.
+  [[nodiscard]] std::optional<FrequencyEvaluation> result() const;
+
+ private:
+  double period_s_;
+  std::size_t length_;
+  std::size_t samples_ = 0;
+  bool target_moves_ = false;
+  bool measured_moves_ = false;
+  std::complex<double> cross_{};
+  double input_power_ = 0.0;
+  double output_power_ = 0.0;
+  double frequency_moment_ = 0.0;
+};
 
 }  // namespace hybridtest

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/intake/intake.hpp"
+#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -116,6 +117,12 @@ class CsvReader {
 
   void read_rows() {
     const auto expected = static_cast<std::size_t>(std::ranges::count(rest_, '\n')) + 1;
+    if (expected > tuning::kSamplesMax + 1) {
+      return findings_.add(0, {}, {},
+                           fmt::format("too many rows: expected at most {}, because a diagnosis keeps them in memory; "
+                                       "cut a part out of the file",
+                                       tuning::kSamplesMax));
+    }
     raw_.time_s.reserve(expected);
     for (RawColumn& column : raw_.columns) column.values.reserve(expected);
     for (std::size_t row = kHeaderRow + 1; !rest_.empty(); ++row) {

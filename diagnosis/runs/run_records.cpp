@@ -12,6 +12,7 @@
 #include "core/input_file.hpp"
 #include "core/text/shown.hpp"
 #include "diagnosis/intake/intake.hpp"
+#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/tuning.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file.hpp"
@@ -43,6 +44,16 @@ const SubstructureScenario& site_of(const Scenario& scenario, const std::filesys
     throw ConfigError{"--site " + std::string{id} + ": no such site" + known};
   }
   return *site;
+}
+
+/// A diagnosis keeps all signals in memory.
+void require_room(const RunFileReader& file, std::string_view table, std::string_view advice) {
+  const std::size_t rows = file.row_count(table);
+  if (rows <= tuning::kSamplesMax) return;
+  throw RecordingError{
+      fmt::format("{}: the table {} has {} rows; expected at most {}, because a diagnosis keeps them in "
+                  "memory; {}",
+                  file.path().string(), table, rows, tuning::kSamplesMax, advice)};
 }
 
 /// Displacement and velocity of one interface degree of freedom at the coordinator's steps.
@@ -148,6 +159,7 @@ void add_sent(RawRecording& raw, const RunFileReader& site, const Scenario& scen
               const SubstructureScenario& substructure, const std::filesystem::path& coordinator_file) {
   const RunFileReader coordinator{coordinator_file};
   if (coordinator.row_count("steps") == 0) return;
+  require_room(coordinator, "steps", "diagnose a CSV file of the site");
   const std::vector<double> model_time_s = planned_model_time_s(site, scenario.time.time_scale);
   const std::vector<SentMotion> motions = sent_motions(coordinator, scenario, substructure.interface);
   for (std::size_t dof = 0; dof < motions.size(); ++dof) {
@@ -212,6 +224,9 @@ RawRecording raw_recording_of_run(const std::filesystem::path& run, std::string_
   const Scenario scenario = scenario_of(run);
   const SubstructureScenario& substructure = site_of(scenario, run, site);
   const RunFileReader file{run_file(run, substructure.id)};
+  require_room(file, "control",
+               fmt::format("use `hybridtest export {} --csv` and diagnose a part of csv/{}.control.csv", run.string(),
+                           substructure.id));
   RawRecording raw;
   raw.file = run.string();
   add_control_table(raw, file);
@@ -244,7 +259,7 @@ Recording read_recording(const std::filesystem::path& path, RecordingRole role, 
   Recording recording;
   if (std::filesystem::is_directory(path)) {
     recording = accepted(check_recording(raw_recording_of_run(path, site), time), file);
-    recording.sha256 = hex(sha256(content_of(site_run_file(path, site))));
+    recording.sha256 = hex(sha256_of_file(site_run_file(path, site)));
   } else {
     const std::string text = content_of(path);
     recording = accepted(read_csv_recording(text, file, time), file);
@@ -288,6 +303,7 @@ Eigen::MatrixXd recorded_applied_forces(const Scenario& scenario, const StepColu
 
 TestResponse recorded_response(const std::filesystem::path& run, const Scenario& scenario) {
   const RunFileReader coordinator{run_file(run, kCoordinatorId)};
+  require_room(coordinator, "steps", "the structure is not compared");
   return response_of_steps(scenario, steps_of(coordinator));
 }
 

@@ -23,7 +23,28 @@ std::string dof_name(const RunFileHeader& header, std::string_view suffix) {
   return "dof_" + std::to_string(position);
 }
 
+std::optional<double> value_in_row(const RunFileReader& file, std::string_view table, std::string_view column,
+                                   std::size_t row) {
+  const auto position = column_position(file, table, column);
+  if (!position || row >= file.row_count(table)) return {};
+  return file.rows(table, row, 1)[*position];
+}
+
 }  // namespace
+
+std::optional<std::size_t> column_position(const RunFileReader& file, std::string_view table, std::string_view column) {
+  const auto layout = std::ranges::find(file.tables(), table, &TableLayout::name);
+  return layout == file.tables().end() ? std::nullopt : layout->position(column);
+}
+
+std::optional<double> value_in_first_row(const RunFileReader& file, std::string_view table, std::string_view column) {
+  return value_in_row(file, table, column, 0);
+}
+
+std::optional<double> value_in_last_row(const RunFileReader& file, std::string_view table, std::string_view column) {
+  const std::size_t rows = file.row_count(table);
+  return rows == 0 ? std::nullopt : value_in_row(file, table, column, rows - 1);
+}
 
 std::vector<DofColumn> dof_columns(const RunFileReader& file, std::string_view table, std::string_view quantity,
                                    std::string_view unit) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,5 +23,15 @@ struct DofColumn {
 /// degree of freedom in the header's `interface_dofs`.
 [[nodiscard]] std::vector<DofColumn> dof_columns(const RunFileReader& file, std::string_view table,
                                                  std::string_view quantity, std::string_view unit);
+
+/// Of a column in the rows of its table; nothing when there is no such column.
+[[nodiscard]] std::optional<std::size_t> column_position(const RunFileReader& file, std::string_view table,
+                                                         std::string_view column);
+
+/// Nothing when there is no such column or no row.
+[[nodiscard]] std::optional<double> value_in_first_row(const RunFileReader& file, std::string_view table,
+                                                       std::string_view column);
+[[nodiscard]] std::optional<double> value_in_last_row(const RunFileReader& file, std::string_view table,
+                                                      std::string_view column);
 
 }  // namespace hybridtest

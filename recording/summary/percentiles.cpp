@@ -7,18 +7,33 @@
 namespace hybridtest {
 namespace {
 
-double nearest_rank(const std::vector<double>& sorted, std::size_t percent) {
-  const std::size_t rank = (sorted.size() * percent + 99) / 100;
-  return sorted[std::max<std::size_t>(rank, 1) - 1];
+std::size_t nearest_rank(std::size_t count, std::size_t percent) {
+  return std::max<std::size_t>((count * percent + 99) / 100, 1) - 1;
 }
 
 }  // namespace
 
-std::optional<Percentiles> percentiles(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+PercentileSearch::PercentileSearch()
+    : values_{[](std::size_t count) {
+        return std::vector<std::size_t>{nearest_rank(count, 50), nearest_rank(count, 99), count - 1};
+      }} {}
+
+void PercentileSearch::add(double value) {
+  if (std::isfinite(value)) values_.add(value);
+}
+
+std::optional<Percentiles> PercentileSearch::result() const {
+  const std::vector<double>& values = values_.values();
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  return Percentiles{nearest_rank(values, 50), nearest_rank(values, 99), values.back()};
+  return Percentiles{values[0], values[1], values[2]};
+}
+
+std::optional<Percentiles> percentiles(const std::vector<double>& values) {
+  PercentileSearch search;
+  do {
+    for (const double value : values) search.add(value);
+  } while (search.end_pass());
+  return search.result();
 }
 
 }  // namespace hybridtest

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -9,18 +10,19 @@
 #include "core/event_text.hpp"
 #include "core/stall.hpp"
 #include "recording/error.hpp"
+#include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
 #include "recording/summary/columns.hpp"
+#include "recording/summary/exchanges.hpp"
 #include "recording/summary/find_end.hpp"
+#include "recording/summary/peak_search.hpp"
 #include "recording/summary/run_summary.hpp"
-#include "recording/summary/test_rows.hpp"
+#include "recording/summary/site_figures.hpp"
 
 namespace hybridtest {
 namespace {
 
 constexpr std::string_view kSteps = "steps";
-constexpr std::string_view kControl = "control";
-constexpr std::string_view kExchanges = "exchanges";
 constexpr std::string_view kTest = "test";
 constexpr std::string_view kLoopTiming = "loop_timing";
 
@@ -28,23 +30,10 @@ std::string count_of(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// Empty when there is no such column.
-std::vector<double> column_if_any(const RunFileReader& file, std::string_view table, std::string_view column) {
-  return file.has_column(table, column) ? file.column(table, column) : std::vector<double>{};
-}
-
-std::optional<double> last_of(const std::vector<double>& values) {
-  if (values.empty() || !std::isfinite(values.back())) return {};
-  return values.back();
-}
-
-std::optional<Peak> peak_of(std::string dof, const std::vector<double>& values, const std::vector<double>& time_s) {
-  std::optional<Peak> peak;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]) || (peak && std::abs(values[i]) <= std::abs(peak->value))) continue;
-    peak = Peak{dof, values[i], i < time_s.size() ? time_s[i] : std::numeric_limits<double>::quiet_NaN()};
-  }
-  return peak;
+/// The last value of a column if it is finite.
+std::optional<double> last_of(const RunFileReader& file, std::string_view table, std::string_view column) {
+  const auto value = value_in_last_row(file, table, column);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// The ground motions with the spectra of what was applied; none in the files of older versions.
@@ -85,113 +74,24 @@ std::vector<GroundMotionSummary> ground_motions_of(const RunFileReader& file) {
   return motions;
 }
 
-/// @param values   reads a column of the table.
-template <class Values>
-std::vector<Peak> peaks_of(const RunFileReader& file, std::string_view table, std::string_view quantity,
-                           std::string_view unit, const Values& values) {
-  std::vector<Peak> peaks;
-  const std::vector<double> time_s = values("model_time_s");
-  for (const DofColumn& column : dof_columns(file, table, quantity, unit)) {
-    if (auto peak = peak_of(column.dof, values(column.name), time_s)) peaks.push_back(*peak);
-  }
-  return peaks;
-}
-
 /// Steps that are missing between consecutive rows.
 std::uint64_t missing_steps(const RunFileReader& file) {
-  const std::vector<double> steps = column_if_any(file, kSteps, "step");
+  const auto step = column_position(file, kSteps, "step");
+  if (!step) return 0;
   double missing = 0.0;
-  for (std::size_t i = 1; i < steps.size(); ++i) {
-    const double gap = steps[i] - steps[i - 1] - 1.0;
+  std::optional<double> before;
+  read_rows(file, kSteps, [&](std::span<const double> row) {
+    const double gap = before ? row[*step] - *before - 1.0 : 0.0;
     if (gap > 0.0) missing += gap;
-  }
+    before = row[*step];
+    return true;
+  });
   return static_cast<std::uint64_t>(missing);
-}
-
-bool has_flag(double flags, MeasurementFlags flag) {
-  if (!(flags >= 0.0 && flags <= 4294967295.0)) return false;
-  return any(static_cast<MeasurementFlags>(static_cast<std::uint32_t>(flags)) & flag);
-}
-
-/// The table `exchanges`, read once.
-struct Exchanges {
-  std::vector<double> step, substructure, round_trip_us, turnaround_us, attempts, flags;
-
-  explicit Exchanges(const RunFileReader& file)
-      : step{column_if_any(file, kExchanges, "step")},
-        substructure{column_if_any(file, kExchanges, "substructure")},
-        round_trip_us{column_if_any(file, kExchanges, "round_trip_us")},
-        turnaround_us{column_if_any(file, kExchanges, "turnaround_us")},
-        attempts{column_if_any(file, kExchanges, "attempts")},
-        flags{column_if_any(file, kExchanges, "flags")} {}
-};
-
-void count_flags(ExchangeSummary& summary, double flags) {
-  summary.extrapolated += has_flag(flags, MeasurementFlags::extrapolated);
-  summary.held += has_flag(flags, MeasurementFlags::held);
-  summary.saturated += has_flag(flags, MeasurementFlags::saturated);
-  summary.late += has_flag(flags, MeasurementFlags::late);
-  summary.repeated += has_flag(flags, MeasurementFlags::repeated);
-}
-
-std::optional<ExchangeSummary> exchange_with(const Exchanges& all, std::size_t index, double last_step) {
-  ExchangeSummary summary;
-  std::vector<double> round_trip_us;
-  std::vector<double> turnaround_us;
-  bool any_row = false;
-  for (std::size_t i = 0; i < all.substructure.size(); ++i) {
-    if (all.substructure[i] != static_cast<double>(index)) continue;
-    any_row = true;
-    if (i < all.attempts.size() && all.attempts[i] > 1.0) {
-      summary.resent += static_cast<std::uint64_t>(all.attempts[i]) - 1;
-    }
-    const bool answered = i < all.round_trip_us.size() && std::isfinite(all.round_trip_us[i]);
-    if (!answered) {
-      const bool went_on = i < all.step.size() && all.step[i] <= last_step;
-      ++(went_on ? summary.bridged : summary.lost);
-      continue;
-    }
-    ++summary.answered;
-    round_trip_us.push_back(all.round_trip_us[i]);
-    if (i < all.turnaround_us.size()) turnaround_us.push_back(all.turnaround_us[i]);
-    if (i < all.flags.size()) count_flags(summary, all.flags[i]);
-  }
-  if (!any_row) return {};
-  summary.round_trip_us = percentiles(std::move(round_trip_us));
-  summary.turnaround_us = percentiles(std::move(turnaround_us));
-  return summary;
-}
-
-/// Target against measured displacement, from the control loop's table where there is one.
-std::vector<TrackingError> tracking_of(const RunFileReader& file, const TestRows& rows) {
-  const bool control = file.row_count(kControl) > 0 && file.has_column(kControl, "time_s");
-  const std::string_view table = control ? kControl : kSteps;
-  const auto values = [&](std::string_view column) {
-    return control ? rows.column(column) : column_if_any(file, table, column);
-  };
-  const std::vector<double> time_s = values(control ? "time_s" : "model_time_s");
-  std::vector<TrackingError> errors;
-  for (const DofColumn& target : dof_columns(file, table, "target_displacement", "m")) {
-    const std::string measured = "measured_displacement" + target.rest;
-    if (!file.has_column(table, measured) || time_s.empty()) continue;
-    const auto error = evaluate_tracking(target.dof, time_s, values(target.name), values(measured));
-    if (error) errors.push_back(*error);
-  }
-  return errors;
-}
-
-std::optional<EnergyError> energy_error_of(const TestRows& rows) {
-  std::vector<double> energy_j = rows.column("energy_error_j");
-  std::erase_if(energy_j, [](double value) { return !std::isfinite(value); });
-  if (energy_j.empty()) return {};
-  return EnergyError{peak_of("", energy_j, {})->value, energy_j.back()};
 }
 
 std::optional<LoopTimingSummary> loop_timing_of(const RunFileReader& file) {
   if (file.row_count(kLoopTiming) == 0) return {};
-  const auto value = [&](std::string_view column) {
-    return last_of(column_if_any(file, kLoopTiming, column)).value_or(0.0);
-  };
+  const auto value = [&](std::string_view column) { return last_of(file, kLoopTiming, column).value_or(0.0); };
   const auto percentiles_of = [&](const std::string& quantity) {
     return Percentiles{value(quantity + "_p50_us"), value(quantity + "_p99_us"), value(quantity + "_max_us")};
   };
@@ -204,14 +104,6 @@ std::optional<LoopTimingSummary> loop_timing_of(const RunFileReader& file) {
   timing.fifo_priority = static_cast<int>(value("fifo_priority"));
   if (const double cpu = value("cpu"); cpu >= 0.0) timing.cpu = static_cast<int>(cpu);
   return timing;
-}
-
-std::vector<Peak> peak_forces_of(const RunFileReader& file, const TestRows& rows) {
-  const auto of_control = [&](std::string_view column) { return rows.column(column); };
-  if (auto peaks = peaks_of(file, kControl, "measured_force", "n", of_control); !peaks.empty()) return peaks;
-  const auto of_steps = [&](std::string_view column) { return column_if_any(file, kSteps, column); };
-  if (auto peaks = peaks_of(file, kSteps, "measured_force", "n", of_steps); !peaks.empty()) return peaks;
-  return peaks_of(file, kSteps, "force", "n", of_steps);
 }
 
 /// A response with such a tracking error is one of other displacements than the recorded ones.
@@ -269,7 +161,8 @@ class Summariser {
   void collect_events();
   void summarise_files();
   void summarise_test();
-  void find_stalls();
+  void read_steps();
+  [[nodiscard]] std::function<void(std::span<const double>)> stall_search();
   void summarise_substructures();
   void summarise_events();
   void check_ends();
@@ -358,20 +251,18 @@ void Summariser::summarise_files() {
 
 void Summariser::summarise_test() {
   const RunFileReader& file = *coordinator_;
-  summary_.peak_displacement_m = peaks_of(file, kSteps, "displacement", "m",
-                                          [&](std::string_view column) { return column_if_any(file, kSteps, column); });
-  summary_.model_time_s = last_of(column_if_any(file, kSteps, "model_time_s")).value_or(0.0);
+  summary_.model_time_s = last_of(file, kSteps, "model_time_s").value_or(0.0);
 
-  if (const auto reason = last_of(column_if_any(file, kTest, "stop_reason"))) {
+  if (const auto reason = last_of(file, kTest, "stop_reason")) {
     summary_.stop_reason = static_cast<StopReason>(static_cast<int>(*reason));
   } else {
     add_data_fault("the coordinator's file does not say how the test ended");
   }
-  if (const auto planned = last_of(column_if_any(file, kTest, "planned_steps"))) {
+  if (const auto planned = last_of(file, kTest, "planned_steps")) {
     summary_.planned_steps = static_cast<std::int64_t>(*planned);
   }
-  const double last_step = last_of(column_if_any(file, kSteps, "step")).value_or(0.0);
-  const double completed = last_of(column_if_any(file, kTest, "completed_steps")).value_or(last_step);
+  const double last_step = last_of(file, kSteps, "step").value_or(0.0);
+  const double completed = last_of(file, kTest, "completed_steps").value_or(last_step);
   summary_.completed_steps = static_cast<std::int64_t>(completed);
 
   summary_.ground_motions = ground_motions_of(file);
@@ -380,37 +271,54 @@ void Summariser::summarise_test() {
     if (!warning.empty()) summary_.remarks.push_back(warning);
   }
 
-  const std::vector<double> wall_s = column_if_any(file, kSteps, "wall_time_s");
-  summary_.wall_time_s = last_of(column_if_any(file, kTest, "wall_time_s"));
-  if (!summary_.wall_time_s && !wall_s.empty()) summary_.wall_time_s = wall_s.back() - wall_s.front();
+  summary_.wall_time_s = last_of(file, kTest, "wall_time_s");
+  const auto first_wall_s = value_in_first_row(file, kSteps, "wall_time_s");
+  if (!summary_.wall_time_s && first_wall_s) {
+    summary_.wall_time_s = *value_in_last_row(file, kSteps, "wall_time_s") - *first_wall_s;
+  }
   if (summary_.wall_time_s && *summary_.wall_time_s > 0.0)
     summary_.steps_per_second = completed / *summary_.wall_time_s;
-  find_stalls();
+  read_steps();
 }
 
-void Summariser::find_stalls() {
-  const double step_s = last_of(column_if_any(*coordinator_, kTest, "step_wall_time_s")).value_or(0.0);
-  if (!(step_s > 0.0)) return;  // lockstep: without a clock nothing stands still
-  const std::vector<double> step = column_if_any(*coordinator_, kSteps, "step");
-  const std::vector<double> wall_s = column_if_any(*coordinator_, kSteps, "wall_time_s");
-  const std::vector<double> model_s = column_if_any(*coordinator_, kSteps, "model_time_s");
+/// Peaks, and stalls of a test that has a clock.
+void Summariser::read_steps() {
+  const RunFileReader& file = *coordinator_;
+  PeakSearch displacement{file, kSteps, "displacement", "m"};
+  const auto search = stall_search();
+  read_rows(file, kSteps, [&](std::span<const double> row) {
+    displacement.add(row);
+    if (search) search(row);
+    return true;
+  });
+  summary_.peak_displacement_m = displacement.peaks();
+}
+
+/// Looks at every row of the steps; empty in lockstep: without a clock nothing stands still.
+std::function<void(std::span<const double>)> Summariser::stall_search() {
+  const double step_s = last_of(*coordinator_, kTest, "step_wall_time_s").value_or(0.0);
+  const auto step = column_position(*coordinator_, kSteps, "step");
+  const auto wall_time = column_position(*coordinator_, kSteps, "wall_time_s");
+  const auto model_time = column_position(*coordinator_, kSteps, "model_time_s");
+  if (!(step_s > 0.0) || !step || !wall_time || !model_time) return {};
   std::set<std::int64_t> paused;
   for (const RecordedEvent& recorded : events_) {
     if (recorded.event.code == EventCode::test_paused) paused.insert(recorded.event.step);
   }
-  for (std::size_t i = 1; i < std::min({step.size(), wall_s.size(), model_s.size()}); ++i) {
-    const double taken_s = wall_s[i] - wall_s[i - 1];
-    if (!is_stall(taken_s, step_s)) continue;
+  return [=, this, before_s = std::optional<double>{}](std::span<const double> row) mutable {
+    const double taken_s = before_s ? row[*wall_time] - *before_s : 0.0;
+    before_s = row[*wall_time];
+    if (!is_stall(taken_s, step_s)) return;
     // A pause begins when a step is over; the commands of the next may be out already.
-    const auto at = static_cast<std::int64_t>(step[i]);
-    if (paused.contains(at) || paused.contains(at - 1)) continue;
+    const auto at = static_cast<std::int64_t>(row[*step]);
+    if (paused.contains(at) || paused.contains(at - 1)) return;
     StallSummary& stalls = summary_.stalls;
     ++stalls.count;
     stalls.total_s += taken_s - step_s;
-    if (taken_s - step_s <= stalls.longest_s) continue;
+    if (taken_s - step_s <= stalls.longest_s) return;
     stalls.longest_s = taken_s - step_s;
-    stalls.model_time_s = model_s[i];
-  }
+    stalls.model_time_s = row[*model_time];
+  };
 }
 
 void Summariser::summarise_substructures() {
@@ -421,23 +329,23 @@ void Summariser::summarise_substructures() {
     const std::string& id = file.header().participant;
     if (&file != coordinator_ && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
   }
-  std::optional<Exchanges> exchanges;
-  if (coordinator_ != nullptr) exchanges.emplace(*coordinator_);
+  std::vector<std::optional<ExchangeSummary>> exchanges(ids.size());
+  if (coordinator_ != nullptr) {
+    exchanges = exchanges_of(*coordinator_, ids.size(), static_cast<double>(summary_.completed_steps));
+  }
   for (std::size_t i = 0; i < ids.size(); ++i) {
     SubstructureSummary substructure;
     substructure.id = ids[i];
-    if (exchanges) {
-      substructure.exchange = exchange_with(*exchanges, i, static_cast<double>(summary_.completed_steps));
-    }
+    substructure.exchange = exchanges[i];
     if (const RunFileReader* file = file_of(ids[i])) {
-      const TestRows rows{*file};
-      substructure.peak_force_n = peak_forces_of(*file, rows);
-      substructure.tracking = tracking_of(*file, rows);
+      SiteFigures figures = site_figures(*file);
+      substructure.peak_force_n = std::move(figures.peak_force_n);
+      substructure.tracking = std::move(figures.tracking);
+      substructure.energy_error = figures.energy_error;
       for (const TrackingError& error : substructure.tracking) {
         if (error.rms_relative.value_or(0.0) <= kTrackingRemark) continue;
         summary_.remarks.push_back(tracking_remark(ids[i], error));
       }
-      substructure.energy_error = energy_error_of(rows);
       substructure.loop_timing = loop_timing_of(*file);
     } else {
       summary_.remarks.push_back(ids[i] + ": no file in this directory; if it ran on another host, copy its file here");
@@ -471,7 +379,7 @@ void Summariser::summarise_events() {
 void Summariser::check_ends() {
   if (coordinator_ == nullptr) return;
   for (const RunFileReader& file : files_) {
-    const auto last = last_of(column_if_any(file, kSteps, "step"));
+    const auto last = last_of(file, kSteps, "step");
     if (!last) continue;
     const auto missing = summary_.completed_steps - static_cast<std::int64_t>(*last);
     // The last message may not have arrived when the test ended.

@@ -1,7 +1,7 @@
 #include "recording/summary/test_rows.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include "recording/read_rows.hpp"
+#include "recording/summary/columns.hpp"
 
 namespace hybridtest {
 namespace {
@@ -12,32 +12,40 @@ constexpr std::string_view kModelTime = "model_time_s";
 /// Model times are sums of control periods: a row this share of a period before the end is at the end.
 constexpr double kSameTime = 0.25;
 
-/// Of the first row that is at the last step or beyond it; the size when there is none.
-std::size_t last_row(const std::vector<double>& model_time_s, std::size_t first, double end_s) {
-  for (std::size_t i = first + 1; i < model_time_s.size(); ++i) {
-    if (model_time_s[i] >= end_s - kSameTime * (model_time_s[i] - model_time_s[i - 1])) return i;
-  }
-  return model_time_s.size();
-}
-
 }  // namespace
 
-TestRows::TestRows(const RunFileReader& file) : file_{file}, end_{file.row_count(kTable)} {
-  if (end_ == 0 || !file.has_column(kTable, kModelTime) || !file.has_column("steps", kModelTime)) return;
-  const std::vector<double> model_time_s = file.column(kTable, kModelTime);
-  const std::vector<double> steps_s = file.column("steps", kModelTime);
-  if (steps_s.empty()) return;
-  const auto moves = std::ranges::find_if(model_time_s, [&](double time_s) { return time_s > model_time_s.front(); });
-  if (moves == model_time_s.end()) return;
-  first_ = static_cast<std::size_t>(std::distance(model_time_s.begin(), moves)) - 1;
-  end_ = std::min(last_row(model_time_s, first_, steps_s.back()) + 1, end_);
+TestRows::TestRows(const RunFileReader& file) : file_{file} {
+  const auto end_s = value_in_last_row(file, "steps", kModelTime);
+  const auto position = column_position(file, kTable, kModelTime);
+  if (!end_s || !position || file.row_count(kTable) == 0) return;
+  std::size_t row_number = 0;
+  std::optional<double> begin_s;
+  bool moves = false;
+  read_rows(file, kTable, [&](std::span<const double> row) {
+    if (!begin_s) begin_s = row[*position];
+    moves = row[*position] > *begin_s;
+    row_number += moves ? 0 : 1;
+    return !moves;
+  });
+  if (!moves) return;
+  time_ = position;
+  first_ = row_number - 1;
+  end_s_ = *end_s;
 }
 
-std::vector<double> TestRows::column(std::string_view name) const {
-  if (!file_.has_column(kTable, name)) return {};
-  const std::vector<double> all = file_.column(kTable, name);
-  const auto at = [&](std::size_t row) { return all.begin() + static_cast<std::ptrdiff_t>(std::min(row, all.size())); };
-  return {at(first_), at(end_)};
+void TestRows::read(const std::function<void(std::span<const double> row)>& visit) const {
+  std::optional<double> before_s;
+  read_rows(
+      file_, kTable,
+      [&](std::span<const double> row) {
+        visit(row);
+        if (!time_) return true;
+        const double time_s = row[*time_];
+        const bool is_last = before_s && time_s >= end_s_ - kSameTime * (time_s - *before_s);
+        before_s = time_s;
+        return !is_last;
+      },
+      first_);
 }
 
 }  // namespace hybridtest

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
-#include <vector>
+#include <functional>
+#include <optional>
+#include <span>
 
 #include "recording/run_file_reader.hpp"
 
@@ -18,13 +19,14 @@ class TestRows {
   /// Every row where the file has no model times or no measured step.
   explicit TestRows(const RunFileReader& file);
 
-  /// These rows of a column; empty when there is no such column.
-  [[nodiscard]] std::vector<double> column(std::string_view name) const;
+  /// Hands them over one by one; a block of them is in memory.
+  void read(const std::function<void(std::span<const double> row)>& visit) const;
 
  private:
   const RunFileReader& file_;
+  std::optional<std::size_t> time_;  // position of the model time; none: every row is of the test
   std::size_t first_ = 0;
-  std::size_t end_ = 0;
+  double end_s_ = 0.0;  // model time of the last step
 };
 
 }  // namespace hybridtest

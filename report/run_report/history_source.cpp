@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/config_error.hpp"
-#include "report/run_report/tuning.hpp"
+#include "recording/read_rows.hpp"
 
 namespace hybridtest::run_report {
 
@@ -30,8 +30,8 @@ TableHistory::TableHistory(const RunFileReader& file, std::string table, std::sp
 bool TableHistory::next() {
   if (!time_) return false;
   if (at_ >= block_.size()) {
-    block_ = file_.rows(table_, first_, kBlockRows);
-    first_ += kBlockRows;
+    block_ = file_.rows(table_, first_, kRowsInMemory);
+    first_ += kRowsInMemory;
     at_ = 0;
     if (block_.empty()) return false;
   }

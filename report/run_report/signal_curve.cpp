@@ -57,19 +57,6 @@ class ColumnSignals final : public DerivedSignals {
 
 }  // namespace
 
-void read_rows(const RunFileReader& file, std::string_view table,
-               const std::function<bool(std::span<const double> row)>& visit) {
-  const auto layout = std::ranges::find(file.tables(), table, &TableLayout::name);
-  if (layout == file.tables().end()) return;
-  const std::size_t width = layout->columns.size();
-  for (std::size_t first = 0; first < file.row_count(table); first += kBlockRows) {
-    const std::vector<double> block = file.rows(table, first, kBlockRows);
-    for (std::size_t at = 0; at + width <= block.size(); at += width) {
-      if (!visit(std::span{block}.subspan(at, width))) return;
-    }
-  }
-}
-
 CurveBuilder::CurveBuilder(std::unique_ptr<DerivedSignals> signals, double end_s)
     : signals_{std::move(signals)},
       values_(signals_->names().size()),

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
 #include "report/plotting/thinning.hpp"
 #include "runtime/live/derived_signals.hpp"
@@ -22,10 +22,6 @@ struct SignalCurve {
   double peak_time_s = 0.0;  // of model time
   std::size_t values = 0;    // finite ones, before thinning
 };
-
-/// Hands over the rows of a table one by one, of which only a block is in memory, until `visit` returns false.
-void read_rows(const RunFileReader& file, std::string_view table,
-               const std::function<bool(std::span<const double> row)>& visit);
 
 /// Thins the signals of one table while its rows are read.
 class CurveBuilder {

@@ -5,8 +5,6 @@
 /// Numbers that were chosen for the report of a run.
 namespace hybridtest::run_report {
 
-/// Rows of a table in memory at once: an hour at 1 kHz is read in pieces of a few seconds.
-inline constexpr std::size_t kBlockRows = 8192;
 /// Columns that a history is thinned to: two for each pixel of a figure.
 inline constexpr std::size_t kHistoryColumns = 1800;
 /// Points that a loop is thinned to.

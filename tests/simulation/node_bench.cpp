@@ -23,7 +23,9 @@ constexpr Incarnation kFirstIncarnation = 1001;
 
 template <class Make>
 NodeBench::Seat& NodeBench::join(std::string name, Duration start, Make make) {
+  const std::size_t number = seats_.size() + outsiders_.size();
   Seat& seat = seats_.emplace_back();
+  seat.number = number;
   seat.name = std::move(name) + "#" + std::to_string(seats_.size());
   seat.start = start;
   seat.wake = Instant{start};
@@ -65,7 +67,7 @@ void NodeBench::run_next(Instant next) {
   now_ = std::max(now_, next);
   network_.advance_to(now_);
   for (Seat& seat : seats_) {
-    const bool has_arrival = network_.take_arrival(seat.name);
+    const bool has_arrival = network_.take_arrival(seat.number);
     if (seat.participant->is_done() || now_ < Instant{seat.start} || (!has_arrival && seat.wake > now_)) continue;
     const Instant wake = seat.participant->node().advance(now_ - seat.start);
     seat.wake = wake == kNever ? kNever : std::max(wake + seat.start, now_ + Duration{1});

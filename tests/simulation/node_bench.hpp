@@ -22,7 +22,8 @@ class NodeBench {
       : network_{seed, conditions} {}
 
   struct Seat {
-    std::string name;  // on the network; unlike the id unique
+    std::string name;        // on the network; unlike the id unique
+    std::size_t number = 0;  // in the order of joining the network
     Duration start{};
     std::unique_ptr<Transport> transport;
     std::unique_ptr<Outbox<Event>> events;

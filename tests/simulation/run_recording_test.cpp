@@ -7,10 +7,12 @@
 #include <iterator>
 
 #include "core/config_error.hpp"
+#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "recording/csv_export.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
+#include "recording/run_file_writer.hpp"
 #include "scenario/scenario_digest.hpp"
 #include "tests/simulation/kept_simulation.hpp"
 #include "tests/simulation/recorded_simulation.hpp"
@@ -104,6 +106,22 @@ TEST_F(RunRecording, RequiresSiteNameForSeveralSites) {
   EXPECT_EQ(second.dofs[0].of(Channel::measured_force), first(second, site.column("control", "measured_force_n")));
 }
 
+TEST_F(RunRecording, LongerThanFitsIntoMemoryIsRefused) {
+  simulate("two_storey_one_site", {});
+  const std::filesystem::path site = run_file(directory_.path(), "storey_1");
+  const RunFileHeader header = RunFileReader{site}.header();
+  {
+    RunFileWriter writer{site, header, {{"control", {{"time_s", "s"}, {"measured_force_n", "N"}}}}};
+    const std::vector<double> rows(2 * (tuning::kSamplesMax + 1), 0.0);
+    writer.append(0, rows);
+    writer.close();
+  }
+  EXPECT_THAT([&] { (void)read_recording(directory_.path(), RecordingRole::fit); },
+              testing::ThrowsMessage<ConfigError>(
+                  testing::AllOf(testing::HasSubstr("the table control has 4194305 rows; expected at most 4194304"),
+                                 testing::HasSubstr("csv/storey_1.control.csv"))));
+}
+
 TEST_F(RunRecording, StructureOfIteratedRunIsNotRecomputed) {
   const std::filesystem::path source{HYBRIDTEST_SOURCE_DIR};
   const Scenario scenario = read_scenario(
@@ -112,6 +130,15 @@ TEST_F(RunRecording, StructureOfIteratedRunIsNotRecomputed) {
   prepare_run_directory(directory_.path(), scenario);
   EXPECT_THAT([&] { static_cast<void>(structure_record(directory_.path(), scenario)); },
               testing::ThrowsMessage<RecordingError>(testing::HasSubstr("tries several displacements in a step")));
+}
+
+TEST(ReadRecording, LongerCsvThanFitsIntoMemoryIsRefused) {
+  std::string text = "time_s,measured_force_n\n";
+  for (std::size_t row = 0; row <= tuning::kSamplesMax; ++row) text += "0,1\n";
+  const Intake intake = read_csv_recording(text, "a.csv");
+  EXPECT_FALSE(intake.recording.has_value());
+  ASSERT_EQ(intake.findings.size(), 1U);
+  EXPECT_THAT(intake.findings[0].what, testing::HasSubstr("expected at most 4194304"));
 }
 
 TEST(ReadRecording, FindingsAndMissingFileAreConfigErrors) {

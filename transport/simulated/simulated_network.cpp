@@ -1,9 +1,9 @@
 #include "transport/simulated/simulated_network.hpp"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <functional>
-#include <map>
 #include <optional>
 #include <queue>
 #include <tuple>
@@ -13,37 +13,91 @@ namespace hybridtest::simulated {
 
 struct Member {
   std::string name;
+  std::size_t number = 0;  // in the order of joining
   bool is_alive = true;
   bool has_arrival = false;
   Waker waker;
   TransportCounters counters;
 };
 
+/// Messages of one type that are under way or wait in an inbox. A place is used again together with the memory of its
+/// message, so that a running test allocates nothing.
+template <class Message>
+class MessageStore {
+ public:
+  [[nodiscard]] std::size_t keep(const Message& message) {
+    if (free_.empty()) {
+      free_.push_back(messages_.size());
+      messages_.emplace_back();
+    }
+    const std::size_t place = free_.back();
+    free_.pop_back();
+    messages_[place] = message;
+    return place;
+  }
+  void take(std::size_t place, Message& message) {
+    message = messages_[place];
+    drop(place);
+  }
+  void drop(std::size_t place) { free_.push_back(place); }
+
+ private:
+  std::deque<Message> messages_;
+  std::vector<std::size_t> free_;
+};
+
+/// Where messages arrive, whatever their type.
+class Arrivals {
+ public:
+  virtual ~Arrivals() = default;
+  /// @param place   in the store of the messages.
+  virtual void arrive(std::size_t place) = 0;
+};
+
 /// A message on its way to one inbox; the order of sending decides between equal times.
 struct Delivery {
   Instant at{};
   std::uint64_t sequence = 0;
-  std::function<void()> deliver;
+  Arrivals* to = nullptr;  // of a subscription, which lives as long as the network
+  std::size_t place = 0;
 
   friend bool operator>(const Delivery& a, const Delivery& b) noexcept {
-    return std::tie(a.at, a.sequence) > std::tie(b.at, b.sequence);
+    return a.at != b.at ? a.at > b.at : a.sequence > b.sequence;
   }
 };
 
 template <class Message>
-struct Subscription {
+struct Subscription final : Arrivals {
+  Subscription(std::shared_ptr<Member> owner, std::optional<SubstructureIndex> wanted, MessageStore<Message>& messages)
+      : member{std::move(owner)}, only{wanted}, store{messages} {}
+
   std::shared_ptr<Member> member;
   std::optional<SubstructureIndex> only;
-  std::deque<Message> queue;
+  MessageStore<Message>& store;
+  std::vector<Instant> last_arrival;  // by the number of the sender
+  std::array<std::size_t, kInboxCapacity<Message>> waiting{};
+  std::size_t first = 0;
+  std::size_t count = 0;
 
-  void deliver(const Message& message) {
-    if (!member->is_alive) return;
+  void arrive(std::size_t place) override {
+    if (!member->is_alive) return store.drop(place);
     member->has_arrival = true;
-    if (queue.size() >= kInboxCapacity<Message>) {
+    if (count == waiting.size()) {
       ++member->counters.overflowed;
-      return;
+      return store.drop(place);
     }
-    queue.push_back(message);
+    waiting[(first + count++) % waiting.size()] = place;
+  }
+  [[nodiscard]] bool take(Message& message) {
+    if (count == 0) return false;
+    store.take(waiting[first], message);
+    first = (first + 1) % waiting.size();
+    --count;
+    return true;
+  }
+  [[nodiscard]] Instant& last_arrival_from(const Member& sender) {
+    if (last_arrival.size() <= sender.number) last_arrival.resize(sender.number + 1);
+    return last_arrival[sender.number];
   }
 };
 
@@ -51,6 +105,7 @@ template <class Message>
 struct Channel {
   std::vector<std::shared_ptr<Subscription<Message>>> subscriptions;
   std::vector<std::pair<std::shared_ptr<Member>, Message>> kept;  // newest per sender, for late joiners
+  MessageStore<Message> store;
 };
 
 template <class Message>
@@ -83,9 +138,8 @@ struct NetworkState {
   }
 
   /// On one link a message arrives after those sent before it, unless it is reordered.
-  [[nodiscard]] Instant arrival(const Member* from, const void* to) {
+  [[nodiscard]] Instant arrival(Instant& last) {
     Instant at = now + draw_latency();
-    Instant& last = last_arrival[{from, to}];
     if (happens(conditions.reordering)) {
       ++counters.reordered;
       return at + 3 * (conditions.latency + conditions.jitter);
@@ -105,10 +159,7 @@ struct NetworkState {
     const int copies = happens(conditions.duplication) ? 2 : 1;
     if (copies == 2) ++counters.duplicated;
     for (int copy = 0; copy < copies; ++copy) {
-      under_way.push({arrival(from.get(), to.get()), next_sequence++, [this, to, message] {
-                        ++counters.delivered;
-                        to->deliver(message);
-                      }});
+      under_way.push({arrival(to->last_arrival_from(*from)), next_sequence++, to.get(), to->store.keep(message)});
     }
   }
 
@@ -140,7 +191,6 @@ struct NetworkState {
   NetworkCounters counters;
   std::uint64_t next_sequence = 0;
   std::vector<std::shared_ptr<Member>> members;
-  std::map<std::pair<const Member*, const void*>, Instant> last_arrival;
   std::priority_queue<Delivery, std::vector<Delivery>, std::greater<>> under_way;
   std::tuple<Channel<TestAnnouncement>, Channel<ParticipantStatus>, Channel<DisplacementCommand>,
              Channel<ForceMeasurement>, Channel<TestControl>, Channel<Event>, Channel<SignalBlock>>
@@ -156,10 +206,7 @@ class SimulatedInbox final : public Inbox<Message> {
       : subscription_{std::move(subscription)} {}
 
   [[nodiscard]] bool take(Message& message) noexcept override {
-    if (subscription_->queue.empty()) return false;
-    message = subscription_->queue.front();
-    subscription_->queue.pop_front();
-    return true;
+    return subscription_->take(message);
   }
 
  private:
@@ -216,10 +263,8 @@ class SimulatedTransport final : public Transport {
 
   template <class Message>
   std::unique_ptr<Inbox<Message>> inbox(std::optional<SubstructureIndex> only = {}) {
-    auto subscription = std::make_shared<Subscription<Message>>();
-    subscription->member = member_;
-    subscription->only = only;
     Channel<Message>& channel = network_.channel<Message>();
+    auto subscription = std::make_shared<Subscription<Message>>(member_, only, channel.store);
     channel.subscriptions.push_back(subscription);
     for (const auto& [sender, message] : channel.kept) {
       if (sender != member_) network_.post(sender, subscription, message);
@@ -241,6 +286,7 @@ SimulatedNetwork::~SimulatedNetwork() = default;
 std::unique_ptr<Transport> SimulatedNetwork::join(std::string_view participant) {
   auto member = std::make_shared<Member>();
   member->name = participant;
+  member->number = state_->members.size();
   state_->members.push_back(member);
   return std::make_unique<SimulatedTransport>(*state_, std::move(member));
 }
@@ -260,15 +306,13 @@ void SimulatedNetwork::advance_to(Instant now) {
   while (!state_->under_way.empty() && state_->under_way.top().at <= now) {
     const Delivery delivery = state_->under_way.top();
     state_->under_way.pop();
-    delivery.deliver();
+    ++state_->counters.delivered;
+    delivery.to->arrive(delivery.place);
   }
 }
 
-bool SimulatedNetwork::take_arrival(std::string_view participant) noexcept {
-  for (const auto& member : state_->members) {
-    if (member->name == participant && std::exchange(member->has_arrival, false)) return true;
-  }
-  return false;
+bool SimulatedNetwork::take_arrival(std::size_t participant) noexcept {
+  return std::exchange(state_->members[participant]->has_arrival, false);
 }
 
 const NetworkCounters& SimulatedNetwork::counters() const noexcept { return state_->counters; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -62,8 +63,8 @@ class SimulatedNetwork {
   [[nodiscard]] Instant next_delivery() const noexcept;
   /// Advances simulated time and puts the messages that have arrived into the inboxes.
   void advance_to(Instant now);
-  /// Whether something arrived for the participant since the last call.
-  [[nodiscard]] bool take_arrival(std::string_view participant) noexcept;
+  /// Whether something arrived for a participant since the last call. @param participant   in the order of joining.
+  [[nodiscard]] bool take_arrival(std::size_t participant) noexcept;
 
   [[nodiscard]] const NetworkCounters& counters() const noexcept;
 

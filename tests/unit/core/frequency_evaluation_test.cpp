@@ -85,5 +85,36 @@ TEST(FrequencyEvaluation, NoiseAroundSmallMotionHasNoDelay) {
   }
 }
 
+TEST(FrequencyEvaluation, SumOverBlocksRecoversAmplitudeAndDelay) {
+  constexpr std::size_t kBlock = 8192;
+  const auto target = sine(3.3, 0.02, 0.0, 10 * kBlock);
+  const auto measured = sine(3.3, 0.018, 0.0204, 10 * kBlock, 0.003);
+  FrequencyEvaluationSum sum{kPeriod_s, kBlock};
+  for (std::size_t first = 0; first < target.size(); first += kBlock) {
+    sum.add(std::span{target}.subspan(first, kBlock), std::span{measured}.subspan(first, kBlock));
+  }
+  const auto result = sum.result();
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->amplitude, 0.9, 1e-5);
+  EXPECT_NEAR(result->frequency_hz, 3.3, 1e-3);
+  EXPECT_NEAR(result->delay_s, 0.0204, 1e-6);
+}
+
+TEST(FrequencyEvaluation, SumOverBlocksCountsRestingBlocksOut) {
+  constexpr std::size_t kBlock = 8192;
+  const auto target = sine(3.3, 0.02, 0.0, kBlock);
+  const auto measured = sine(3.3, 0.018, 0.0204, kBlock);
+  const std::vector<double> rest(kBlock, 0.01);
+  FrequencyEvaluationSum alone{kPeriod_s, kBlock};
+  alone.add(target, measured);
+  FrequencyEvaluationSum with_rest{kPeriod_s, kBlock};
+  with_rest.add(rest, rest);
+  with_rest.add(target, measured);
+  EXPECT_EQ(with_rest.result().value().delay_s, alone.result().value().delay_s);
+  FrequencyEvaluationSum only_rest{kPeriod_s, kBlock};
+  only_rest.add(rest, rest);
+  EXPECT_FALSE(only_rest.result().has_value());
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -17,9 +17,9 @@ struct Signals {
 };
 
 /// 2 Hz, 20 mm, measured 12.5 ms later; 10 whole seconds.
-Signals delayed_sine() {
+Signals delayed_sine(int samples = 10'000) {
   Signals signals;
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < samples; ++i) {
     const double time_s = 0.001 * i;
     signals.time_s.push_back(5.0 + time_s);
     signals.target_m.push_back(0.02 * std::sin(4.0 * std::numbers::pi * time_s));
@@ -73,6 +73,32 @@ TEST(TrackingError, NoFinitePairGivesNone) {
   const std::vector<double> nothing{kNan, kNan};
   EXPECT_FALSE(evaluate_tracking("", nothing, nothing, nothing).has_value());
   EXPECT_FALSE(evaluate_tracking("", {}, {}, {}).has_value());
+}
+
+TEST(TrackingError, LongRecordHasTheSameDelay) {
+  constexpr int kSamples = 5 * static_cast<int>(StretchEvaluation::kBlock) / 2;
+  const Signals s = delayed_sine(kSamples);
+  const auto error = evaluate_tracking("", s.time_s, s.target_m, s.measured_m);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->samples, static_cast<std::size_t>(kSamples));
+  EXPECT_NEAR(error->equivalent_delay_s.value(), 0.0125, 5e-7);
+  EXPECT_NEAR(error->amplitude.value(), 1.0, 5e-6);
+  EXPECT_NEAR(error->equivalent_frequency_hz.value(), 2.0, 4e-4);
+}
+
+TEST(TrackingError, LongestStretchCountsWhereItIsLong) {
+  Signals s = delayed_sine(3 * static_cast<int>(StretchEvaluation::kBlock));
+  // The first fifth, behind which samples are missing, has another delay.
+  const std::size_t fifth = s.time_s.size() / 5;
+  for (std::size_t i = 0; i < fifth; ++i) s.measured_m[i] = 0.5 * s.target_m[i];
+  for (auto* values : {&s.time_s, &s.target_m, &s.measured_m}) {
+    const auto gap = values->begin() + static_cast<std::ptrdiff_t>(fifth);
+    values->erase(gap, gap + 100);
+  }
+  const auto error = evaluate_tracking("", s.time_s, s.target_m, s.measured_m);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_NEAR(error->equivalent_delay_s.value(), 0.0125, 5e-7);
+  EXPECT_NEAR(error->amplitude.value(), 1.0, 5e-6);
 }
 
 }  // namespace

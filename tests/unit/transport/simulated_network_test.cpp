@@ -69,10 +69,10 @@ TEST(SimulatedNetwork, DeliversAfterLatencyAndNotBefore) {
   EXPECT_EQ(network.next_delivery(), Instant{milliseconds{1} + microseconds{50}});
   network.advance_to(Instant{milliseconds{1} + microseconds{50} - Duration{1}});
   EXPECT_FALSE(inbox->take(event));
-  EXPECT_FALSE(network.take_arrival("b"));
+  EXPECT_FALSE(network.take_arrival(1));
   network.advance_to(Instant{milliseconds{1} + microseconds{50}});
-  EXPECT_TRUE(network.take_arrival("b"));
-  EXPECT_FALSE(network.take_arrival("b")) << "told once";
+  EXPECT_TRUE(network.take_arrival(1));
+  EXPECT_FALSE(network.take_arrival(1)) << "told once";
   ASSERT_TRUE(inbox->take(event));
   EXPECT_EQ(event.step, 7);
   EXPECT_EQ(network.next_delivery(), kNever);
