@@ -121,7 +121,7 @@ void write_test(const Scenario& scenario, const CoordinatorReport& report, int e
   // Where OpenSees leads, its model says when the test is over.
   const bool is_over = scenario.opensees && report.reason == StopReason::completed;
   const Step planned = is_over ? taken : scenario.time.last_step;
-  const bool is_paced = scenario.time.mode != CouplingMode::lockstep;
+  const bool is_paced = scenario.time.mode == CouplingMode::paced;
   const double step_wall_time_s = is_paced ? scenario.time.step_s * scenario.time.time_scale : 0.0;
   test.append(std::array{static_cast<double>(planned), static_cast<double>(taken), static_cast<double>(report.reason),
                          to_seconds(report.running_time), static_cast<double>(exit_code), step_wall_time_s});

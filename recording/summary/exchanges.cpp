@@ -11,6 +11,7 @@ namespace hybridtest {
 namespace {
 
 constexpr std::string_view kExchanges = "exchanges";
+constexpr std::string_view kBridges = "bridges";
 
 bool has_flag(double flags, MeasurementFlags flag) {
   if (!(flags >= 0.0 && flags <= 4294967295.0)) return false;
@@ -22,6 +23,7 @@ void count_flags(ExchangeSummary& summary, double flags) {
   summary.held += has_flag(flags, MeasurementFlags::held);
   summary.saturated += has_flag(flags, MeasurementFlags::saturated);
   summary.late += has_flag(flags, MeasurementFlags::late);
+  summary.missed += has_flag(flags, MeasurementFlags::missed);
   summary.repeated += has_flag(flags, MeasurementFlags::repeated);
 }
 
@@ -73,6 +75,24 @@ struct ExchangeSearch {
   }
 };
 
+/// Adds what the coordinator's table `bridges` tells.
+void add_bridges(const RunFileReader& file, std::vector<ExchangeSearch>& searches) {
+  const auto substructure = column_position(file, kBridges, "substructure");
+  const auto in_a_row = column_position(file, kBridges, "in_a_row");
+  const auto energy_j = column_position(file, kBridges, "energy_added_j");
+  if (!substructure || !in_a_row || !energy_j) return;
+  read_rows(file, kBridges, [&](std::span<const double> row) {
+    const double index = row[*substructure];
+    if (!(index >= 0.0 && index < static_cast<double>(searches.size()))) return true;
+    ExchangeSummary& summary = searches[static_cast<std::size_t>(index)].summary;
+    summary.bridged_in_a_row = std::max(summary.bridged_in_a_row, static_cast<int>(row[*in_a_row]));
+    if (!std::isfinite(row[*energy_j])) return true;
+    summary.bridged_energy_j += row[*energy_j];
+    summary.bridged_energy_magnitude_j += std::abs(row[*energy_j]);
+    return true;
+  });
+}
+
 }  // namespace
 
 std::vector<std::optional<ExchangeSummary>> exchanges_of(const RunFileReader& file, std::size_t substructures,
@@ -95,6 +115,7 @@ std::vector<std::optional<ExchangeSummary>> exchanges_of(const RunFileReader& fi
     goes_on = false;
     for (ExchangeSearch& search : searches) goes_on = search.end_pass() || goes_on;
   }
+  add_bridges(file, searches);
   for (std::size_t i = 0; i < substructures; ++i) {
     if (!searches[i].has_rows) continue;
     summaries[i] = searches[i].summary;

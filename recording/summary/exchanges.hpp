@@ -10,7 +10,7 @@ namespace hybridtest {
 
 class RunFileReader;
 
-/// Reads the coordinator's table `exchanges`.
+/// Reads the coordinator's tables `exchanges` and, of a test in real time, `bridges`.
 /// @param substructures   how many there are.
 /// @param last_step       the last one that was completed.
 /// @return one per substructure; nothing for one without a row.

@@ -45,11 +45,15 @@ Json json(const ExchangeSummary& exchange) {
           {"answered", exchange.answered},
           {"resent", exchange.resent},
           {"bridged", exchange.bridged},
+          {"bridged_in_a_row", exchange.bridged_in_a_row},
+          {"bridged_energy_j", number(exchange.bridged_energy_j)},
+          {"bridged_energy_magnitude_j", number(exchange.bridged_energy_magnitude_j)},
           {"lost", exchange.lost},
           {"extrapolated", exchange.extrapolated},
           {"held", exchange.held},
           {"saturated", exchange.saturated},
           {"late", exchange.late},
+          {"missed", exchange.missed},
           {"repeated", exchange.repeated}};
 }
 

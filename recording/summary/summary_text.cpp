@@ -139,6 +139,7 @@ void print_peaks(const RunSummary& summary, std::ostream& stream) {
 void print_exchanges(const RunSummary& summary, std::ostream& stream) {
   TextTable latency{
       {"round trip", "p50 ms", "p99 ms", "max ms", "own ms", "resent", "bridged", "lost", "late", "held"}};
+  TextTable bridges{{"missed deadlines", "bridged", "in a row", "energy added J", "magnitude J", "targets missed"}};
   for (const SubstructureSummary& substructure : summary.substructures) {
     if (!substructure.exchange) continue;
     const ExchangeSummary& exchange = *substructure.exchange;
@@ -152,8 +153,13 @@ void print_exchanges(const RunSummary& summary, std::ostream& stream) {
       row.push_back(std::to_string(count));
     }
     latency.add(std::move(row));
+    if (exchange.bridged == 0 && exchange.missed == 0) continue;
+    bridges.add({substructure.id, std::to_string(exchange.bridged), std::to_string(exchange.bridged_in_a_row),
+                 fixed(exchange.bridged_energy_j, 6), fixed(exchange.bridged_energy_magnitude_j, 6),
+                 std::to_string(exchange.missed)});
   }
   latency.print(stream);
+  bridges.print(stream);
 }
 
 void print_sites(const RunSummary& summary, std::ostream& stream) {
