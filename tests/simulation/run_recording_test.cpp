@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "core/config_error.hpp"
-#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/tuning.hpp"
 #include "recording/csv_export.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
