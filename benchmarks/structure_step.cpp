@@ -1,9 +1,10 @@
 // Cost of one step of a structure from matrices: the elastic force K u and the step of the integrator, over that of
 // the sparse work that the method consists of, by Eigen alone: products with K and C, and solutions with
-// M/dt^2 + C/2dt. Measured in one run for frames of 10 to 10 000 degrees of freedom with Rayleigh damping.
+// M/dt^2 + C/2dt. Measured in one run for frames of 1 to 10 000 degrees of freedom with Rayleigh damping.
 //
 // The two take turns in short rounds, so that other work on the machine affects all of them alike. The result is
-// the median over the rounds. Exit code 1 when an integrator takes more than 1.3 times as long at any size.
+// the median over the rounds. Exit code 1 when an integrator takes more than 1.3 times as long at a size from 10 on.
+// Below, a step takes a fraction of a microsecond, of which the sparse work is a small part.
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -32,6 +33,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double kStep_s = 0.001;
 constexpr double kRatioMax = 1.3;
+constexpr int kDofsJudged = 10;
 constexpr int kTurns = 400;
 constexpr int kDofStepsPerTurn = 20'000;  // a turn takes as long for each size
 
@@ -158,7 +160,7 @@ int main() {
   double sink = 0.0;
   double worst = 0.0;
   std::printf("%8s  %-26s %12s %12s %8s\n", "dofs", "", "us a step", "Eigen alone", "ratio");
-  for (const auto& [floors, width] : {std::pair{5, 2}, {10, 10}, {40, 25}, {100, 100}}) {
+  for (const auto& [floors, width] : {std::pair{1, 1}, {2, 1}, {5, 1}, {5, 2}, {10, 10}, {40, 25}, {100, 100}}) {
     const LinearStructure structure = frame(floors, width);
     const int steps = std::max(1, kDofStepsPerTurn / (floors * width));
     for (const Method& method : methods()) {
@@ -171,9 +173,10 @@ int main() {
       const double bare_us = median(bare.us_per_step) / method.work.commands;
       const double us = median(ours.us_per_step);
       std::printf("%8d  %-26s %12.3f %12.3f %8.2f\n", floors * width, ours.name.c_str(), us, bare_us, us / bare_us);
-      worst = std::max(worst, us / bare_us);
+      if (floors * width >= kDofsJudged) worst = std::max(worst, us / bare_us);
     }
   }
-  std::printf("largest ratio %.2f, at most %.1f is asked (checksum %.6g)\n", worst, kRatioMax, sink);
+  std::printf("largest ratio from %d on %.2f, at most %.1f is asked (checksum %.6g)\n", kDofsJudged, worst, kRatioMax,
+              sink);
   return worst <= kRatioMax && std::isfinite(sink) ? 0 : 1;
 }

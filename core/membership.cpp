@@ -57,15 +57,14 @@ Request Membership::next_request(Instant now) noexcept {
 }
 
 void Membership::look_for_coordinator(Instant now) noexcept {
-  TestAnnouncement announcement;
-  while (ports_.announcements.take(announcement)) {
+  while (ports_.announcements.take(announcement_)) {
     if (coordinator_ != 0) continue;
-    if (announcement.scenario_digest != presence_.identity().scenario_digest) {
+    if (announcement_.scenario_digest != presence_.identity().scenario_digest) {
       presence_.report(now, Severity::fault, EventCode::digest_mismatch, "coordinator");
       presence_.set_state(LifecycleState::refused);
       return;
     }
-    coordinator_ = announcement.coordinator;
+    coordinator_ = announcement_.coordinator;
     presence_.set_state(LifecycleState::ready);
     presence_.report(now, Severity::information, EventCode::participant_ready);
   }

@@ -41,6 +41,7 @@ class Membership {
   Incarnation coordinator_ = 0;
   bool coordinator_was_seen_ = false;
   StopReason stop_reason_ = StopReason::none;
+  TestAnnouncement announcement_;  // taken last; a member, because it is large
 };
 
 }  // namespace hybridtest

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "diagnosis/intake/intake.hpp"
-#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {

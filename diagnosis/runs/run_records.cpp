@@ -12,7 +12,6 @@
 #include "core/input_file.hpp"
 #include "core/text/shown.hpp"
 #include "diagnosis/intake/intake.hpp"
-#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/tuning.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file.hpp"

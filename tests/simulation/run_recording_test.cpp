@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "core/config_error.hpp"
-#include "diagnosis/intake/samples_max.hpp"
 #include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/tuning.hpp"
 #include "recording/csv_export.hpp"
 #include "recording/error.hpp"
 #include "recording/run_file_reader.hpp"
@@ -118,7 +118,7 @@ TEST_F(RunRecording, LongerThanFitsIntoMemoryIsRefused) {
   }
   EXPECT_THAT([&] { (void)read_recording(directory_.path(), RecordingRole::fit); },
               testing::ThrowsMessage<ConfigError>(
-                  testing::AllOf(testing::HasSubstr("the table control has 4194305 rows; expected at most 4194304"),
+                  testing::AllOf(testing::HasSubstr("the table control has 2097153 rows; expected at most 2097152"),
                                  testing::HasSubstr("csv/storey_1.control.csv"))));
 }
 
@@ -138,7 +138,7 @@ TEST(ReadRecording, LongerCsvThanFitsIntoMemoryIsRefused) {
   const Intake intake = read_csv_recording(text, "a.csv");
   EXPECT_FALSE(intake.recording.has_value());
   ASSERT_EQ(intake.findings.size(), 1U);
-  EXPECT_THAT(intake.findings[0].what, testing::HasSubstr("expected at most 4194304"));
+  EXPECT_THAT(intake.findings[0].what, testing::HasSubstr("expected at most 2097152"));
 }
 
 TEST(ReadRecording, FindingsAndMissingFileAreConfigErrors) {

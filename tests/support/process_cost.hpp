@@ -10,7 +10,6 @@ namespace hybridtest {
 struct ProcessCost {
   int exit_code = 0;  // 128 + signal when a signal ended it
   double processor_s = 0.0;
-  double wall_s = 0.0;
   double memory_mb = 0.0;  // the most that it had at once
 };
 

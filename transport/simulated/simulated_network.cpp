@@ -205,9 +205,7 @@ class SimulatedInbox final : public Inbox<Message> {
   explicit SimulatedInbox(std::shared_ptr<Subscription<Message>> subscription)
       : subscription_{std::move(subscription)} {}
 
-  [[nodiscard]] bool take(Message& message) noexcept override {
-    return subscription_->take(message);
-  }
+  [[nodiscard]] bool take(Message& message) noexcept override { return subscription_->take(message); }
 
  private:
   std::shared_ptr<Subscription<Message>> subscription_;
