@@ -24,7 +24,7 @@ struct FastDdsSettings {
   std::uint32_t loopback_participants = 40;
 
   /// Shared memory between processes of one host besides UDP, where /dev/shm has room. Off by
-  /// default: a round trip gets shorter by a tenth or two, but a killed process leaves segments
+  /// default: a round trip gets longer, see decision 7, and a killed process leaves segments
   /// behind that can block the communication of later ones; a killed process must harm no other.
   bool shared_memory = false;
 
