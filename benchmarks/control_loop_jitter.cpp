@@ -12,13 +12,12 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "benchmarks/cyclictest.hpp"
 #include "core/child_process.hpp"
 #include "recording/run_file_reader.hpp"
 
@@ -27,44 +26,6 @@ namespace {
 
 constexpr int kPriority = 80;
 constexpr double kRatioAtMost = 2.0;
-
-struct Lateness {
-  double p50_us = 0.0;
-  double p99_us = 0.0;
-  double max_us = 0.0;
-  long long count = 0;
-};
-
-std::filesystem::path cyclictest_program() {
-  for (const char* path : {"/usr/bin/cyclictest", "/usr/sbin/cyclictest", "/usr/local/bin/cyclictest"}) {
-    if (std::filesystem::exists(path)) return path;
-  }
-  return {};
-}
-
-/// From its histogram: lines of a latency in us and a count.
-Lateness read_cyclictest(const std::filesystem::path& log) {
-  std::vector<std::pair<long, long long>> bins;
-  Lateness lateness;
-  std::ifstream file{log};
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("# Max Latencies:")) lateness.max_us = std::stod(line.substr(line.find(':') + 1));
-    std::istringstream words{line};
-    long us = 0;
-    long long count = 0;
-    if (line.starts_with('#') || !(words >> us >> count)) continue;
-    bins.emplace_back(us, count);
-    lateness.count += count;
-  }
-  if (lateness.count == 0) throw std::runtime_error{"cyclictest gave no histogram; see " + log.string()};
-  double so_far = 0.0;
-  for (const auto& [us, count] : bins) {
-    if (so_far < 0.5 * static_cast<double>(lateness.count)) lateness.p50_us = static_cast<double>(us);
-    if (so_far < 0.99 * static_cast<double>(lateness.count)) lateness.p99_us = static_cast<double>(us);
-    so_far += static_cast<double>(count);
-  }
-  return lateness;
-}
 
 void print(const char* what, const Lateness& lateness) {
   std::printf("{\"what\": \"%s\", \"p50_us\": %.1f, \"p99_us\": %.1f, \"max_us\": %.1f, \"count\": %lld}\n", what,
@@ -114,8 +75,10 @@ class Run {
     if (value("fifo_priority") != kPriority)
       std::printf("the control loop did not get SCHED_FIFO; see storey_1.log for the reason\n");
     std::printf("overruns %.0f, busy p99 %.1f us\n", value("overruns"), value("busy_p99_us"));
-    return {value("start_lateness_p50_us"), value("start_lateness_p99_us"), value("start_lateness_max_us"),
-            static_cast<long long>(value("starts"))};
+    return {.p50_us = value("start_lateness_p50_us"),
+            .p99_us = value("start_lateness_p99_us"),
+            .max_us = value("start_lateness_max_us"),
+            .count = static_cast<long long>(value("starts"))};
   }
   void remove() const { std::filesystem::remove_all(out_); }
 

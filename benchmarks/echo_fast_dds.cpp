@@ -1,6 +1,6 @@
 // A plain Fast DDS echo, written as its documentation advises for low latency: fixed-size types,
 // preallocated histories, synchronous publishing, and either listeners or wait sets. Uses none of
-// our classes, only the same wire types and quality of service (RELIABLE, KEEP_LAST 16).
+// our classes, only the same wire types and quality of service (RELIABLE or BEST_EFFORT, KEEP_LAST 16).
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
@@ -38,16 +38,16 @@ using eprosima::fastrtps::types::ReturnCode_t;
 constexpr auto kPatience = std::chrono::seconds{20};
 
 template <class Qos>
-Qos quality() {
+Qos quality(const EchoSettings& settings) {
   Qos qos;
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.reliability().kind = settings.best_effort ? dds::BEST_EFFORT_RELIABILITY_QOS : dds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = 16;
-  qos.resource_limits().max_instances = kEchoPeers;
+  qos.resource_limits().max_instances = settings.peers;
   qos.resource_limits().max_samples_per_instance = 16;
-  qos.resource_limits().max_samples = 16 * kEchoPeers;
-  qos.resource_limits().allocated_samples = 16 * kEchoPeers;
+  qos.resource_limits().max_samples = 16 * settings.peers;
+  qos.resource_limits().allocated_samples = 16 * settings.peers;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   qos.data_sharing().off();
   return qos;
@@ -58,7 +58,7 @@ dds::DomainParticipantQos participant_quality(const std::string& network) {
   if (network == "library_default") return qos;
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.emplace_back("127.0.0.1");
-  udp->maxInitialPeersRange = 20;
+  udp->maxInitialPeersRange = 80;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   if (network == "shared_memory") {
@@ -91,13 +91,13 @@ class Endpoint {
     publisher_qos.partition().push_back(partition.c_str());
     dds::SubscriberQos subscriber_qos;
     subscriber_qos.partition().push_back(partition.c_str());
-    auto writer_qos = quality<dds::DataWriterQos>();
+    auto writer_qos = quality<dds::DataWriterQos>(settings);
     writer_qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     writer = participant_->create_publisher(publisher_qos)
                  ->create_datawriter(initiator ? commands : measurements, writer_qos);
     reader = participant_->create_subscriber(subscriber_qos)
-                 ->create_datareader(initiator ? measurements : commands, quality<dds::DataReaderQos>(), listener,
-                                     dds::StatusMask::data_available());
+                 ->create_datareader(initiator ? measurements : commands, quality<dds::DataReaderQos>(settings),
+                                     listener, dds::StatusMask::data_available());
     if (writer == nullptr || reader == nullptr)
       throw std::runtime_error{"Fast DDS could not create a writer or reader"};
   }
@@ -147,11 +147,13 @@ class Answerer : public dds::DataReaderListener {
 /// Counts the answers to the current step.
 class Collector : public dds::DataReaderListener {
  public:
+  explicit Collector(int peers) : peers_{peers} {}
+
   /// From the callback of Fast DDS.
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard lock{mutex_};
     collect(reader);
-    if (answers_ == kEchoPeers) all_in_.notify_one();
+    if (answers_ == peers_) all_in_.notify_one();
   }
 
   void expect(std::int64_t step) {
@@ -162,7 +164,7 @@ class Collector : public dds::DataReaderListener {
 
   [[nodiscard]] bool wait(std::chrono::milliseconds timeout) {
     std::unique_lock lock{mutex_};
-    return all_in_.wait_for(lock, timeout, [&] { return answers_ == kEchoPeers; });
+    return all_in_.wait_for(lock, timeout, [&] { return answers_ == peers_; });
   }
 
   /// From the initiator's own thread.
@@ -170,7 +172,7 @@ class Collector : public dds::DataReaderListener {
     const Clock::time_point deadline = Clock::now() + timeout;
     while (true) {
       collect(reader);
-      if (answers_ == kEchoPeers) return true;
+      if (answers_ == peers_) return true;
       if (Clock::now() > deadline) return false;
       dds::ConditionSeq active;
       wait_set.wait(active, eprosima::fastrtps::Duration_t{0, 100000000});
@@ -189,6 +191,7 @@ class Collector : public dds::DataReaderListener {
   wire::ForceMeasurement measurement_;
   dds::SampleInfo info_;
   std::int64_t step_ = 0;
+  const int peers_;
   int answers_ = 0;
 };
 
@@ -217,12 +220,9 @@ std::vector<double> fast_dds_echo_us(const EchoSettings& settings) {
   static int runs = 0;
   const int run = static_cast<int>(::getpid()) * 100 + runs++ % 100;
   PeerProcesses peers;
-  for (int i = 0; i < kEchoPeers; ++i) {
-    peers.start({"echo_peer", "fast_dds", std::to_string(i), std::to_string(run), std::to_string(settings.domain),
-                 settings.network, settings.wait});
-  }
+  for (int i = 0; i < settings.peers; ++i) peers.start(echo_peer_arguments("fast_dds", i, run, settings));
   const bool by_listener = settings.wait == "listener";
-  Collector collector;
+  Collector collector{settings.peers};
   Endpoint endpoint{settings, run, true, by_listener ? &collector : nullptr};
   dds::WaitSet wait_set;
   if (!by_listener) {
@@ -230,7 +230,7 @@ std::vector<double> fast_dds_echo_us(const EchoSettings& settings) {
     wait_set.attach_condition(endpoint.reader->get_statuscondition());
   }
   const Clock::time_point give_up = Clock::now() + kPatience;
-  while (!endpoint.matched(kEchoPeers)) {
+  while (!endpoint.matched(settings.peers)) {
     if (Clock::now() > give_up) throw std::runtime_error{"the Fast DDS echo peers did not appear"};
     ::usleep(10000);
   }

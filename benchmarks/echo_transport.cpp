@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "benchmarks/echo.hpp"
 #include "benchmarks/echo_payload.hpp"
@@ -20,7 +21,11 @@ std::unique_ptr<Transport> join(const EchoSettings& settings, int run) {
   fast_dds::FastDdsSettings transport;
   transport.domain = settings.domain;
   transport.loopback_only = true;
+  transport.loopback_participants = 80;
   transport.shared_memory = settings.network == "shared_memory";
+  transport.best_effort_coupling = settings.best_effort;
+  transport.receives_in_waiting_thread = settings.receive == "waiting";
+  transport.busy_poll = std::chrono::microseconds{settings.busy_poll_us};
   return fast_dds::make_fast_dds_transport(transport, "echo" + std::to_string(run));
 }
 
@@ -46,38 +51,40 @@ std::vector<double> transport_echo_us(const EchoSettings& settings) {
   static int runs = 0;
   const int run = static_cast<int>(::getpid()) * 100 + runs++ % 100;
   PeerProcesses peers;
-  for (int i = 0; i < kEchoPeers; ++i) {
-    peers.start({"echo_peer", "transport", std::to_string(i), std::to_string(run), std::to_string(settings.domain),
-                 settings.network, settings.wait});
-  }
+  for (int i = 0; i < settings.peers; ++i) peers.start(echo_peer_arguments("transport", i, run, settings));
   const auto transport = join(settings, run);
-  const auto commands = transport->command_outbox(kEchoPeers);
+  const auto peer_count = static_cast<SubstructureIndex>(settings.peers);
+  const auto commands = transport->command_outbox(peer_count);
   const auto measurements = transport->measurement_inbox();
   Waker& waker = transport->waker();
   const Clock::time_point give_up = Clock::now() + std::chrono::seconds{20};
-  while (!transport->reachable(0) || !transport->reachable(1)) {
-    if (Clock::now() > give_up) throw std::runtime_error{"the transport echo peers did not appear"};
-    static_cast<void>(waker.wait_until(Clock::now() + std::chrono::milliseconds{100}));
+  for (SubstructureIndex peer = 0; peer < peer_count; ++peer) {
+    while (!transport->reachable(peer)) {
+      if (Clock::now() > give_up) throw std::runtime_error{"the transport echo peers did not appear"};
+      static_cast<void>(waker.wait_until(Clock::now() + std::chrono::milliseconds{100}));
+    }
   }
 
   DisplacementCommand command = echo_command();
   ForceMeasurement measurement;
+  std::vector<Step> answered(peer_count, kNoStep);
   std::vector<double> times_us;
   times_us.reserve(static_cast<std::size_t>(settings.samples));
   for (int i = 0; i < settings.warm_up + settings.samples; ++i) {
     const Clock::time_point start = Clock::now();
-    bool answered[kEchoPeers] = {};
+    SubstructureIndex missing = peer_count;
     command.points[0].step = i;
-    while (!answered[0] || !answered[1]) {
-      for (SubstructureIndex peer = 0; peer < kEchoPeers; ++peer) {
+    while (missing > 0) {
+      for (SubstructureIndex peer = 0; peer < peer_count; ++peer) {
         command.substructure = peer;
-        if (!answered[peer]) commands->send(command);
+        if (answered[peer] != i) commands->send(command);
       }
       const Clock::time_point repeat = Clock::now() + std::chrono::milliseconds{200};
       if (repeat > start + std::chrono::seconds{20}) throw std::runtime_error{"an echo peer stopped answering"};
-      while ((!answered[0] || !answered[1]) && waker.wait_until(repeat)) {
+      while (missing > 0 && waker.wait_until(repeat)) {
         while (measurements->take(measurement)) {
-          if (measurement.step == i && measurement.substructure < kEchoPeers) answered[measurement.substructure] = true;
+          if (measurement.step != i || std::exchange(answered.at(measurement.substructure), i) == i) continue;
+          --missing;
         }
       }
     }

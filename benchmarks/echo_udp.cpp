@@ -85,8 +85,8 @@ void udp_echo_peer(int port) {
 std::vector<double> udp_echo_us(const EchoSettings& settings) {
   LoopbackSocket socket;
   PeerProcesses peers;
-  for (int i = 0; i < kEchoPeers; ++i) peers.start({"echo_peer", "udp", std::to_string(socket.port)});
-  std::array<sockaddr_in, kEchoPeers> addresses{};
+  for (int i = 0; i < settings.peers; ++i) peers.start({"echo_peer", "udp", std::to_string(socket.port)});
+  std::vector<sockaddr_in> addresses(static_cast<std::size_t>(settings.peers));
   for (sockaddr_in& address : addresses) address = socket.receive();
 
   std::vector<double> times_us;
@@ -95,7 +95,7 @@ std::vector<double> udp_echo_us(const EchoSettings& settings) {
   for (int i = 0; i < settings.warm_up + settings.samples; ++i) {
     const Clock::time_point start = Clock::now();
     for (const sockaddr_in& address : addresses) socket.send(address, bytes);
-    for (int answer = 0; answer < kEchoPeers; ++answer) static_cast<void>(socket.receive());
+    for (int answer = 0; answer < settings.peers; ++answer) static_cast<void>(socket.receive());
     const std::chrono::duration<double, std::micro> round_trip = Clock::now() - start;
     if (i >= settings.warm_up) times_us.push_back(round_trip.count());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ namespace hybridtest::benchmarks {
   std::sort(times_us.begin(), times_us.end());
   const auto rank = static_cast<std::size_t>(fraction * static_cast<double>(times_us.size()));
   return times_us[std::min(rank, times_us.size() - 1)];
+}
+
+[[nodiscard]] inline double mean_us(const std::vector<double>& times_us) {
+  return std::accumulate(times_us.begin(), times_us.end(), 0.0) / static_cast<double>(times_us.size());
 }
 
 /// One line of JSON.

@@ -13,6 +13,11 @@ void NetworkOptions::add_to(CLI::App& app) {
   app.add_option("--profile", profile_, "Fast DDS XML profiles; the participant profile 'hybridtest' is used")
       ->check(CLI::ExistingFile)
       ->group("Network");
+  app.add_option("--busy-poll-us", busy_poll_us_,
+                 "Look at the socket for so long before sleeping; shorter steps, for processors of their own")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str()
+      ->group("Network");
   app.add_flag("--loopback-only", loopback_only_, "Talk on this machine only")->group("Network");
 }
 
@@ -21,6 +26,7 @@ fast_dds::FastDdsSettings NetworkOptions::settings() const {
   settings.domain = domain_;
   settings.loopback_only = loopback_only_;
   settings.initial_peers = peers_;
+  settings.busy_poll = std::chrono::microseconds{busy_poll_us_};
   if (!discovery_server_.empty()) settings.discovery_server = discovery_server_;
   if (!profile_.empty()) settings.profile_file = profile_;
   return settings;
@@ -41,6 +47,7 @@ std::vector<std::string> NetworkOptions::arguments() const {
   for (const std::string& peer : peers_) arguments.insert(arguments.end(), {"--peer", peer});
   if (!discovery_server_.empty()) arguments.insert(arguments.end(), {"--discovery-server", discovery_server_});
   if (!profile_.empty()) arguments.insert(arguments.end(), {"--profile", profile_.string()});
+  if (busy_poll_us_ > 0) arguments.insert(arguments.end(), {"--busy-poll-us", std::to_string(busy_poll_us_)});
   if (loopback_only_) arguments.emplace_back("--loopback-only");
   return arguments;
 }

@@ -25,6 +25,7 @@ class NetworkOptions {
  private:
   unsigned domain_ = 0;
   bool loopback_only_ = false;
+  int busy_poll_us_ = 0;
   std::vector<std::string> peers_;
   std::string discovery_server_;
   std::filesystem::path profile_;

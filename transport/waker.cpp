@@ -41,7 +41,11 @@ bool sleep_while(std::atomic<std::uint32_t>& state, std::uint32_t value, const t
 void Waker::signal() noexcept {
   if (state_.exchange(kSignalled, std::memory_order_acq_rel) != kWaiting) return;
   const int saved_errno = errno;
-  ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state_), FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+  if (reception_ != nullptr) {
+    reception_->interrupt();
+  } else {
+    ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&state_), FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+  }
   errno = saved_errno;
 }
 
@@ -52,13 +56,23 @@ bool Waker::wait_until(std::chrono::steady_clock::time_point deadline) noexcept 
   while (true) {
     std::uint32_t expected = kIdle;
     if (!state_.compare_exchange_strong(expected, kWaiting, std::memory_order_acq_rel)) {
+      // Whoever is always signalled must receive as well.
+      if (reception_ != nullptr) reception_->receive();
       // Signalled before. Read and written in one operation, so that the caller sees the data of a
       // signal that arrives at this moment.
       state_.exchange(kIdle, std::memory_order_acq_rel);
       return true;
     }
-    if (in_time) in_time = sleep_while(state_, kWaiting, endless ? nullptr : &until);
+    if (in_time) {
+      in_time = reception_ != nullptr ? reception_->await(deadline)
+                                      : sleep_while(state_, kWaiting, endless ? nullptr : &until);
+    }
     if (state_.exchange(kIdle, std::memory_order_acq_rel) == kSignalled) return true;
+    if (reception_ != nullptr) {
+      // This thread does not wait now: the signal of a message that it receives itself wakes nobody.
+      reception_->receive();
+      if (state_.exchange(kIdle, std::memory_order_acq_rel) == kSignalled) return true;
+    }
     if (!in_time) return false;
   }
 }

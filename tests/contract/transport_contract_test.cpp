@@ -29,7 +29,8 @@ class TransportContract : public ::testing::Test {
 };
 
 #ifdef CONTRACT_OVER_FAST_DDS
-using Networks = ::testing::Types<InProcessNetwork, FastDdsUdpNetwork, FastDdsSharedMemoryNetwork>;
+using Networks =
+    ::testing::Types<InProcessNetwork, FastDdsUdpNetwork, FastDdsSharedMemoryNetwork, FastDdsBestEffortNetwork>;
 #else
 using Networks = ::testing::Types<InProcessNetwork>;
 #endif

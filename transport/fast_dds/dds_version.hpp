@@ -10,7 +10,10 @@
 #endif
 
 #include <fastdds/rtps/common/Locator.h>
+#include <fastdds/rtps/common/PortParameters.h>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/attributes/LibrarySettingsAttributes.h>
@@ -32,6 +35,7 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastdds::rtps;
 
 using Locator = eprosima::fastrtps::rtps::Locator_t;
+using PortParameters = eprosima::fastrtps::rtps::PortParameters;
 using IpLocator = eprosima::fastrtps::rtps::IPLocator;
 using DdsDuration = eprosima::fastrtps::Duration_t;
 using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,22 @@ struct FastDdsSettings {
   std::uint32_t loopback_participants = 40;
 
   /// Shared memory between processes of one host besides UDP, where /dev/shm has room. Off by
-  /// default: a round trip gets shorter by a tenth or two, but a killed process leaves segments
+  /// default: a round trip gets longer, see decision 7, and a killed process leaves segments
   /// behind that can block the communication of later ones; a killed process must harm no other.
   bool shared_memory = false;
+
+  /// The thread that waits on Transport::waker() reads the socket of the messages itself: one hand-over between threads
+  /// less for each message. Otherwise a thread of Fast DDS reads it and wakes that thread.
+  bool receives_in_waiting_thread = true;
+  /// Before it sleeps, the waiting thread looks at the socket again and again for this time, 0 to 1 s: shorter round
+  /// trips for a processor that is busy all the time. For processors that nobody else needs.
+  Duration busy_poll{0};
+  /// For measurements: called by the waiting thread each time that something has arrived, before it is read.
+  std::function<void()> when_woken = nullptr;
+
+  /// Commands and measurements are sent once and not again by the network layer: for real-time coupling, where a packet
+  /// after its deadline is useless and the next one repeats the history. All participants of a test must agree.
+  bool best_effort_coupling = false;
 
   /// `host` or `host:port` of other participants, where multicast does not reach.
   std::vector<std::string> initial_peers;

@@ -16,12 +16,17 @@ Entity* created(Entity* entity, const char* what) {
   return entity;
 }
 
+std::shared_ptr<PolledSocket> socket_for(const FastDdsSettings& settings) {
+  const bool reads_itself = settings.receives_in_waiting_thread && !settings.profile_file;
+  return reads_itself ? std::make_shared<PolledSocket>(settings.busy_poll, settings.when_woken) : nullptr;
+}
+
 }  // namespace
 
-Participant::Participant(const FastDdsSettings& settings) : settings_{settings} {
+Participant::Participant(const FastDdsSettings& settings) : socket_{socket_for(settings)}, settings_{settings} {
   turn_off_intraprocess_delivery();
   describe_live_type();
-  const dds::DomainParticipantQos qos = participant_qos(settings_);
+  const dds::DomainParticipantQos qos = participant_qos(settings_, socket_);
   participant_ = created(dds::DomainParticipantFactory::get_instance()->create_participant(settings_.domain, qos, this,
                                                                                            dds::StatusMask::none()),
                          "participant; all UDP ports of the domain may be in use: choose another --domain");

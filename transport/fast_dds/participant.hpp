@@ -14,10 +14,12 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 
 #include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/polled_socket.hpp"
 #include "transport/fast_dds/topics.hpp"
 #include "transport/waker.hpp"
 
@@ -51,7 +53,11 @@ class Participant final : private dds::DomainParticipantListener {
   [[nodiscard]] std::size_t on_departure(std::function<void(const GuidPrefix&)> action);
   void forget(std::size_t departure_action) noexcept;
 
-  Waker waker;
+ private:
+  const std::shared_ptr<PolledSocket> socket_;  // null where a thread of Fast DDS receives
+
+ public:
+  Waker waker{socket_.get()};
   std::atomic<std::uint64_t> overflowed{0};
   std::atomic<std::uint64_t> malformed{0};
   std::atomic<std::uint64_t> unsent{0};

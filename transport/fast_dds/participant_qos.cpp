@@ -12,6 +12,7 @@
 #include "core/config_error.hpp"
 #include "core/input_file.hpp"
 #include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/polled_transport.hpp"
 #include "transport/fast_dds/topics.hpp"
 
 namespace hybridtest::fast_dds {
@@ -31,6 +32,9 @@ void check(const FastDdsSettings& settings) {
   }
   if (settings.lease < std::chrono::milliseconds{100} || settings.heartbeat_deadline < std::chrono::milliseconds{100}) {
     throw ConfigError{"the lease and the heartbeat deadline must be 0.1 s or longer"};
+  }
+  if (settings.busy_poll < Duration{0} || settings.busy_poll > std::chrono::seconds{1}) {
+    throw ConfigError{"the busy poll must be 0 to 1 s"};
   }
 }
 
@@ -70,14 +74,19 @@ bool has_room_for_shared_memory() {
   return !error && space.available >= kRoom;
 }
 
-void add_transports(const FastDdsSettings& settings, dds::DomainParticipantQos& qos) {
+void add_transports(const FastDdsSettings& settings, const std::shared_ptr<PolledSocket>& socket,
+                    dds::DomainParticipantQos& qos) {
   const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
   // A full socket buffer loses a packet, and the protocol sends it again. A blocked step cannot be repaired.
   udp->non_blocking_send = true;
   udp->maxInitialPeersRange = settings.loopback_participants;
   if (settings.loopback_only) udp->interfaceWhiteList.emplace_back(kLoopback);
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  if (socket) {
+    qos.transport().user_transports.push_back(polled_transport(udp, socket, settings.domain, settings.loopback_only));
+  } else {
+    qos.transport().user_transports.push_back(udp);
+  }
   if (settings.shared_memory && has_room_for_shared_memory()) {
     qos.transport().user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
   }
@@ -127,13 +136,14 @@ dds::DomainParticipantQos profile_qos(const std::filesystem::path& file) {
 
 void require_usable(const FastDdsSettings& settings) { static_cast<void>(participant_qos(settings)); }
 
-dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings) {
+dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings,
+                                          const std::shared_ptr<PolledSocket>& socket) {
   check(settings);
   dds::DomainParticipantQos qos;
   if (settings.profile_file) {
     qos = profile_qos(*settings.profile_file);
   } else {
-    add_transports(settings, qos);
+    add_transports(settings, socket, qos);
     add_discovery(settings, qos);
   }
   auto& discovery = qos.wire_protocol().builtin.discovery_config;

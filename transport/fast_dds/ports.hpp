@@ -85,12 +85,22 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   static constexpr bool kWatchesPeers = std::is_same_v<Message, ParticipantStatus>;
   struct Nothing {};
 
+  /// What comes with each step stays in the reader until newer samples displace it: Fast DDS allocates for the first
+  /// sample of an instance that has none, as it would be for each step.
+  [[nodiscard]] bool next(dds::DataReader& reader, dds::SampleInfo& info) {
+    if constexpr (Topic<Message>::kDelivery.is_coupling) {
+      return reader.read_next_sample(&sample_, &info) == kReturnOk;
+    } else {
+      return reader.take_next_sample(&sample_, &info) == kReturnOk;
+    }
+  }
+
   void on_data_available(dds::DataReader* reader) override {
     dds::SampleInfo info;
     bool any = false;
     {
       const std::lock_guard lock{received_mutex_};
-      while (reader->take_next_sample(&sample_, &info) == kReturnOk) {
+      while (next(*reader, info)) {
         if (!info.valid_data || prefix_of(info.publication_handle) == own_prefix_) continue;
         if (!decode(sample_, message_)) {
           participant_.malformed.fetch_add(1, std::memory_order_relaxed);

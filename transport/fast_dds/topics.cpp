@@ -10,7 +10,8 @@ constexpr Duration kRepairPeriod = std::chrono::milliseconds{20};
 // Settings common to writers and readers.
 template <class Qos>
 void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSettings& settings, Qos& qos) {
-  qos.reliability().kind = delivery.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  const bool is_sent_again = delivery.reliable && !(delivery.is_coupling && settings.best_effort_coupling);
+  qos.reliability().kind = is_sent_again ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind =
       delivery.for_late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
@@ -45,6 +46,12 @@ dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& s
   qos.reliability().max_blocking_time = to_dds(std::chrono::milliseconds{10});
   qos.reliable_writer_qos().times.heartbeatPeriod = to_dds(kRepairPeriod);
   qos.reliable_writer_qos().times.nackResponseDelay = to_dds(Duration{0});
+  // Otherwise each message asks for a receipt, for which timers are set and threads wake at both ends. A lost message
+  // takes that question with it: only the repeated one above finds out.
+  qos.reliable_writer_qos().disable_heartbeat_piggyback = delivery.is_coupling;
+  // For this time after a message was sent, a request to repeat it is older than the message. With no time at all Fast DDS
+  // wakes a thread after each write.
+  if (delivery.is_coupling) qos.reliable_writer_qos().times.nackSupressionDuration = to_dds(kRepairPeriod / 2);
   return qos;
 }
 

@@ -21,6 +21,7 @@ struct Delivery {
   std::int32_t reader_depth = 0;  // kept by the reader, if different
   std::int32_t instances = 1;     // largest number of keys at one endpoint
   bool has_many_sizes = false;    // the largest message is far larger than most
+  bool is_coupling = false;       // once per step and substructure; see FastDdsSettings::best_effort_coupling
 };
 
 /// Topic, wire type and delivery of each message.
@@ -51,7 +52,7 @@ struct Topic<DisplacementCommand> {
   using Sample = wire::DisplacementCommand;
   using Type = wire::DisplacementCommandPubSubType;
   static constexpr const char* kName = "hybridtest/4/displacement_command";
-  static constexpr Delivery kDelivery{.has_many_sizes = true};
+  static constexpr Delivery kDelivery{.has_many_sizes = true, .is_coupling = true};
 };
 
 template <>
@@ -59,7 +60,7 @@ struct Topic<ForceMeasurement> {
   using Sample = wire::ForceMeasurement;
   using Type = wire::ForceMeasurementPubSubType;
   static constexpr const char* kName = "hybridtest/4/force_measurement";
-  static constexpr Delivery kDelivery{.instances = kMaxSubstructures, .has_many_sizes = true};
+  static constexpr Delivery kDelivery{.instances = kMaxSubstructures, .has_many_sizes = true, .is_coupling = true};
 };
 
 template <>

@@ -39,4 +39,13 @@ struct FastDdsSharedMemoryNetwork {
   }
 };
 
+/// Commands and measurements are not sent again.
+struct FastDdsBestEffortNetwork {
+  static std::unique_ptr<Transport> join(const std::string& test_name) {
+    fast_dds::FastDdsSettings settings = test_settings();
+    settings.best_effort_coupling = true;
+    return fast_dds::make_fast_dds_transport(settings, test_name);
+  }
+};
+
 }  // namespace hybridtest

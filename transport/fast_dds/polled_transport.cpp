@@ -1,0 +1,103 @@
+#include "transport/fast_dds/polled_transport.hpp"
+
+#include <cstdint>
+#include <utility>
+
+namespace hybridtest::fast_dds {
+namespace {
+
+struct PolledDescriptor final : rtps::ChainingTransportDescriptor {
+  PolledDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> its_socket,
+                   std::uint32_t its_domain, bool is_loopback_only)
+      : ChainingTransportDescriptor{std::move(udp)},
+        socket{std::move(its_socket)},
+        domain{its_domain},
+        loopback_only{is_loopback_only} {}
+
+  [[nodiscard]] rtps::TransportInterface* create_transport() const override;  // the caller owns it
+
+  std::shared_ptr<PolledSocket> socket;
+  std::uint32_t domain;
+  bool loopback_only;
+};
+
+class PolledTransport final : public rtps::ChainingTransport {
+ public:
+  explicit PolledTransport(const PolledDescriptor& descriptor)
+      : ChainingTransport{descriptor}, descriptor_{descriptor} {}
+
+  rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+
+  bool IsInputChannelOpen(const Locator& locator) const override {
+    if (!is_for_messages(locator)) return low_level_transport_->IsInputChannelOpen(locator);
+    return descriptor_.socket->is_open_at(IpLocator::getPhysicalPort(locator));
+  }
+
+  bool OpenInputChannel(const Locator& locator, rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t bytes_max) override {
+    if (!is_for_messages(locator)) return low_level_transport_->OpenInputChannel(locator, receiver, bytes_max);
+    const auto pass_on = [receiver, locator, from = sender_locator()](const std::uint8_t* bytes, std::uint32_t count,
+                                                                      std::uint32_t address,
+                                                                      std::uint16_t port) mutable {
+      IpLocator::setIPv4(from, static_cast<eprosima::fastrtps::rtps::octet>(address >> 24U),
+                         static_cast<eprosima::fastrtps::rtps::octet>(address >> 16U),
+                         static_cast<eprosima::fastrtps::rtps::octet>(address >> 8U),
+                         static_cast<eprosima::fastrtps::rtps::octet>(address));
+      IpLocator::setPhysicalPort(from, port);
+      receiver->OnDataReceived(bytes, count, locator, from);
+    };
+    return descriptor_.socket->open(IpLocator::getPhysicalPort(locator), descriptor_.loopback_only, bytes_max, pass_on);
+  }
+
+  bool CloseInputChannel(const Locator& locator) override {
+    if (!is_for_messages(locator)) return low_level_transport_->CloseInputChannel(locator);
+    descriptor_.socket->close();
+    return true;
+  }
+
+  bool OpenOutputChannel(rtps::SendResourceList& resources, const Locator& locator) override {
+    return low_level_transport_->OpenOutputChannel(resources, locator);
+  }
+
+  void shutdown() override { low_level_transport_->shutdown(); }
+
+ private:
+  static Locator sender_locator() {
+    Locator locator;
+    locator.kind = LOCATOR_KIND_UDPv4;
+    return locator;
+  }
+
+  /// The ports of messages and of discovery alternate (RTPS 9.6.1); the participant tries every second one.
+  [[nodiscard]] bool is_for_messages(const Locator& locator) const {
+    if (locator.kind != LOCATOR_KIND_UDPv4 || IpLocator::isMulticast(locator)) return false;
+    const PortParameters ports;
+    const std::uint32_t first = ports.portBase + ports.domainIDGain * descriptor_.domain + ports.offsetd3;
+    const std::uint32_t port = IpLocator::getPhysicalPort(locator);
+    return port >= first && (port - first) % ports.participantIDGain == 0;
+  }
+
+  // Of Fast DDS, as if it had two: these carry the messages themselves and are never called, because senders and
+  // receivers are those of UDP.
+  bool send(eprosima::fastrtps::rtps::SenderResource*, const eprosima::fastrtps::rtps::octet*, std::uint32_t,
+            eprosima::fastrtps::rtps::LocatorsIterator*, eprosima::fastrtps::rtps::LocatorsIterator*,
+            const std::chrono::steady_clock::time_point&) override {
+    return false;
+  }
+  void receive(rtps::TransportReceiverInterface*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
+               const Locator&) override {}
+
+  PolledDescriptor descriptor_;
+};
+
+rtps::TransportInterface* PolledDescriptor::create_transport() const { return new PolledTransport{*this}; }
+
+}  // namespace
+
+std::shared_ptr<rtps::TransportDescriptorInterface> polled_transport(
+    std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> socket, std::uint32_t domain,
+    bool loopback_only) {
+  return std::make_shared<PolledDescriptor>(std::move(udp), std::move(socket), domain, loopback_only);
+}
+
+}  // namespace hybridtest::fast_dds
