@@ -22,6 +22,9 @@ namespace {
 /// In process, other streams belong to the study.
 constexpr std::uint64_t kNoiseSeed = 1;
 
+/// Of the rate, the highest corner that AdaptiveModelInverse takes.
+constexpr double kJerkFilterShare = 0.0999;
+
 [[noreturn]] void refuse(const std::filesystem::path& directory, const std::string& why) {
   throw ConfigError{directory.string() + ": " + why + "; expected a run of launch/scenarios/rths_benchmark"};
 }
@@ -54,7 +57,7 @@ std::size_t motion_of(const std::filesystem::path& directory, const Scenario& sc
       const std::vector<double> wanted = inputs.motion(motion).sampled(scenario.time.step_s, scenario.time.last_step);
       const double same = 1e-9 * inputs.motion(motion).peak_m_per_s2();
       const auto is_same = [same](double a, double b) { return std::abs(a - b) <= same; };
-      if (std::ranges::equal(applied, wanted, is_same)) return motion;
+      if (largest_magnitude(wanted) > 0.0 && std::ranges::equal(applied, wanted, is_same)) return motion;
     }
   }
   refuse(directory, "its ground motion is none of the benchmark's times " + fmt::format("{:g}", kMotionScale));
@@ -180,19 +183,24 @@ RecordedRun read_recorded_run(const std::filesystem::path& directory, const Benc
   const auto& [floor_1_m, floor_2_m, floor_3_m] = signals.reference_m;
   run.criteria = evaluate_criteria({signals.target_m, signals.measured_m, signals.floor_2_m, signals.floor_3_m},
                                    {floor_1_m, floor_2_m, floor_3_m}, run.samples_per_step * kPeriodS);
-  run.in_process = run_in_process(inputs, run.case_number, run.motion, run.samples_per_step);
+  run.in_process = run_in_process(inputs, run.case_number, run.motion, run.samples_per_step, run.steps_wanted);
   add_timing(directory, run);
   return run;
 }
 
-Criteria run_in_process(const BenchmarkInputs& inputs, int case_number, std::size_t motion, int samples_per_exchange) {
+Criteria run_in_process(const BenchmarkInputs& inputs, int case_number, std::size_t motion, int samples_per_exchange,
+                        std::size_t exchanges) {
+  Reference reference = inputs.reference(case_number, motion);
+  const std::size_t samples = (exchanges - 1) * static_cast<std::size_t>(samples_per_exchange) + 1;
+  for (auto& floor : reference.displacement_m) floor.resize(std::min(floor.size(), samples));
   const double period_s = samples_per_exchange * kPeriodS;
-  CompensatedPath path{std::make_unique<AdaptiveModelInverse>(AdaptiveModelInverse::Parameters{}, period_s),
-                       Arrangement::straight};
+  AdaptiveModelInverse::Parameters parameters;
+  parameters.jerk_filter_hz = std::min(parameters.jerk_filter_hz, kJerkFilterShare / period_s);
+  CompensatedPath path{std::make_unique<AdaptiveModelInverse>(parameters, period_s), Arrangement::straight};
   const auto force_lead = make_force_lead(kLoopDelayPeriods, period_s);
   return run_virtual_test({.case_number = case_number,
                            .motion = inputs.motion(motion),
-                           .reference = inputs.reference(case_number, motion),
+                           .reference = reference,
                            .plant = {},
                            .has_sensor_noise = true,
                            .noise_seed = kNoiseSeed,

@@ -34,9 +34,10 @@ struct RecordedRun {
 [[nodiscard]] RecordedRun read_recorded_run(const std::filesystem::path& directory, const BenchmarkInputs& inputs);
 
 /// Our compensator in the study's own loop, nominal plant, with sensor noise, coupled at the rate of a run.
-/// @param samples_per_exchange   1, 2 or 4.
+/// @param samples_per_exchange   of 4096 Hz, from 1.
+/// @param exchanges              from 2; at most as the motion has.
 [[nodiscard]] Criteria run_in_process(const BenchmarkInputs& inputs, int case_number, std::size_t motion,
-                                      int samples_per_exchange);
+                                      int samples_per_exchange, std::size_t exchanges);
 
 /// A row for each run, below it the same case in process at the same rate, and as published.
 [[nodiscard]] std::string recorded_markdown(std::span<const RecordedRun> runs);

@@ -16,8 +16,10 @@
 #include "tests/simulation/recorded_simulation.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 #include "tests/unit/validation/studies/benchmark_motions.hpp"
+#include "validation/studies/rths_benchmark/candidates.hpp"
 #include "validation/studies/rths_benchmark/frame.hpp"
 #include "validation/studies/rths_benchmark/recorded_run.hpp"
+#include "validation/studies/rths_benchmark/virtual_run.hpp"
 
 /// The scenarios of the benchmark, run in simulated time, against the structure without substructures.
 namespace hybridtest::rths {
@@ -134,6 +136,95 @@ TEST_P(EachCase, CompensatedActuatorStaysNearTheReference) {
   EXPECT_EQ(run.bridged, 0U);
   EXPECT_LT(run.criteria.j(6), 1.0);
   EXPECT_LT(run.criteria.j(7), 1.0);
+}
+
+class RecordedRuns : public testing::Test {
+ protected:
+  void SetUp() override { HYBRIDTEST_NEEDS_BENCHMARK_MOTIONS(); }
+
+  /// Five seconds, in which every motion has begun.
+  [[nodiscard]] fs::path run(int case_number, const std::string& motion, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> overrides{
+        "excitation.ground_motion=" + (benchmark_motions() / ("rths_benchmark_" + motion + ".csv")).string(),
+        "time.duration_s=5.0"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const fs::path directory = directory_ / ("run_" + std::to_string(runs_++));
+    simulate_into(directory, case_number, overrides);
+    return directory;
+  }
+  [[nodiscard]] std::string refusal(const fs::path& directory) const {
+    try {
+      static_cast<void>(read_recorded_run(directory, inputs()));
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  [[nodiscard]] static const BenchmarkInputs& inputs() {
+    static const BenchmarkInputs kept{benchmark_motions()};
+    return kept;
+  }
+
+ private:
+  TemporaryDirectory directory_;
+  int runs_ = 0;
+};
+
+TEST_F(RecordedRuns, CaseMotionAndRateAreFound) {
+  const RecordedRun found =
+      read_recorded_run(run(3, "kobe", {"time.step_s=4.8828125e-4", "time.duration_s=5.0"}), inputs());
+  EXPECT_EQ(found.case_number, 3);
+  EXPECT_EQ(found.motion, 1U);
+  EXPECT_EQ(found.rate_hz(), 2048.0);
+  EXPECT_EQ(found.steps, 10241U);
+  EXPECT_TRUE(std::isnan(found.lateness_us_p99)) << "the control loop had no thread of its own";
+}
+
+TEST_F(RecordedRuns, CriteriaAreThoseOfTheRecordedColumns) {
+  const fs::path directory = run(1, "elcentro");
+  const RunFileReader site{run_file(directory, "actuator")};
+  const std::vector<double> target_m = site.column("steps", "target_displacement_m");
+  const std::vector<double> measured_m = site.column("steps", "measured_displacement_m");
+  ASSERT_EQ(target_m.size(), 5121U);
+  double target_mean = 0.0, error_mean = 0.0, target_square = 0.0, error_square = 0.0;
+  for (std::size_t i = 0; i < target_m.size(); ++i) {
+    target_mean += target_m[i] / 5121.0;
+    error_mean += (measured_m[i] - target_m[i]) / 5121.0;
+  }
+  for (std::size_t i = 0; i < target_m.size(); ++i) {
+    target_square += std::pow(target_m[i] - target_mean, 2);
+    error_square += std::pow(measured_m[i] - target_m[i] - error_mean, 2);
+  }
+  const RecordedRun found = read_recorded_run(directory, inputs());
+  EXPECT_NEAR(found.criteria.j(2), 100.0 * std::sqrt(error_square / target_square), 1e-6 * found.criteria.j(2));
+}
+
+TEST_F(RecordedRuns, OtherTestsAreRefused) {
+  EXPECT_THAT(refusal(run(1, "elcentro", {"structure.mass_kg.floor_2=1001.0"})), HasSubstr("those of no case"));
+  EXPECT_THAT(refusal(run(1, "elcentro", {"excitation.scale=0.5"})), HasSubstr("none of the benchmark's times 0.4"));
+  EXPECT_THAT(refusal(run(1, "elcentro", {"time.duration_s=0.015625"})), HasSubstr("none of the benchmark's times 0.4"))
+      << "before it begins";
+  EXPECT_THAT(refusal(run(1, "elcentro", {"time.step_s=0.001", "time.duration_s=5.0"})),
+              HasSubstr("not a whole number of samples"));
+}
+
+TEST_F(RecordedRuns, TablesHoldTheFiguresOfEachRun) {
+  const std::vector<RecordedRun> runs{read_recorded_run(run(2, "morgan"), inputs())};
+  EXPECT_THAT(recorded_markdown(runs), HasSubstr("| 2, morgan, 1024 Hz | "));
+  const std::string csv = recorded_csv(runs);
+  EXPECT_THAT(csv, HasSubstr(",2,morgan,1024,"));
+  const std::string head = csv.substr(0, csv.find('\n'));
+  const std::string row = csv.substr(csv.find('\n'));
+  EXPECT_EQ(std::ranges::count(head, ','), std::ranges::count(row, ','));
+}
+
+TEST_F(RecordedRuns, StudyAtItsOwnRateIsTheStudysRun) {
+  const Candidate ours = chosen_candidates({std::string{kOurs}}).front();
+  const Reference& reference = inputs().reference(1, 0);
+  const TestResult study = run_virtual_test(
+      {.case_number = 1, .motion = inputs().motion(0), .reference = reference, .plant = {}, .noise_seed = 1},
+      *ours.make_path(), *ours.make_force_compensator());
+  EXPECT_EQ(run_in_process(inputs(), 1, 0, 1, reference.samples()).values, study.criteria.values);
 }
 
 INSTANTIATE_TEST_SUITE_P(RthsScenarios, EachCase, testing::Values(1, 2, 3, 4),
