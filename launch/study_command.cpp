@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "validation/studies/founding_study/founding_report.hpp"
 #include "validation/studies/output_file.hpp"
 #include "validation/studies/parallel_runs.hpp"
+#include "validation/studies/rths_benchmark/recorded_run.hpp"
 #include "validation/studies/rths_benchmark/rths_page.hpp"
 #include "validation/studies/rths_benchmark/rths_tables.hpp"
 
@@ -28,6 +30,12 @@ struct RthsOptions : StudyOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> compensators;
   std::filesystem::path ground_motions;
+};
+
+struct RecordedOptions {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path ground_motions;
+  std::filesystem::path csv;
 };
 
 struct FoundingOptions : StudyOptions {
@@ -68,6 +76,17 @@ int study_rths_benchmark(const RthsOptions& options) {
   return kExitCompleted;
 }
 
+int study_recorded_runs(const RecordedOptions& options) {
+  const rths::BenchmarkInputs inputs{rths::ground_motion_directory(options.ground_motions)};
+  std::vector<rths::RecordedRun> runs;
+  for (const std::filesystem::path& directory : options.runs)
+    runs.push_back(rths::read_recorded_run(directory, inputs));
+  fmt::print("{}", rths::recorded_markdown(runs));
+  if (!options.csv.empty()) write_output_file(options.csv, rths::recorded_csv(runs));
+  const bool is_complete = std::ranges::all_of(runs, &rths::RecordedRun::is_complete);
+  return is_complete ? kExitCompleted : kExitEndedEarly;
+}
+
 int study_founding_study(const FoundingOptions& options) {
   prepare_output_directory(options.directory);
   std::vector<founding::MethodRun> runs;
@@ -104,6 +123,13 @@ int study_compensators(const StudyOptions& options) {
   return kExitCompleted;
 }
 
+void add_ground_motions(CLI::App& study, std::filesystem::path& ground_motions) {
+  study
+      .add_option("--ground-motions", ground_motions,
+                  "Directory with rths_benchmark_elcentro.csv, _kobe.csv and _morgan.csv")
+      ->default_str("$HYBRIDTEST_GROUND_MOTIONS");
+}
+
 template <class Options>
 CLI::App* add_study(CLI::App& studies, const std::string& name, const std::string& what,
                     const std::shared_ptr<Options>& options, int (*run)(const Options&), CommandAction& action) {
@@ -129,10 +155,7 @@ void add_study_command(CLI::App& app, CommandAction& action) {
       "Every compensator on the virtual RTHS benchmark (Silva et al., 2020). Exit code 4: the harness does not\n"
       "reproduce the published values",
       benchmark, study_rths_benchmark, action);
-  rths_benchmark
-      ->add_option("--ground-motions", benchmark->ground_motions,
-                   "Directory with rths_benchmark_elcentro.csv, _kobe.csv and _morgan.csv")
-      ->default_str("$HYBRIDTEST_GROUND_MOTIONS");
+  add_ground_motions(*rths_benchmark, benchmark->ground_motions);
   rths_benchmark->add_option("--plants", benchmark->plants, "Number of perturbed plants in addition to the nominal one")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
@@ -140,6 +163,16 @@ void add_study_command(CLI::App& app, CommandAction& action) {
       ->capture_default_str();
   rths_benchmark->add_option("--compensator", benchmark->compensators,
                              "Run only these compensators; a name without +pi selects both variants");
+
+  const auto recorded = std::make_shared<RecordedOptions>();
+  CLI::App* rths_runs = studies->add_subcommand("rths_runs",
+                                                "J1 to J9 of runs of launch/scenarios/rths_benchmark, beside the study "
+                                                "in process at the same rate. Exit code 3:\n"
+                                                "a run ended early");
+  rths_runs->add_option("run", recorded->runs, "Run directories")->required()->check(CLI::ExistingDirectory);
+  add_ground_motions(*rths_runs, recorded->ground_motions);
+  rths_runs->add_option("--csv", recorded->csv, "Also writes the figures to this file");
+  rths_runs->callback([recorded, &action] { action = [recorded] { return study_recorded_runs(*recorded); }; });
 
   const auto founding_study = std::make_shared<FoundingOptions>();
   add_study(*studies, "founding_study",

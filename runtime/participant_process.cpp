@@ -170,7 +170,9 @@ class ProcessSurroundings {
       return fast_dds::make_fast_dds_transport(options.network, scenario.name);
     }
     const InheritedRealTime inherited{real_time_of(scenario, options.id, role).priority};
-    return fast_dds::make_fast_dds_transport(options.network, scenario.name);
+    fast_dds::FastDdsSettings network = options.network;
+    network.best_effort_coupling = true;
+    return fast_dds::make_fast_dds_transport(network, scenario.name);
   }
 
   static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {

@@ -5,7 +5,7 @@ namespace hybridtest {
 /// From the command displacement of one actuator to the displacement it imposes.
 ///
 /// Stepped once per control sample; between samples the command is taken as a straight line,
-/// so that every transfer system tends to `ideal` as it gets faster.
+/// so that every transfer system tends to `ideal` as it gets faster. One that says so holds its command instead.
 class TransferSystem {
  public:
   virtual ~TransferSystem() = default;
@@ -17,6 +17,8 @@ class TransferSystem {
   [[nodiscard]] virtual double step_loaded(double command_m, double /*load_force_n*/) noexcept {
     return step(command_m);
   }
+  /// With which a specimen that is part of it resists, at the last step [N]; 0 where the specimen is a part by itself.
+  [[nodiscard]] virtual double specimen_force_n() const noexcept { return 0.0; }
   /// At rest at zero displacement.
   virtual void reset() noexcept = 0;
 };

@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "experimental_site/rigs/simulated_rig.hpp"
+#include "mechanics/laws/elastic.hpp"
 #include "numerical_substructure/elastic_matrix.hpp"
 #include "numerical_substructure/spring_network.hpp"
 #include "plant/specimens/elastic_specimen.hpp"
 #include "plant/specimens/law_specimen.hpp"
+#include "plant/specimens/specimen_in_transfer_system.hpp"
 #include "plant/transfer_systems/ideal.hpp"
 #include "scenario/catalogue/effects.hpp"
 #include "scenario/catalogue/laws.hpp"
@@ -41,6 +43,24 @@ void read_transfer_systems(Section& section, SimulatedSiteReading& site) {
     site.rating.velocity_m_per_s = std::min(site.rating.velocity_m_per_s, readings[i].rating.velocity_m_per_s);
     site.rating.force_n = std::min(site.rating.force_n, readings[i].rating.force_n);
   }
+  const auto has_specimen = [](const TransferSystemReading& reading) {
+    return reading.specimen_stiffness_n_per_m > 0.0;
+  };
+  if (std::ranges::none_of(readings, has_specimen)) return;
+  if (!std::ranges::all_of(readings, has_specimen)) {
+    section.error("transfer_system", "some have their specimen in their model, some not; expected all or none");
+  }
+  site.is_in_transfer_systems = true;
+  for (std::size_t i = 0; i < std::min(readings.size(), dofs); ++i) {
+    site.dofs[i].make_law = [stiffness_n_per_m = readings[i].specimen_stiffness_n_per_m] {
+      return std::make_unique<Elastic>(stiffness_n_per_m);
+    };
+  }
+}
+
+void refuse_second_specimen(Section& section) {
+  if (!section.has("specimen")) return;
+  section.error("specimen", "the model of the transfer system has the specimen in it; expected no other");
 }
 
 void read_specimen(Section& section, SimulatedSiteReading& site) {
@@ -79,6 +99,20 @@ void read_site_effects(Section& section, SimulatedSiteReading& site) {
       site.dofs[static_cast<std::size_t>(dof)].effects.push_back(effect.setting);
     }
   }
+}
+
+using TransferSystems = std::vector<std::unique_ptr<TransferSystem>>;
+
+TransferSystems make_transfer_systems(const SimulatedSiteReading& site, double period_s) {
+  TransferSystems made;
+  for (const SiteModel& dof : site.dofs) made.push_back(dof.make_transfer_system(period_s, delay_change_s(dof)));
+  return made;
+}
+
+std::unique_ptr<Specimen> specimen_in(const TransferSystems& transfer_systems) {
+  std::vector<const TransferSystem*> of;
+  for (const auto& transfer_system : transfer_systems) of.push_back(transfer_system.get());
+  return std::make_unique<SpecimenInTransferSystem>(std::move(of));
 }
 
 std::unique_ptr<Specimen> make_specimen(const SimulatedSiteReading& site) {
@@ -132,6 +166,7 @@ Eigen::MatrixXd secant_stiffness(Specimen& specimen, double displacement_m) {
 
 /// Empty without a law for each degree of freedom.
 std::function<std::unique_ptr<SubstructureModel>()> specimen_model(const SimulatedSiteReading& site) {
+  if (site.is_in_transfer_systems) return {};  // its mass is no part of such a model
   if (site.make_full_stiffness) {
     return
         [make = site.make_full_stiffness] { return std::make_unique<ElasticMatrix>(secant_stiffness(*make(), 1.0)); };
@@ -155,7 +190,11 @@ SimulatedSiteReading read_simulated_site(Section& section, int dofs, AbsentPart 
   }
   const bool needs_all = absent == AbsentPart::refused;
   if (needs_all || section.has("transfer_system")) read_transfer_systems(section, site);
-  if (needs_all || section.has("specimen")) read_specimen(section, site);
+  if (site.is_in_transfer_systems) {
+    refuse_second_specimen(section);
+  } else if (needs_all || section.has("specimen")) {
+    read_specimen(section, site);
+  }
   read_sensors(section.section_or_empty("sensors"), site);
   read_site_effects(section, site);
   return site;
@@ -180,9 +219,11 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
   reading.make_specimen = specimen_model(site);
   reading.make_linear = [site, own = reading.stiffness_n_per_m](double period_s, double displacement_m,
                                                                 const Eigen::MatrixXd& given) {
-    std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
-    for (const SiteModel& dof : site.dofs) {
-      transfer_systems.push_back(dof.make_transfer_system(period_s, delay_change_s(dof)));
+    TransferSystems transfer_systems = make_transfer_systems(site, period_s);
+    if (site.is_in_transfer_systems) {
+      auto specimen = specimen_in(transfer_systems);
+      return std::make_unique<SimulatedRig>(std::move(transfer_systems), std::move(specimen), SensorNoise{},
+                                            from_seconds(period_s));
     }
     Eigen::MatrixXd stiffness = own ? own(displacement_m) : given;
     const double largest = stiffness.cwiseAbs().maxCoeff();
@@ -191,13 +232,11 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
                                           SensorNoise{}, from_seconds(period_s));
   };
   reading.make = [site](double period_s) {
-    std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
+    TransferSystems transfer_systems = make_transfer_systems(site, period_s);
+    auto specimen = site.is_in_transfer_systems ? specimen_in(transfer_systems) : make_specimen(site);
     std::vector<SimulatedRig::Effects> effects;
-    for (const SiteModel& dof : site.dofs) {
-      transfer_systems.push_back(dof.make_transfer_system(period_s, delay_change_s(dof)));
-      effects.push_back(SimulatedRig::effects_of(dof, period_s));
-    }
-    return std::make_unique<SimulatedRig>(std::move(transfer_systems), make_specimen(site), site.dofs.front().noise,
+    for (const SiteModel& dof : site.dofs) effects.push_back(SimulatedRig::effects_of(dof, period_s));
+    return std::make_unique<SimulatedRig>(std::move(transfer_systems), std::move(specimen), site.dofs.front().noise,
                                           from_seconds(period_s), std::move(effects));
   };
   return reading;

@@ -16,6 +16,7 @@ namespace hybridtest {
 struct SimulatedSiteReading {
   std::vector<SiteModel> dofs;                                     // one per interface degree of freedom
   std::function<std::unique_ptr<Specimen>()> make_full_stiffness;  // of a specimen that couples them; else empty
+  bool is_in_transfer_systems = false;                             // the specimen is part of their models
   std::vector<double> transfer_delay_s;                            // at low frequency, of each actuator
   RigRating rating;                                                // of the weakest actuator
 };

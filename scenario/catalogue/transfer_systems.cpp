@@ -7,6 +7,7 @@
 #include "plant/transfer_systems/delay.hpp"
 #include "plant/transfer_systems/first_order.hpp"
 #include "plant/transfer_systems/ideal.hpp"
+#include "plant/transfer_systems/linear_servo_hydraulic.hpp"
 #include "plant/transfer_systems/second_order.hpp"
 #include "plant/transfer_systems/servo_hydraulic.hpp"
 
@@ -64,6 +65,19 @@ TransferSystemReading read_servo_hydraulic(Section& section) {
                      .force_n = p.supply_pressure_pa * p.piston_area_m2}};
 }
 
+TransferSystemReading read_linear_servo_hydraulic(Section& section) {
+  const auto parameters = read_parameters<LinearServoHydraulic>(section);
+  const double range_m = parameters.converter_range_m;
+  TransferSystemReading reading{.make =
+                                    [parameters](double period_s, double) {
+                                      return std::make_unique<LinearServoHydraulic>(parameters, from_seconds(period_s));
+                                    },
+                                .delay_s = parameters.model.low_frequency_delay_s(),
+                                .specimen_stiffness_n_per_m = parameters.model.stiffness_n_per_m};
+  if (range_m > 0.0) reading.rating.displacement_m = range_m;
+  return reading;
+}
+
 }  // namespace
 
 const std::vector<PartType<TransferSystemReading>>& transfer_systems() {
@@ -73,6 +87,7 @@ const std::vector<PartType<TransferSystemReading>>& transfer_systems() {
       {"first_order", read_first_order, describe<FirstOrder>},
       {"second_order", read_second_order, describe<SecondOrder>},
       {"servo_hydraulic", read_servo_hydraulic, describe<ServoHydraulic>},
+      {"linear_servo_hydraulic", read_linear_servo_hydraulic, describe<LinearServoHydraulic>},
   };
   return table;
 }

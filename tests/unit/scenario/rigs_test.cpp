@@ -55,6 +55,31 @@ TEST_F(RigsTest, UdpRigRequiresAddressAndPace) {
       << "shorter than two control periods";
 }
 
+TEST_F(RigsTest, LinearServoHydraulicBringsItsSpecimen) {
+  const Scenario scenario = read("{type: simulated, transfer_system: {type: linear_servo_hydraulic}}");
+  const SiteScenario& site = scenario.substructures[0].site;
+  EXPECT_EQ(site.specimen_stiffness_n_per_m(0.01)(0, 0), 1.190e6);
+  // Published: the slope of the phase at zero frequency, and with it the lag of slow motion.
+  EXPECT_NEAR(site.delays.at(0).transfer_s, 0.02508, 1e-5);
+  EXPECT_THAT(errors("{type: simulated, transfer_system: {type: linear_servo_hydraulic}, specimen: {type: none}}"),
+              Contains(AllOf(HasSubstr("rig.specimen"), HasSubstr("expected no other"))));
+  EXPECT_THAT(errors("{type: simulated, transfer_system: {type: linear_servo_hydraulic, mass_kg: 0.0}}"),
+              Contains(HasSubstr("mass_kg")));
+}
+
+TEST_F(RigsTest, LinearServoHydraulicGivesForceOfItsSpecimen) {
+  const Scenario scenario = read("{type: simulated, transfer_system: {type: linear_servo_hydraulic}}");
+  const std::unique_ptr<Rig> rig = scenario.substructures[0].make_rig(1e-3);
+  rig->connect();
+  rig->arm();
+  ActuatorCommand command;
+  command.displacement_m = SiteVector::Constant(1, 0.002);
+  RigFeedback feedback{SiteVector::Zero(1), SiteVector::Zero(1)};
+  for (int i = 0; i < 3000; ++i) ASSERT_EQ(rig->exchange(command, feedback), RigStatus::healthy);
+  EXPECT_NEAR(feedback.force_n[0], 1.190e6 * feedback.displacement_m[0], 1e-3) << "at rest";
+  EXPECT_GT(feedback.displacement_m[0], 0.0019);
+}
+
 TEST_F(RigsTest, RejectsControllerClockInLockstep) {
   EXPECT_THAT(errors("{type: udp, host: a, port: 1}"), Contains(HasSubstr("clock of its own")));
   EXPECT_THAT(errors("{type: udp, host: a, port: 1, pace: datagrams}"), IsEmpty());

@@ -52,6 +52,17 @@ Frame Frame::without(const TransferSystemModel& specimen) const noexcept {
   return rest;
 }
 
+bool Frame::equals(const Eigen::Ref<const Eigen::Matrix3d>& mass_kg,
+                   const Eigen::Ref<const Eigen::Matrix3d>& damping_n_s_per_m,
+                   const Eigen::Ref<const Eigen::Matrix3d>& stiffness_n_per_m) const noexcept {
+  constexpr double kSame = 1e-9;
+  using RowMajor = Eigen::Matrix<double, kFloors, kFloors, Eigen::RowMajor>;
+  const Eigen::Matrix3d mass{Eigen::Vector3d{mass_of_floor_1_kg_, mass_kg_, mass_kg_}.asDiagonal()};
+  return mass.isApprox(mass_kg, kSame) &&
+         Eigen::Map<const RowMajor>{damping_n_s_per_m_[0].data()}.isApprox(damping_n_s_per_m, kSame) &&
+         Eigen::Map<const RowMajor>{stiffness_n_per_m_[0].data()}.isApprox(stiffness_n_per_m, kSame);
+}
+
 Frame::Floors Frame::acceleration(std::span<const double, 2 * kFloors> state, double ground_m_per_s2,
                                   double specimen_force_n) const noexcept {
   Floors acceleration{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 
@@ -24,6 +25,11 @@ class Frame {
 
   /// Without mass, damping and stiffness of the specimen at floor 1.
   [[nodiscard]] Frame without(const TransferSystemModel& specimen) const noexcept;
+
+  /// Whether matrices of 3 x 3 are the masses, the damping and the stiffness of this frame, to nine digits.
+  [[nodiscard]] bool equals(const Eigen::Ref<const Eigen::Matrix3d>& mass_kg,
+                            const Eigen::Ref<const Eigen::Matrix3d>& damping_n_s_per_m,
+                            const Eigen::Ref<const Eigen::Matrix3d>& stiffness_n_per_m) const noexcept;
 
   /// [m/s2] at a state.
   [[nodiscard]] Floors acceleration(std::span<const double, 2 * kFloors> state, double ground_m_per_s2,

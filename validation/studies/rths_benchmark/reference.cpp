@@ -23,4 +23,15 @@ Reference make_reference(int case_number, const GroundMotion& motion) {
   return reference;
 }
 
+Floors every(const Reference& reference, int samples) {
+  Floors chosen;
+  const auto stride = static_cast<std::size_t>(samples);
+  for (std::size_t floor = 0; floor < kFloors; ++floor) {
+    for (std::size_t i = 0; i < reference.samples(); i += stride) {
+      chosen[floor].push_back(reference.displacement_m[floor][i]);
+    }
+  }
+  return chosen;
+}
+
 }  // namespace hybridtest::rths

@@ -23,4 +23,8 @@ struct Reference {
 /// @param motion        already scaled; the record ends with it.
 [[nodiscard]] Reference make_reference(int case_number, const GroundMotion& motion);
 
+/// By floor, one sample in `samples`, beginning with the first.
+using Floors = std::array<std::vector<double>, kFloors>;
+[[nodiscard]] Floors every(const Reference& reference, int samples);
+
 }  // namespace hybridtest::rths

@@ -43,12 +43,14 @@ TestHistory empty_history(std::size_t samples) {
 }
 
 void evaluate(const VirtualTest& test, const TestHistory& history, TestResult& result) {
-  const auto& [floor_1_m, floor_2_m, floor_3_m] = test.reference.displacement_m;
+  const double period_s = test.samples_per_exchange * kPeriodS;
+  const Floors reference = every(test.reference, test.samples_per_exchange);
+  const auto& [floor_1_m, floor_2_m, floor_3_m] = reference;
   result.criteria = evaluate_criteria({history.target_m, history.measured_m, history.floor_2_m, history.floor_3_m},
-                                      {floor_1_m, floor_2_m, floor_3_m}, kPeriodS);
+                                      {floor_1_m, floor_2_m, floor_3_m}, period_s);
   result.noise_floor_percent = 100.0 * kDisplacementNoiseM / standard_deviation(history.target_m);
   result.true_tracking_percent = deviation_error_percent(history.true_m, history.target_m);
-  result.true_delay_s = fitted_delay_s(history.true_m, history.target_m, kPeriodS);
+  result.true_delay_s = fitted_delay_s(history.true_m, history.target_m, period_s);
 }
 
 }  // namespace
@@ -56,14 +58,15 @@ void evaluate(const VirtualTest& test, const TestHistory& history, TestResult& r
 TestResult run_virtual_test(const VirtualTest& test, ControlPath& path, ForceCompensator& force_compensator,
                             TestHistory* history) {
   const Frame frame = Frame::of_case(test.case_number).without(test.plant);
+  const auto stride = static_cast<std::size_t>(test.samples_per_exchange);
   const std::size_t samples = test.reference.samples();
-  TestHistory signals = empty_history(samples);
+  TestHistory signals = empty_history(samples / stride + 1);
   TestResult result;
   NoisySensors sensors{test};
   Plant plant{test.plant};
   Frame::State state{};
   Sensors before;
-  for (std::size_t i = 0; i < samples; ++i) {
+  for (std::size_t i = 0; i < samples; i += stride) {
     const double time_s = static_cast<double>(i) * kPeriodS;
     const Sensors now = sensors.read(plant);
     const double force_n = force_compensator.corrected_force({state[0], before.displacement_m, before.force_n});
@@ -80,10 +83,12 @@ TestResult run_virtual_test(const VirtualTest& test, ControlPath& path, ForceCom
     const bool is_hopeless = result.peak_force_n >= kHopelessShare * kForceLimitN;
     if (is_hopeless || !std::isfinite(plant.force_n()) || !std::isfinite(command_m)) break;
 
-    plant.step(command_m);
-    frame.step(state, test.motion, time_s, force_n);
+    for (std::size_t k = 0; k < stride; ++k) {
+      plant.step(command_m);
+      frame.step(state, test.motion, time_s + static_cast<double>(k) * kPeriodS, force_n);
+    }
     before = now;
-    result.is_complete = i + 1 == samples;
+    result.is_complete = i + stride >= samples;
   }
   if (result.is_complete) {
     evaluate(test, signals, result);

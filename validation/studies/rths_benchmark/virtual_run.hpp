@@ -21,6 +21,9 @@ struct VirtualTest {
   bool has_sensor_noise = true;
   std::uint64_t noise_seed = 0;
   std::uint64_t noise_stream = 0;
+  /// Samples of 4096 Hz from one exchange to the next: 4 couples at 1024 Hz. Numerical part and plant still move in
+  /// steps of 4096 Hz, with force and command held.
+  int samples_per_exchange = 1;
 };
 
 /// What one run gave.
@@ -44,13 +47,14 @@ struct TestHistory {
   std::vector<double> floor_3_m;
 };
 
-/// Runs numerical part, control path and plant against each other. In each sample, in this order: sensors
-/// are read; the force of the sample before, corrected by `force_compensator`, acts on the numerical part
-/// over the whole step; the control path answers; plant and numerical part move on. Ends early when the
+/// Runs numerical part, control path and plant against each other. In each exchange, in this order: sensors
+/// are read; the force of the exchange before, corrected by `force_compensator`, acts on the numerical part
+/// over the whole period; the control path answers; plant and numerical part move on. Ends early when the
 /// actuator's force is not finite or passes kHopelessShare of its limit.
 ///
 /// The numerical part is the full frame less this plant's own specimen, so that the whole structure is the
 /// reference's for every plant.
+/// @param path, force_compensator   made for the period of an exchange.
 /// @param history   may be nullptr.
 [[nodiscard]] TestResult run_virtual_test(const VirtualTest& test, ControlPath& path,
                                           ForceCompensator& force_compensator, TestHistory* history = nullptr);
