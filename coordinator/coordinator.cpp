@@ -245,8 +245,8 @@ void Coordinator::rehearse(Instant now) noexcept {
   const CoupledSubstructure* slowest = nullptr;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const Duration round_trip = rehearsal_->percentile(static_cast<SubstructureIndex>(i), 99);
-    usual_round_trip_ = std::max(
-        usual_round_trip_, std::min(rehearsal_->percentile(static_cast<SubstructureIndex>(i), 50), available));
+    usual_round_trip_ =
+        std::max(usual_round_trip_, std::min(rehearsal_->percentile(static_cast<SubstructureIndex>(i), 50), available));
     const bool is_in_time = round_trip <= available;
     const bool starts = is_in_time || settings_.bridging.start_anyway;
     const double round_trip_s =
@@ -724,8 +724,7 @@ Instant Coordinator::next_wake(Instant now, Instant presence_wake) const noexcep
       if (!command_is_open_) return std::min(presence_wake, source_->wake());
       if (is_paused_) return presence_wake;
       if (!command_is_sent_) return std::min(presence_wake, std::max(step_due_, now));
-      return std::min(presence_wake,
-                      has_deadline() ? deadline_of(ledger_.step()) : repeat_due_);
+      return std::min(presence_wake, has_deadline() ? deadline_of(ledger_.step()) : repeat_due_);
     }
     case Phase::stopping: return std::min({presence_wake, control_repeat_due_, stop_by_});
     case Phase::done: return kNever;

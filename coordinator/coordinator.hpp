@@ -79,9 +79,9 @@ struct CoordinatorReport {
 /// takes one force from it, several where the source of motion iterates. It ends the test after the last step or at the
 /// first fault.
 ///
-/// In real time, the command of step n is sent n - 1 steps after that of step 1, or as soon as the forces of the step before
-/// are there. Its answers are expected a step and a usual round trip later; what has not come by its deadline after that is
-/// bridged.
+/// In real time, the command of step n is sent n - 1 steps after that of step 1, or as soon as the forces of the step
+/// before are there. Its answers are expected a step and a usual round trip later; what has not come by its deadline
+/// after that is bridged.
 class Coordinator final : public Node {
  public:
   Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSource> source, Presence& presence,
@@ -199,7 +199,7 @@ class Coordinator final : public Node {
     int longest = 0;
     std::int64_t total = 0;
   };
-  std::vector<Misses> misses_;  // likewise
+  std::vector<Misses> misses_;   // likewise
   Duration usual_round_trip_{};  // of the slowest substructure
   Instant step_zero_{};
   StopReason requested_stop_ = StopReason::none;

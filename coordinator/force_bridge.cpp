@@ -98,7 +98,8 @@ std::span<const BridgedStep> ForceBridge::closed(bool ends) noexcept {
   if (open_ == 0) return {};
   const bool has_measured_end = !newest(0).is_bridged;
   if (!has_measured_end && !ends) return {};
-  // The gap is at `last` to `first`, counted from the newest step; a measured step is before it, unless it was forgotten.
+  // The gap is at `last` to `first`, counted from the newest step; a measured step is before it, unless it was
+  // forgotten.
   const std::size_t last = has_measured_end ? 1 : 0;
   const std::size_t first = std::min(last + open_ - 1, kept() - 1);
   for (std::size_t n = first + 1; n-- > last;) {
@@ -109,11 +110,11 @@ std::span<const BridgedStep> ForceBridge::closed(bool ends) noexcept {
     while (after > 0 && !newest(after).is_measured) --after;
     const bool came_late = newest(n).is_measured;
     const bool is_known = n > 0 && n + 1 < kept() && before < kept() && newest(after).is_measured;
-    closed_.push_back({.step = newest(n).step,
-                       .in_a_row = static_cast<int>(first - n + 1),
-                       .energy_added_j =
-                           is_known ? energy_of(n, before, after) : std::numeric_limits<double>::quiet_NaN(),
-                       .came_late = came_late});
+    closed_.push_back(
+        {.step = newest(n).step,
+         .in_a_row = static_cast<int>(first - n + 1),
+         .energy_added_j = is_known ? energy_of(n, before, after) : std::numeric_limits<double>::quiet_NaN(),
+         .came_late = came_late});
   }
   open_ = 0;
   return closed_;

@@ -21,9 +21,9 @@ enum class BridgeType : std::uint8_t {
 /// How a test in real time goes on without an answer.
 struct BridgingSettings {
   BridgeType type = BridgeType::polynomial;
-  int order = 1;             // of the polynomial, 1 to 3
+  int order = 1;              // of the polynomial, 1 to 3
   Duration deadline{};        // of an answer, after the time at which it is expected
-  int most_in_a_row = 3;     // more than these end the test
+  int most_in_a_row = 3;      // more than these end the test
   bool start_anyway = false;  // also when the rehearsed round trip does not fit into a step
 };
 
@@ -72,7 +72,9 @@ class ForceBridge {
 
   Entry& append(Step step, const InterfaceVector& displacement_m) noexcept;
   /// The n-th newest, from 0.
-  [[nodiscard]] Entry& newest(std::size_t n) noexcept { return entries_[(next_ + entries_.size() - 1 - n) % entries_.size()]; }
+  [[nodiscard]] Entry& newest(std::size_t n) noexcept {
+    return entries_[(next_ + entries_.size() - 1 - n) % entries_.size()];
+  }
   [[nodiscard]] std::size_t kept() const noexcept { return std::min(count_, entries_.size()); }
   void extrapolate(Step step) noexcept;
   [[nodiscard]] double energy_of(std::size_t n, std::size_t before, std::size_t after) noexcept;

@@ -139,8 +139,8 @@ struct DisplacementCommand {
   std::uint16_t iteration = 0;
   /// The substructure answers the force and keeps the state of the step before. Otherwise the step ends here.
   bool is_trial = false;
-  /// Before a real-time test, to measure the round trip: answered at once with the iteration and without a force. Nothing
-  /// moves.
+  /// Before a real-time test, to measure the round trip: answered at once with the iteration and without a force.
+  /// Nothing moves.
   bool is_rehearsal = false;
   std::uint8_t point_count = 0;                       // 1 to kCommandPoints
   std::array<CommandPoint, kCommandPoints> points{};  // newest first; consecutive steps

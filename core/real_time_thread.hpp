@@ -28,8 +28,8 @@ struct RealTimeGrant {
 /// changes nothing.
 [[nodiscard]] RealTimeGrant enter_real_time(const RealTimeRequest& request) noexcept;
 
-/// Threads that the calling thread starts while this lives inherit SCHED_FIFO with this priority, if it is granted: those
-/// of a library that cannot be asked. Afterwards the calling thread is scheduled as before.
+/// Threads that the calling thread starts while this lives inherit SCHED_FIFO with this priority, if it is granted:
+/// those of a library that cannot be asked. Afterwards the calling thread is scheduled as before.
 class InheritedRealTime {
  public:
   explicit InheritedRealTime(int priority) noexcept;

@@ -33,8 +33,9 @@ struct EmergencyStop {};
 }  // namespace loop_request
 
 /// From the site link to the control loop.
-using LoopRequest = std::variant<loop_request::Arm, loop_request::Start, loop_request::Target,
-                                 loop_request::ClockShift, loop_request::Pause, loop_request::Resume, loop_request::Stop, loop_request::EmergencyStop>;
+using LoopRequest =
+    std::variant<loop_request::Arm, loop_request::Start, loop_request::Target, loop_request::ClockShift,
+                 loop_request::Pause, loop_request::Resume, loop_request::Stop, loop_request::EmergencyStop>;
 
 /// The target of a step, reached and measured.
 struct StepMeasurement {

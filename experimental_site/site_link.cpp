@@ -20,8 +20,8 @@ TargetPoint target_of(const CommandPoint& point) {
 
 }  // namespace
 
-SiteLink::SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence,
-                   MembershipPorts membership, SiteLinkPorts ports, RowSink& steps)
+SiteLink::SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence, MembershipPorts membership,
+                   SiteLinkPorts ports, RowSink& steps)
     : index_{index},
       dofs_{dofs},
       mode_{mode},

@@ -23,9 +23,9 @@ struct SiteLinkPorts {
 /// The network side of a site. It passes each target once and in order to the control loop, and the measurements and
 /// faults of the loop back to the coordinator.
 ///
-/// In real time it passes every new target on, also behind a gap, and keeps the control periods in step with the clock of
-/// the coordinator: the smallest of `receive_time - send_time` in a window of time is the difference of the clocks plus the
-/// shortest latency, and its change since the first window is the drift.
+/// In real time it passes every new target on, also behind a gap, and keeps the control periods in step with the clock
+/// of the coordinator: the smallest of `receive_time - send_time` in a window of time is the difference of the clocks
+/// plus the shortest latency, and its change since the first window is the drift.
 class SiteLink final : public Node {
  public:
   SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence, MembershipPorts membership,
@@ -78,7 +78,7 @@ class SiteLink final : public Node {
   Duration least_delay_ = Duration::max();  // in the window
   std::optional<Duration> first_delay_;     // least of the first window
   StepMeasurement measured_;                // newest answer
-  DisplacementCommand command_;  // the ones being taken and sent; kept, so that their memory is used again
+  DisplacementCommand command_;             // the ones being taken and sent; kept, so that their memory is used again
   ForceMeasurement answer_;
   std::vector<double> row_;
 };

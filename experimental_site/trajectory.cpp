@@ -179,7 +179,8 @@ bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
     path_time_s_ += rate_ * interval_s;
   }
   if (has_target_ && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_) path_time_s_ = target_time_s;
-  if (settings_.keeps_time && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_) path_time_s_ = target_time_s;
+  if (settings_.keeps_time && std::abs(path_time_s_ - target_time_s) < kSameTime * step_s_)
+    path_time_s_ = target_time_s;
   const bool is_missed = settings_.keeps_time && !has_target_ && path_time_s_ >= target_time_s;
   if (is_missed) {
     const double now_s = std::exchange(path_time_s_, target_time_s);

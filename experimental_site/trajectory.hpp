@@ -57,9 +57,10 @@ struct TrajectorySettings {
 /// Ramp and hold, for quasi-static tests: from rest to rest along a raised cosine, held for the
 /// last share of the step, measured at its end; without prediction and without late targets.
 ///
-/// In real time (`keeps_time`) path time starts when the first target after the initial one comes, and never slows down. A step whose target has not come ends where the motion of the
-/// newest known target leads, and counts as missed. A target that comes within the last share of its step, or after it,
-/// corrects where the next step ends. After `missed_most` steps without a target, the velocity halves in each further one.
+/// In real time (`keeps_time`) path time starts when the first target after the initial one comes, and never slows
+/// down. A step whose target has not come ends where the motion of the newest known target leads, and counts as missed.
+/// A target that comes within the last share of its step, or after it, corrects where the next step ends. After
+/// `missed_most` steps without a target, the velocity halves in each further one.
 ///
 /// Site time is model time times the time scale. Real-time safe.
 class Trajectory {
@@ -116,9 +117,9 @@ class Trajectory {
   bool is_first_target_ = false;
   TargetPoint target_;
   // In real time:
-  bool stands_ = false;  // at the initial target
-  bool aims_ = false;    // the end of the step is not its target, but where older targets lead
-  TargetPoint known_;   // the newest that has come for this step or one before
+  bool stands_ = false;       // at the initial target
+  bool aims_ = false;         // the end of the step is not its target, but where older targets lead
+  TargetPoint known_;         // the newest that has come for this step or one before
   Step last_step_ = kNoStep;  // that has ended
   bool has_missed_ = false;   // the step before
   std::array<TargetPoint, kCommandPoints> early_{};  // for later steps, in order

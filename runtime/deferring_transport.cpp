@@ -60,7 +60,9 @@ void DeferringTransport::send_waiting() noexcept {
 std::unique_ptr<Outbox<TestAnnouncement>> DeferringTransport::announcement_outbox() {
   return defer(network_.announcement_outbox());
 }
-std::unique_ptr<Outbox<ParticipantStatus>> DeferringTransport::status_outbox() { return defer(network_.status_outbox()); }
+std::unique_ptr<Outbox<ParticipantStatus>> DeferringTransport::status_outbox() {
+  return defer(network_.status_outbox());
+}
 std::unique_ptr<Outbox<TestControl>> DeferringTransport::control_outbox() { return defer(network_.control_outbox()); }
 std::unique_ptr<Outbox<Event>> DeferringTransport::event_outbox() { return defer(network_.event_outbox()); }
 

@@ -7,8 +7,9 @@
 
 namespace hybridtest {
 
-/// A transport for a node with deadlines: commands and measurements are sent at once, everything else by another thread,
-/// because a reliable DDS writer allocates memory. Inboxes, and the outbox of live signals, are those of the network.
+/// A transport for a node with deadlines: commands and measurements are sent at once, everything else by another
+/// thread, because a reliable DDS writer allocates memory. Inboxes, and the outbox of live signals, are those of the
+/// network.
 class DeferringTransport final : public Transport {
  public:
   /// @param network   outlives this and its ports.

@@ -396,7 +396,8 @@ void run_site_with_loop_thread(SiteParticipant& participant, ProcessSurroundings
   if (scenario.time.mode == CouplingMode::real_time) {
     run_in_real_time(participant, process, clock, real_time_of(scenario, substructure.id, substructure.role), finish);
   } else {
-    run_to_the_end(participant, process, clock, scenario, [](Instant) {}, finish);
+    run_to_the_end(
+        participant, process, clock, scenario, [](Instant) {}, finish);
   }
 }
 

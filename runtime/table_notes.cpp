@@ -21,10 +21,11 @@ std::vector<TableNote> of_coordinator(const Scenario& scenario) {
       untimed("exchanges",
               "One row per command and answer: which substructure (index from 0 into substructure_ids), how long it "
               "took, how often the command was sent."),
-      untimed("bridges",
-              "In real time, one row per force that missed its deadline: its step and substructure, its place in the gap, "
-              "the work that the force in its place did beyond the measured one (NaN where none followed), and whether "
-              "the measured one came late (1) or was interpolated (0)."),
+      untimed(
+          "bridges",
+          "In real time, one row per force that missed its deadline: its step and substructure, its place in the gap, "
+          "the work that the force in its place did beyond the measured one (NaN where none followed), and whether "
+          "the measured one came late (1) or was interpolated (0)."),
       untimed("opensees", "One row per question of the OpenSees that leads: its step, its trial and its own time."),
       untimed("test", "One row: how many steps were planned and taken, why the test ended, wall time and exit code."),
       untimed("ground_motions", "One row per applied ground motion, after scaling and correction."),

@@ -7,7 +7,8 @@ BridgingSettings read_bridging(config::Section& root, double step_s) {
   constexpr int kMostInARow = 100;
   BridgingSettings bridging;
   config::Section section = root.section_or_empty("bridging");
-  bridging.type = static_cast<BridgeType>(section.choice("type", {"hold", "polynomial", "initial_stiffness"}, "polynomial"));
+  bridging.type =
+      static_cast<BridgeType>(section.choice("type", {"hold", "polynomial", "initial_stiffness"}, "polynomial"));
   if (bridging.type == BridgeType::polynomial) {
     bridging.order = static_cast<int>(section.integer("order", 1, 3, bridging.order));
   }

@@ -262,8 +262,9 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.displacement_noise_m = rig.displacement_noise_m;
   site.force_noise_n = rig.force_noise_n;
   if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
-    section.error("rig", "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced` or "
-                         "`real_time`");
+    section.error("rig",
+                  "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced` or "
+                  "`real_time`");
   }
   substructure.make_rig = std::move(rig.make);
   substructure.make_reference = std::move(rig.make_specimen);
@@ -301,7 +302,8 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   substructure.real_time = read_real_time(section, time.mode != CouplingMode::lockstep);
   if (time.mode == CouplingMode::real_time) {
     if (site.loop.trajectory.type == TrajectoryType::ramp_and_hold) {
-      section.error("trajectory", "ramp_and_hold waits for its targets, and real time does not: use predictor_corrector");
+      section.error("trajectory",
+                    "ramp_and_hold waits for its targets, and real time does not: use predictor_corrector");
     }
     site.loop.trajectory.keeps_time = true;
     site.loop.trajectory.missed_most = scenario.real_time.bridging.most_in_a_row;

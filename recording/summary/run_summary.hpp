@@ -34,9 +34,9 @@ struct ExchangeSummary {
   std::uint64_t bridged = 0;  // steps completed without an answer
   int bridged_in_a_row = 0;   // at most
   // Work that the bridged forces did beyond the measured ones, where that is known; see BridgedStep. [J]
-  double bridged_energy_j = 0.0;           // sum, positive: the structure gained it
+  double bridged_energy_j = 0.0;            // sum, positive: the structure gained it
   double bridged_energy_magnitude_j = 0.0;  // sum of the magnitudes
-  std::uint64_t lost = 0;     // the last command, if it was never answered
+  std::uint64_t lost = 0;                   // the last command, if it was never answered
   // Answers with the measurement flag of that name.
   std::uint64_t extrapolated = 0;
   std::uint64_t held = 0;

@@ -35,8 +35,7 @@ constexpr std::array<NextStep, 17> kNextSteps{{
      "A force or the integrator gave no finite number. Check the step against the limit that `hybridtest check` "
      "prints, "
      "and the sensors of the site that is named."},
-    {StopReason::not_assembled,
-     "Nothing moved. Start the missing participant with the same scenario file and domain."},
+    {StopReason::not_assembled, "Nothing moved. Start the missing participant with the same scenario file and domain."},
     {StopReason::refused, "Nothing moved. Give every participant the same scenario file, and each an id of its own."},
     {StopReason::recording_failed, "Check free space and permissions of the disk, then run the test again."},
     {StopReason::emergency_stop, "Make sure that every rig is at rest before anyone goes near a specimen."},
@@ -49,10 +48,12 @@ constexpr std::array<NextStep, 17> kNextSteps{{
      "A specimen cannot be tried twice. Choose an integrator of OpenSees that asks once in a step; see "
      "docs/opensees.md."},
     {StopReason::deadlines_missed,
-     "Look at the round trip and the lateness of the control loop of the participant that is named. A longer `step_s`, a "
+     "Look at the round trip and the lateness of the control loop of the participant that is named. A longer `step_s`, "
+     "a "
      "quieter machine or a larger `bridging.most_in_a_row` leaves more time; see docs/real_time.md."},
     {StopReason::network_too_slow,
-     "Nothing moved. Lengthen `step_s`, shorten `bridging.deadline_s`, or use the mode `paced`; see docs/real_time.md."},
+     "Nothing moved. Lengthen `step_s`, shorten `bridging.deadline_s`, or use the mode `paced`; see "
+     "docs/real_time.md."},
     {StopReason::model_failed, "Look at the log of the numerical substructure: its model failed, not its specimen."},
 }};
 

@@ -158,11 +158,9 @@ TEST_P(ControlPath, StepsOnQueuesMakeNoForbiddenCall) {
 INSTANTIATE_TEST_SUITE_P(Paths, ControlPath,
                          testing::Values(PathCase{CouplingMode::lockstep, false},
                                          PathCase{CouplingMode::lockstep, true}, PathCase{CouplingMode::paced, false},
-                                         PathCase{CouplingMode::paced, true},
-                                         PathCase{CouplingMode::real_time, true}),
+                                         PathCase{CouplingMode::paced, true}, PathCase{CouplingMode::real_time, true}),
                          [](const auto& path) {
-                           return std::string{name(path.param.mode)} +
-                                  (path.param.compensates ? "_compensated" : "");
+                           return std::string{name(path.param.mode)} + (path.param.compensates ? "_compensated" : "");
                          });
 
 /// Made before the child is: what it runs must find everything in place.

@@ -49,10 +49,8 @@ CoordinatorSettings settings(CouplingMode mode, Step last_step) {
   const Eigen::MatrixXd stiffness = Eigen::MatrixXd::Constant(1, 1, kStorey.stiffness_n_per_m);
   settings.substructures = {{"storey_1", Role::experimental_site, InterfaceMap{2, {{0}}}, stiffness},
                             {"storey_2", Role::numerical_substructure, InterfaceMap{2, {{1, 0}}}, stiffness}};
-  settings.bridging = {.type = BridgeType::initial_stiffness,
-                       .deadline = kControlPeriod,
-                       .most_in_a_row = 20,
-                       .start_anyway = true};
+  settings.bridging = {
+      .type = BridgeType::initial_stiffness, .deadline = kControlPeriod, .most_in_a_row = 20, .start_anyway = true};
   settings.recorded_dofs = {0, 1};
   GroundLoad ground{two_storeys().load_per_ground_acceleration_kg(), {}};
   for (Step step = 0; step <= last_step; ++step) {
@@ -129,9 +127,9 @@ RingCoupling::RingCoupling(CouplingMode mode, Step last_step, bool compensates, 
           SubstructureIndex{0}, 1, mode, site_presence_, MembershipPorts{site_announcements_, site_control_, kLease},
           SiteLinkPorts{site_commands_, measurements_, requests_, reports_}, site_record_)},
       numerical_{std::make_unique<NumericalNode>(
-          SubstructureIndex{1}, mode, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())), numerical_presence_,
-          MembershipPorts{numerical_announcements_, numerical_control_, kLease}, numerical_commands_, measurements_,
-          numerical_record_, std::vector<Eigen::Index>{0})},
+          SubstructureIndex{1}, mode, std::make_unique<SpringNetwork>(springs_to_ground(one_storey())),
+          numerical_presence_, MembershipPorts{numerical_announcements_, numerical_control_, kLease},
+          numerical_commands_, measurements_, numerical_record_, std::vector<Eigen::Index>{0})},
       coordinator_{std::make_unique<Coordinator>(
           settings(mode, last_step), std::make_unique<CentralDifference>(two_storeys(), kStep_s), coordinator_presence_,
           CoordinatorPorts{announcements_, coordinator_control_, control_, measurements_, commands_},

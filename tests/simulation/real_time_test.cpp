@@ -136,8 +136,8 @@ TEST(RealTime, PolynomialBridgesAreMoreAccurateThanHeldForces) {
 }
 
 TEST(RealTime, InitialStiffnessBridgesAnElasticSpecimen) {
-  // A site that misses a command measures at a predicted displacement, which differs from the commanded one by the third
-  // order of the step.
+  // A site that misses a command measures at a predicted displacement, which differs from the commanded one by the
+  // third order of the step.
   EXPECT_LT(error_under_losses("initial_stiffness", true), 1e-5);
   EXPECT_GT(error_under_losses("hold", true), 1e-4) << "losses that do not matter test nothing";
 }
@@ -195,8 +195,8 @@ SimulationSettings drawn_settings(std::uint64_t seed) {
   constexpr std::array kWho{"coordinator", "storey_1", "storey_2"};
   for (std::uint64_t i = random.below(4); i > 0; --i) {
     const Duration begin{static_cast<std::int64_t>(random.below(4'000'000'000))};
-    settings.pauses.push_back(
-        {kWho[random.below(kWho.size())], begin, begin + Duration{static_cast<std::int64_t>(random.below(20'000'000))}});
+    settings.pauses.push_back({kWho[random.below(kWho.size())], begin,
+                               begin + Duration{static_cast<std::int64_t>(random.below(20'000'000))}});
   }
   return settings;
 }

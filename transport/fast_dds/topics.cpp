@@ -49,8 +49,8 @@ dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& s
   // Otherwise each message asks for a receipt, for which timers are set and threads wake at both ends. A lost message
   // takes that question with it: only the repeated one above finds out.
   qos.reliable_writer_qos().disable_heartbeat_piggyback = delivery.is_coupling;
-  // For this time after a message was sent, a request to repeat it is older than the message. With no time at all Fast DDS
-  // wakes a thread after each write.
+  // For this time after a message was sent, a request to repeat it is older than the message. With no time at all Fast
+  // DDS wakes a thread after each write.
   if (delivery.is_coupling) qos.reliable_writer_qos().times.nackSupressionDuration = to_dds(kRepairPeriod / 2);
   return qos;
 }

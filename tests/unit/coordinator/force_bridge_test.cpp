@@ -24,7 +24,8 @@ void measure(ForceBridge& bridge, const Signal& force, Step last) {
 
 TEST(ForceBridge, HoldsTheLastMeasuredForce) {
   ForceBridge bridge = make(BridgeType::hold);
-  measure(bridge, [](double step) { return 3.0 * step; }, 5);
+  measure(
+      bridge, [](double step) { return 3.0 * step; }, 5);
   EXPECT_EQ(bridge.bridge(6, one(0.0))[0], 15.0);
   EXPECT_EQ(bridge.bridge(7, one(0.0))[0], 15.0) << "and not what was bridged";
 }
@@ -84,7 +85,8 @@ TEST(ForceBridge, LateForceIsUsedFromThenOn) {
 TEST(ForceBridge, EnergyIsTheWorkOfTheMissingForce) {
   // A spring of 100 N/m moves by 1 mm a step; held at 2 mm, the force lacks 0.1 N and 0.2 N in the steps at 3 and 4 mm.
   ForceBridge bridge = make(BridgeType::hold);
-  for (Step step = 0; step <= 2; ++step) bridge.take(step, one(0.001 * static_cast<double>(step)), one(0.1 * static_cast<double>(step)));
+  for (Step step = 0; step <= 2; ++step)
+    bridge.take(step, one(0.001 * static_cast<double>(step)), one(0.1 * static_cast<double>(step)));
   static_cast<void>(bridge.bridge(3, one(0.003)));
   static_cast<void>(bridge.bridge(4, one(0.004)));
   EXPECT_TRUE(bridge.closed().empty()) << "the gap is still open";

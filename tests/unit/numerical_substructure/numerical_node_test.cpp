@@ -92,11 +92,15 @@ class NumericalNodeTest : public testing::Test {
   Presence presence_{Identity{"model", Role::numerical_substructure, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
                      events_};
   SubstructureCalls calls_;
-  NumericalNode node_{kIndex,    CouplingMode::lockstep,
+  NumericalNode node_{kIndex,
+                      CouplingMode::lockstep,
                       std::make_unique<ScriptedSubstructure>(1, linear_spring(100.0), calls_),
-                      presence_, MembershipPorts{announcements_, control_, seconds{30}},
-                      commands_, measurements_,
-                      steps_,    {0}};
+                      presence_,
+                      MembershipPorts{announcements_, control_, seconds{30}},
+                      commands_,
+                      measurements_,
+                      steps_,
+                      {0}};
   Instant now_{};
 };
 

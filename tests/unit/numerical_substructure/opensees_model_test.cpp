@@ -87,8 +87,9 @@ class PendingModel : public testing::Test {
     auto model = std::make_unique<OpenSeesModel>(
         pending_settings(), [this](const ModelSurroundings&) { return std::make_unique<ScriptedDriver>(driver_); });
     model->start({.log = {}, .wake = [] {}});
-    node_.emplace(0, CouplingMode::lockstep, std::move(model), presence_, MembershipPorts{announcements_, control_, seconds{30}}, commands_,
-                  measurements_, steps_, std::vector<Eigen::Index>{0});
+    node_.emplace(0, CouplingMode::lockstep, std::move(model), presence_,
+                  MembershipPorts{announcements_, control_, seconds{30}}, commands_, measurements_, steps_,
+                  std::vector<Eigen::Index>{0});
     TestAnnouncement announcement;
     announcement.coordinator = kLeader;
     announcements_.send(announcement);
