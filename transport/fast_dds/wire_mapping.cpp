@@ -198,7 +198,11 @@ void encode(const DisplacementCommand& message, wire::DisplacementCommand& sampl
   sample.coordinator(message.coordinator);
   sample.send_time_ns(message.send_time.count());
   sample.point_count(message.point_count);
-  for (std::size_t i = 0; i < message.points.size(); ++i) encode_point(message.points[i], sample.points()[i]);
+  // Those not in use stay empty: of a wide interface they would make the message four times as large.
+  static const CommandPoint kEmpty;
+  for (std::size_t i = 0; i < message.points.size(); ++i) {
+    encode_point(i < message.point_count ? message.points[i] : kEmpty, sample.points()[i]);
+  }
 }
 
 bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& message) {

@@ -195,7 +195,8 @@ bool same(const CommandPoint& a, const CommandPoint& b) {
 bool same(const DisplacementCommand& a, const DisplacementCommand& b) {
   bool equal = a.substructure == b.substructure && a.coordinator == b.coordinator && a.point_count == b.point_count &&
                a.attempt == b.attempt && a.send_time == b.send_time;
-  for (std::size_t i = 0; i < a.points.size(); ++i) equal = equal && same(a.points[i], b.points[i]);
+  // Those not in use are not sent.
+  for (std::size_t i = 0; i < a.point_count; ++i) equal = equal && same(a.points[i], b.points[i]);
   return equal;
 }
 
@@ -334,10 +335,10 @@ TEST(WireMapping, RejectsSignalTimesThatGoBack) {
   EXPECT_TRUE(refused({0.05, 0.0}));
 }
 
-/// Of a command with its history, for an interface of so many degrees of freedom.
-std::size_t command_bytes(Eigen::Index dofs) {
+/// Of a command for an interface of so many degrees of freedom.
+std::size_t command_bytes(Eigen::Index dofs, int points = kCommandPoints) {
   DisplacementCommand command;
-  command.point_count = kCommandPoints;
+  command.point_count = static_cast<std::uint8_t>(points);
   for (CommandPoint& point : command.points) {
     point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 = InterfaceVector::Zero(dofs);
   }
@@ -361,6 +362,14 @@ TEST(WireMapping, MessagesAreAsSmallAsTheInterface) {
   // Header 64 with its padding, and three lengths with a value each.
   EXPECT_EQ(measurement_bytes(1), 64U + 3U * 16U);
   EXPECT_EQ(command_bytes(100) - command_bytes(1), 4U * 3U * 99U * 8U);
+}
+
+TEST(WireMapping, WidestMessagesFitOneDatagram) {
+  // Of 65 507 bytes, less the headers below: what is larger travels in fragments.
+  constexpr std::size_t kRoom = 65507 - 20 - 12 - 24 - 24 - 32 - 4;
+  EXPECT_LE(command_bytes(kMaxInterfaceDofs, 1), kRoom);
+  EXPECT_GT(command_bytes(kMaxInterfaceDofs, kCommandPoints), kRoom) << "which is why they have no history";
+  EXPECT_LE(measurement_bytes(kMaxInterfaceDofs), kRoom);
 }
 
 TEST(WireMapping, SiteMessagesFitOneEthernetFrame) {
