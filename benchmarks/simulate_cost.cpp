@@ -261,17 +261,17 @@ void print_costs(const std::string& name, const Scenario& scenario, const std::f
 
 /// A shear frame with a numerical substructure in every storey.
 std::filesystem::path write_chain(const std::filesystem::path& folder, int storeys) {
-  const std::filesystem::path file = folder / ("chain_" + std::to_string(storeys) + ".yaml");
+  std::filesystem::path file = folder / ("chain_" + std::to_string(storeys) + ".yaml");
   std::string names;
   std::string mass;
   std::string parts;
   for (int i = 1; i <= storeys; ++i) {
     const std::string number = std::to_string(i);
+    const std::string below = i == 1 ? "" : ", relative_to: floor_" + std::to_string(i - 1);
     names += (i == 1 ? "floor_" : ", floor_") + number;
     mass += (i == 1 ? "floor_" : ", floor_") + number + ": 20.0e3";
-    parts += "  - id: storey_" + number + "\n    kind: numerical\n    interface: [{dof: floor_" + number +
-             (i == 1 ? "" : ", relative_to: floor_" + std::to_string(i - 1)) +
-             "}]\n    model: {type: elastic, stiffness_n_per_m: 4.0e6}\n";
+    parts.append("  - id: storey_").append(number).append("\n    kind: numerical\n    interface: [{dof: floor_");
+    parts.append(number).append(below).append("}]\n    model: {type: elastic, stiffness_n_per_m: 4.0e6}\n");
   }
   std::ofstream{file} << "schema: hybridtest/1\nname: chain\ntime: {mode: lockstep, step_s: 0.001, duration_s: 10.0}\n"
                          "excitation: {ground_motion: " HYBRIDTEST_SOURCE_DIR

@@ -24,9 +24,10 @@ const LongRun kLong{.duration_s = 160.0};
 class MemoryGrowth : public testing::Test {
  protected:
   void SetUp() override {
-    for (const auto& [run, name] : {std::pair{kShort, "short"}, std::pair{kLong, "long"}}) {
-      std::filesystem::create_directory(directory_ / name);
-      writing_.push_back(cost_of([&, folder = directory_ / name] { run.write(folder); }));
+    for (const auto& named : {std::pair{kShort, "short"}, std::pair{kLong, "long"}}) {
+      const std::filesystem::path folder = directory_ / named.second;
+      std::filesystem::create_directory(folder);
+      writing_.push_back(cost_of([&] { named.first.write(folder); }));
       ASSERT_EQ(writing_.back().exit_code, 0);
     }
   }

@@ -69,7 +69,8 @@ void write_site(const LongRun& run, const std::filesystem::path& path) {
     }
     control.append(row);
     if (i >= waits && (i - waits) % rows_per_step == 0) {
-      steps.append(std::vector{static_cast<double>((i - waits) / rows_per_step), model_time_s});
+      const auto step = (i - waits) / rows_per_step;
+      steps.append(std::vector{static_cast<double>(step), model_time_s});
     }
     if (i % drain_rows == 0) recorder.drain();
   }

@@ -314,7 +314,7 @@ void add_line(const FixedText<Capacity>& text, std::string& lines) {
 template <std::size_t Capacity>
 bool take_line(std::string_view& lines, FixedText<Capacity>& text) noexcept {
   const auto end = lines.find('\n');
-  if (end == std::string_view::npos || end > Capacity) return false;
+  if (end > Capacity) return false;  // as npos is
   text = FixedText<Capacity>{lines.substr(0, end)};
   lines.remove_prefix(end + 1);
   return true;

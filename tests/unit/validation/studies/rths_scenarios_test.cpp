@@ -148,7 +148,7 @@ class RecordedRuns : public testing::Test {
         "excitation.ground_motion=" + (benchmark_motions() / ("rths_benchmark_" + motion + ".csv")).string(),
         "time.duration_s=5.0"};
     overrides.insert(overrides.end(), more.begin(), more.end());
-    const fs::path directory = directory_ / ("run_" + std::to_string(runs_++));
+    fs::path directory = directory_ / ("run_" + std::to_string(runs_++));
     simulate_into(directory, case_number, overrides);
     return directory;
   }
