@@ -23,6 +23,7 @@
 namespace hybridtest {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
@@ -314,7 +315,8 @@ TEST_F(OpenSeesLeads, StartedByHandItIsToldToBeEndedByHand) {
       test_opensees(), {"shear_frame.tcl"}, directory() / "by_hand", {.working_directory = directory() / "opensees"}};
   ASSERT_TRUE(wait_until([&] { return has_recorded("run", kCoordinatorId, 500); })) << run.standard_error();
   StartedProgram stop = start_hybridtest(with_network({"stop", test_name()}), "stop");
-  ASSERT_THAT(stop.wait(), Optional(0)) << stop.standard_error();
+  // The coordinator may obey and leave before the tool has discovered it; the tool then says that it was not found.
+  ASSERT_THAT(stop.wait(), Optional(AnyOf(kExitCompleted, kExitEndedEarly))) << stop.standard_error();
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_THAT(text_of(directory() / "run" / "coordinator.log"), HasSubstr("end its process by hand"));
 }
