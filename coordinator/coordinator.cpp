@@ -223,30 +223,34 @@ void Coordinator::rehearse(Instant now) noexcept {
   watch_participants(now);
   if (phase_ != Phase::rehearsing) return;
   while (ports_.measurements.take(measurement_)) rehearsal_->take(measurement_, now);
-  if (const std::optional<std::uint16_t> round = rehearsal_->next_round(now)) {
-    for (std::size_t i = 0; i < commands_.size(); ++i) {
-      DisplacementCommand& command = commands_[i];
-      const Eigen::Index dofs = settings_.substructures[i].interface.size();
-      command.substructure = static_cast<SubstructureIndex>(i);
-      command.coordinator = presence_.identity().incarnation;
-      command.is_rehearsal = true;
-      command.iteration = *round;
-      command.point_count = dofs <= kMaxSiteDofs ? kCommandPoints : 1;  // as large as those of the test
-      for (CommandPoint& point : command.points) {
-        point.step = 0;
-        point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 = InterfaceVector::Zero(dofs);
-      }
-      send_command(static_cast<SubstructureIndex>(i), now);
-    }
-  }
-  if (!rehearsal_->is_over(now)) return;
-  const Duration available = from_seconds(settings_.step_s) - settings_.bridging.deadline;
-  bool fits = true;
-  const CoupledSubstructure* slowest = nullptr;
+  if (const std::optional<std::uint16_t> round = rehearsal_->next_round(now)) send_rehearsal(*round, now);
+  if (rehearsal_->is_over(now)) judge_rehearsal(now);
+}
+
+void Coordinator::send_rehearsal(std::uint16_t round, Instant now) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    const Duration round_trip = rehearsal_->percentile(static_cast<SubstructureIndex>(i), 99);
-    usual_round_trip_ =
-        std::max(usual_round_trip_, std::min(rehearsal_->percentile(static_cast<SubstructureIndex>(i), 50), available));
+    DisplacementCommand& command = commands_[i];
+    const Eigen::Index dofs = settings_.substructures[i].interface.size();
+    command.substructure = static_cast<SubstructureIndex>(i);
+    command.coordinator = presence_.identity().incarnation;
+    command.is_rehearsal = true;
+    command.iteration = round;
+    command.point_count = dofs <= kMaxSiteDofs ? kCommandPoints : 1;  // as large as those of the test
+    for (CommandPoint& point : command.points) {
+      point.step = 0;
+      point.displacement_m = point.velocity_m_per_s = point.acceleration_m_per_s2 = InterfaceVector::Zero(dofs);
+    }
+    send_command(command.substructure, now);
+  }
+}
+
+void Coordinator::judge_rehearsal(Instant now) noexcept {
+  const Duration available = from_seconds(settings_.step_s) - settings_.bridging.deadline;
+  const CoupledSubstructure* too_slow = nullptr;
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const auto index = static_cast<SubstructureIndex>(i);
+    const Duration round_trip = rehearsal_->percentile(index, 99);
+    usual_round_trip_ = std::max(usual_round_trip_, std::min(rehearsal_->percentile(index, 50), available));
     const bool is_in_time = round_trip <= available;
     const bool starts = is_in_time || settings_.bridging.start_anyway;
     const double round_trip_s =
@@ -255,16 +259,15 @@ void Coordinator::rehearse(Instant now) noexcept {
     if (!is_in_time) severity = starts ? Severity::warning : Severity::fault;
     report(now, severity, is_in_time ? EventCode::round_trip_rehearsed : EventCode::network_too_slow,
            settings_.substructures[i].id, {round_trip_s, to_seconds(available)});
-    if (!starts && slowest == nullptr) slowest = &settings_.substructures[i];
-    fits = fits && starts;
+    if (!starts && too_slow == nullptr) too_slow = &settings_.substructures[i];
     commands_[i].is_rehearsal = false;
     commands_[i].point_count = 0;
   }
-  if (!fits) {
-    begin_stop(now, StopReason::network_too_slow, slowest->id);
-    return;
+  if (too_slow != nullptr) {
+    begin_stop(now, StopReason::network_too_slow, too_slow->id);
+  } else {
+    start(now);
   }
-  start(now);
 }
 
 void Coordinator::start(Instant now) noexcept {

@@ -114,6 +114,8 @@ class Coordinator final : public Node {
   void assemble(Instant now) noexcept;
   void arm(Instant now) noexcept;
   void rehearse(Instant now) noexcept;
+  void send_rehearsal(std::uint16_t round, Instant now) noexcept;
+  void judge_rehearsal(Instant now) noexcept;
   void start(Instant now) noexcept;
   void run(Instant now) noexcept;
   void stop(Instant now) noexcept;

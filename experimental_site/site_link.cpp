@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "core/rehearsal_answer.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -88,7 +90,9 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   if (command.coordinator != membership_.coordinator()) return;
   if (mode_ == CouplingMode::real_time) follow_clock(command, now);
   if (command.is_rehearsal) {
-    if (presence_.state() == LifecycleState::armed) answer_rehearsal(command, now);
+    if (presence_.state() != LifecycleState::armed) return;
+    answer_rehearsal(command, presence_.identity().incarnation, now.time_since_epoch(), answer_);
+    ports_.measurements.send(answer_);
     return;
   }
   // A command can overtake the start message; it then starts the loop.
@@ -124,19 +128,6 @@ void SiteLink::pass_on_in_time(const DisplacementCommand& command) noexcept {
     if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
     passed_on_ = point.step;
   }
-}
-
-void SiteLink::answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept {
-  ForceMeasurement& answer = answer_;
-  answer = {};
-  answer.substructure = index_;
-  answer.sender = presence_.identity().incarnation;
-  answer.iteration = command.iteration;
-  answer.imposed_displacement_m = answer.measured_displacement_m = answer.force_n = InterfaceVector::Zero(dofs_);
-  answer.receive_time = answer.send_time = now.time_since_epoch();
-  answer.command_send_time = command.send_time;
-  ports_.measurements.send(answer);
-  answer.iteration = 0;
 }
 
 void SiteLink::follow_clock(const DisplacementCommand& command, Instant now) noexcept {
@@ -194,6 +185,7 @@ void SiteLink::answer(Instant now, MeasurementFlags flags) noexcept {
   answer_.substructure = index_;
   answer_.sender = presence_.identity().incarnation;
   answer_.step = measured_.step;
+  answer_.iteration = 0;  // a specimen is not tried
   answer_.model_time_s = measured_.model_time_s;
   answer_.imposed_displacement_m = measured_.imposed_displacement_m;
   answer_.measured_displacement_m = measured_.measured_displacement_m;

@@ -54,7 +54,6 @@ class SiteLink final : public Node {
   void begin_stop(StopReason reason) noexcept;
   void pass_on(const DisplacementCommand& command, Instant now) noexcept;
   void pass_on_in_time(const DisplacementCommand& command) noexcept;
-  void answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept;
   void follow_clock(const DisplacementCommand& command, Instant now) noexcept;
   void handle(const LoopReport& report, Instant now) noexcept;
   void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;

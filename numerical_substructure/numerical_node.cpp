@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/rehearsal_answer.hpp"
+
 namespace hybridtest {
 
 NumericalNode::NumericalNode(SubstructureIndex index, CouplingMode mode, std::unique_ptr<SubstructureModel> model,
@@ -56,7 +58,9 @@ void NumericalNode::obey(Request request) noexcept {
 void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexcept {
   if (command.coordinator != membership_.coordinator()) return;
   if (command.is_rehearsal) {
-    if (presence_.state() == LifecycleState::armed) answer_rehearsal(command, now);
+    if (presence_.state() != LifecycleState::armed) return;
+    answer_rehearsal(command, presence_.identity().incarnation, now.time_since_epoch(), answer_);
+    measurements_.send(answer_);
     return;
   }
   // A command can overtake the start message; it then starts the test.
@@ -83,19 +87,6 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
   }
   if (!is_next(newest) || !compute(newest, command.is_trial, now)) return;
   answer_newest(now);
-}
-
-void NumericalNode::answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept {
-  answer_.substructure = index_;
-  answer_.sender = presence_.identity().incarnation;
-  answer_.step = kNoStep;
-  answer_.iteration = command.iteration;
-  answer_.model_time_s = 0.0;
-  answer_.imposed_displacement_m = answer_.measured_displacement_m = answer_.force_n = 0.0 * force_n_;
-  answer_.flags = MeasurementFlags::none;
-  answer_.receive_time = answer_.send_time = now.time_since_epoch();
-  answer_.command_send_time = command.send_time;
-  measurements_.send(answer_);
 }
 
 void NumericalNode::answer_newest(Instant now) noexcept {

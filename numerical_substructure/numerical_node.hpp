@@ -57,7 +57,6 @@ class NumericalNode final : public Node {
   /// The force of the point that the model computes is there, or is not.
   bool conclude(ModelAnswer answer, Instant now) noexcept;
   void record_step(const CommandPoint& point) noexcept;
-  void answer_rehearsal(const DisplacementCommand& command, Instant now) noexcept;
   /// The force at the newest point of the command.
   void answer_newest(Instant now) noexcept;
   void answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept;
