@@ -11,7 +11,8 @@
 namespace hybridtest::benchmarks {
 
 std::vector<double> coupled_step_us(const std::filesystem::path& scenario, const std::vector<std::string>& ids,
-                                    int warm_up, unsigned domain, const std::vector<std::string>& further) {
+                                    int warm_up, unsigned domain, const std::vector<std::string>& further,
+                                    const std::filesystem::path& credentials) {
   const std::filesystem::path out =
       std::filesystem::temp_directory_path() / ("coupled_step_" + std::to_string(getpid()));
   std::filesystem::remove_all(out);
@@ -22,6 +23,7 @@ std::vector<double> coupled_step_us(const std::filesystem::path& scenario, const
   arguments.insert(arguments.end(), further.begin(), further.end());
   std::vector<std::unique_ptr<ChildProcess>> children;
   const auto start = [&](const std::string& id, const char* program, std::vector<std::string> its_arguments) {
+    if (!credentials.empty()) its_arguments.insert(its_arguments.end(), {"--credentials", (credentials / id).string()});
     children.push_back(std::make_unique<ChildProcess>(id, ChildStart{.program = programs / program,
                                                                      .arguments = std::move(its_arguments),
                                                                      .log_file = out / (id + ".log"),

@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 
 #include "benchmarks/coupled_programs.hpp"
 #include "benchmarks/cyclictest.hpp"
@@ -144,10 +143,7 @@ int run(int rounds, const EchoSettings& settings, const std::string& json_file) 
   print_ratio("transport alone, reliable / Fast DDS echo", reliable.transport_us, reliable.echo_us);
   print_ratio("transport alone, best effort / Fast DDS echo of it", best_effort.transport_us, best_effort.echo_us);
   jitter.print();
-  if (!json_file.empty()) {
-    std::ofstream file{json_file};
-    for (const std::string& line : lines) file << line << '\n';
-  }
+  write_lines(json_file, lines);
   return 0;
 }
 

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   app.add_option("--busy-poll-us", settings.busy_poll_us,
                  "our transport: look at the socket for so long before sleeping")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--peers", settings.peers, "number of peers")->check(CLI::Range(1, 32));
+  app.add_option("--peers", settings.peers, "number of peers")->check(CLI::Range(1, kEchoPeersMax));
   app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 232));
   CLI11_PARSE(app, argc, argv);
 

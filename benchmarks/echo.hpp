@@ -8,6 +8,9 @@
 
 namespace hybridtest::benchmarks {
 
+/// Largest number of peers.
+inline constexpr int kEchoPeersMax = 32;
+
 /// The references for the coupled step, without our software: one command is sent to each peer, in its
 /// own process, and all answers are received.
 struct EchoSettings {

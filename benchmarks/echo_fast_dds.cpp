@@ -7,6 +7,7 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <unistd.h>
 
+#include <bitset>
 #include <chrono>
 #include <condition_variable>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
@@ -144,27 +145,27 @@ class Answerer : public dds::DataReaderListener {
   dds::SampleInfo info_;
 };
 
-/// Counts the answers to the current step.
+/// Who has answered the current step; a command that was sent again is answered again.
 class Collector : public dds::DataReaderListener {
  public:
-  explicit Collector(int peers) : peers_{peers} {}
+  explicit Collector(int peers) : peers_{static_cast<std::size_t>(peers)} {}
 
   /// From the callback of Fast DDS.
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard lock{mutex_};
     collect(reader);
-    if (answers_ == peers_) all_in_.notify_one();
+    if (all_answered()) all_in_.notify_one();
   }
 
   void expect(std::int64_t step) {
     const std::lock_guard lock{mutex_};
     step_ = step;
-    answers_ = 0;
+    answered_.reset();
   }
 
   [[nodiscard]] bool wait(std::chrono::milliseconds timeout) {
     std::unique_lock lock{mutex_};
-    return all_in_.wait_for(lock, timeout, [&] { return answers_ == peers_; });
+    return all_in_.wait_for(lock, timeout, [&] { return all_answered(); });
   }
 
   /// From the initiator's own thread.
@@ -172,7 +173,7 @@ class Collector : public dds::DataReaderListener {
     const Clock::time_point deadline = Clock::now() + timeout;
     while (true) {
       collect(reader);
-      if (answers_ == peers_) return true;
+      if (all_answered()) return true;
       if (Clock::now() > deadline) return false;
       dds::ConditionSeq active;
       wait_set.wait(active, eprosima::fastrtps::Duration_t{0, 100000000});
@@ -182,17 +183,18 @@ class Collector : public dds::DataReaderListener {
  private:
   void collect(dds::DataReader* reader) {
     while (reader->take_next_sample(&measurement_, &info_) == ReturnCode_t::RETCODE_OK) {
-      if (info_.valid_data && measurement_.step() == step_) ++answers_;
+      if (info_.valid_data && measurement_.step() == step_) answered_.set(measurement_.substructure());
     }
   }
+  [[nodiscard]] bool all_answered() const { return answered_.count() == peers_; }
 
   std::mutex mutex_;
   std::condition_variable all_in_;
   wire::ForceMeasurement measurement_;
   dds::SampleInfo info_;
   std::int64_t step_ = 0;
-  const int peers_;
-  int answers_ = 0;
+  const std::size_t peers_;
+  std::bitset<kEchoPeersMax> answered_;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::unique_ptr<Transport> join(const EchoSettings& settings, int run) {
+std::unique_ptr<Transport> join(const EchoSettings& settings, int run, std::string substructure_id) {
   fast_dds::FastDdsSettings transport;
   transport.domain = settings.domain;
   transport.loopback_only = true;
@@ -26,15 +26,17 @@ std::unique_ptr<Transport> join(const EchoSettings& settings, int run) {
   transport.best_effort_coupling = settings.best_effort;
   transport.receives_in_waiting_thread = settings.receive == "waiting";
   transport.busy_poll = std::chrono::microseconds{settings.busy_poll_us};
+  transport.substructure_id = std::move(substructure_id);
+  transport.repair_period = fast_dds::FastDdsSettings::repair_period_for(static_cast<std::size_t>(settings.peers));
   return fast_dds::make_fast_dds_transport(transport, "echo" + std::to_string(run));
 }
 
 }  // namespace
 
 void transport_echo_peer(const EchoSettings& settings, int index, int run) {
-  const auto transport = join(settings, run);
+  const auto transport = join(settings, run, "peer_" + std::to_string(index));
   const auto commands = transport->command_inbox(static_cast<SubstructureIndex>(index));
-  const auto measurements = transport->measurement_outbox();
+  const auto measurements = transport->measurement_outbox(static_cast<SubstructureIndex>(index));
   DisplacementCommand command;
   ForceMeasurement measurement = echo_measurement();
   measurement.substructure = static_cast<SubstructureIndex>(index);
@@ -52,10 +54,10 @@ std::vector<double> transport_echo_us(const EchoSettings& settings) {
   const int run = static_cast<int>(::getpid()) * 100 + runs++ % 100;
   PeerProcesses peers;
   for (int i = 0; i < settings.peers; ++i) peers.start(echo_peer_arguments("transport", i, run, settings));
-  const auto transport = join(settings, run);
+  const auto transport = join(settings, run, "");
   const auto peer_count = static_cast<SubstructureIndex>(settings.peers);
   const auto commands = transport->command_outbox(peer_count);
-  const auto measurements = transport->measurement_inbox();
+  const auto measurements = transport->measurement_inbox(peer_count);
   Waker& waker = transport->waker();
   const Clock::time_point give_up = Clock::now() + std::chrono::seconds{20};
   for (SubstructureIndex peer = 0; peer < peer_count; ++peer) {

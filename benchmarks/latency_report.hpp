@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <fstream>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -30,6 +31,13 @@ namespace hybridtest::benchmarks {
                 what.c_str(), times_us.size(), percentile_us(times_us, 0.5), percentile_us(times_us, 0.9),
                 percentile_us(times_us, 0.99), percentile_us(times_us, 0.999), percentile_us(times_us, 1.0));
   return line;
+}
+
+/// @param file   empty: none is written.
+inline void write_lines(const std::string& file, const std::vector<std::string>& lines) {
+  if (file.empty()) return;
+  std::ofstream stream{file};
+  for (const std::string& line : lines) stream << line << '\n';
 }
 
 }  // namespace hybridtest::benchmarks

@@ -2,8 +2,10 @@
 // compensator, transfer system and specimen of every site, or the law of every numerical substructure, without nodes,
 // messages and records. Without records and with the files of `hybridtest simulate`. The displacements of both are
 // compared, so that they are the same equations. Processor time. Then how a step grows from 1 to 32 numerical
-// substructures, each on a structure of one more degree of freedom. Medians of several runs in turn. Usage:
-// simulate_cost [name of a shipped scenario]...
+// substructures, each on a structure of one more degree of freedom. Medians of several runs in turn. At last a step of
+// 2 to 1000 substructures, per substructure over that of 2: processor time and messages with the same latency of all,
+// and the time of a step over the round trip of the farthest with latencies as on the internet. Usage: simulate_cost
+// [name of a shipped scenario]...
 
 #include <algorithm>
 #include <cstdio>
@@ -20,6 +22,7 @@
 #include "recording/recorder.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/simulation.hpp"
+#include "transport/simulated/site_latencies.hpp"
 
 namespace {
 
@@ -222,8 +225,10 @@ void recorded(const Scenario& scenario, const std::filesystem::path& folder) {
   observer.sink = [&](const std::string& participant, const TableLayout& table) -> RowSink& {
     return recorders.at(participant)->sink(table.name);
   };
+  std::map<std::string, int> calls;  // as `hybridtest simulate` does it
   observer.housekeeping = [&](const std::string& participant, Presence&, Instant) {
-    recorders.at(participant)->drain();
+    Recorder& recorder = *recorders.at(participant);
+    if (calls[participant]++ % 8 == 0 || recorder.should_drain()) recorder.drain();
   };
   (void)simulate(scenario, settings(), observer);
 }
@@ -283,6 +288,64 @@ std::filesystem::path write_chain(const std::filesystem::path& folder, int store
   return file;
 }
 
+SimulationResult run_of(Scenario scenario, int steps, const simulated::NetworkConditions& network) {
+  scenario.time.last_step = steps;
+  NoRecord nothing;
+  SimulationObserver observer;
+  observer.sink = [&](const std::string&, const TableLayout&) -> RowSink& { return nothing; };
+  SimulationSettings same = settings();
+  same.network = network;
+  SimulationResult result = simulate(scenario, same, observer);
+  if (result.coordinator.reason != StopReason::completed) std::exit(70);
+  return result;
+}
+
+/// Of one substructure in one step.
+struct SiteStep {
+  double processor_us = 0.0;
+  double messages = 0.0;
+  double step_over_round_trip = 0.0;
+};
+
+SiteStep site_step(const Scenario& chain, int sites) {
+  const int steps = std::max(10, 4000 / sites);
+  simulated::NetworkConditions network;
+  network.latency = std::chrono::milliseconds{10};
+  std::vector<double> times_s;
+  double sent = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    // A longer test less a shorter one: without reading the scenario, joining and leaving.
+    SimulationResult few;
+    SimulationResult many;
+    const double few_s = seconds_of([&] { few = run_of(chain, steps, network); });
+    times_s.push_back(seconds_of([&] { many = run_of(chain, 4 * steps, network); }) - few_s);
+    sent = static_cast<double>(many.network.sent - few.network.sent);
+  }
+  std::vector<std::string> ids;
+  for (int i = 1; i <= sites; ++i) ids.push_back("storey_" + std::to_string(i));
+  network.site_latencies = simulated::draw_site_latencies(1, ids, std::chrono::milliseconds{60}, 0.6);
+  const double farthest_s =
+      to_seconds(std::ranges::max(network.site_latencies, {}, &simulated::SiteLatency::latency).latency);
+  constexpr int kSteps = 10;
+  const double step_s = to_seconds(run_of(chain, 3 * kSteps, network).coordinator.running_time -
+                                   run_of(chain, kSteps, network).coordinator.running_time) /
+                        (2 * kSteps);
+  const double site_steps = 3.0 * steps * sites;
+  return {1e6 * median(times_s) / site_steps, sent / site_steps, step_s / (2.0 * farthest_s)};
+}
+
+void print_growth(const std::filesystem::path& folder) {
+  std::printf("\n%-14s %16s %10s %10s %22s\n", "substructures", "us per one, step", "over 2", "messages",
+              "step over round trip");
+  double first_us = 0.0;
+  for (const int sites : {2, 10, 32, 100, 316, 1000}) {
+    const SiteStep one = site_step(read_scenario(write_chain(folder, sites), {}), sites);
+    if (first_us == 0.0) first_us = one.processor_us;
+    std::printf("%-14d %16.2f %10.2f %10.2f %22.4f\n", sites, one.processor_us, one.processor_us / first_us,
+                one.messages, one.step_over_round_trip);
+  }
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -299,5 +362,6 @@ int main(int count, char** words) {
     if (count > 1) break;
     print_costs(std::to_string(storeys) + " numerical", read_scenario(write_chain(folder, storeys), {}), folder);
   }
+  if (count == 1) print_growth(folder);
   std::filesystem::remove_all(folder);
 }

@@ -1,17 +1,21 @@
 // step_growth [--sites N,N,...] [--steps N] [--rounds N]
 //
-// Measures, in one run on one machine, how the time of a coupled step grows with the number of numerical
-// substructures, each of which is a process: the cost per substructure over that with the first number.
-// Beside it the same for a plain UDP echo and a plain Fast DDS echo with as many peers: more processes than
-// processors cost more each, whatever they run.
+// Measures, in one run on one machine, how a coupled step grows with the number of numerical substructures, each of
+// which is a process: time and processor time of all processes, per substructure, over that with the first number.
+// Processor time is that of the steps alone: a run of few steps is taken off. Beside it the same for a plain UDP echo
+// and a plain Fast DDS echo with as many peers: more processes than processors cost more each, whatever they run,
+// because none finds its memory in the caches.
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <vector>
 
 #include "benchmarks/coupled_programs.hpp"
 #include "benchmarks/echo.hpp"
@@ -21,26 +25,80 @@
 namespace hybridtest::benchmarks {
 namespace {
 
-struct Growth {
-  std::vector<double> step_us;
-  std::vector<double> echo_us;
-  std::vector<double> udp_us;
+/// Of one kind of step or round trip.
+struct Series {
+  std::vector<double> times_us;
+  double processor_us = 0.0;  // of `steps` more or less of them
+  int steps = 0;
 };
 
-void append(std::vector<double>& all, const std::vector<double>& round) {
-  all.insert(all.end(), round.begin(), round.end());
+struct Growth {
+  Series step;
+  Series echo;
+  Series udp;
+};
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
 }
 
-void measure(EchoSettings settings, Growth& growth) {
+/// Of this process and of its children that have ended.
+double processor_us() {
+  double sum_s = 0.0;
+  for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    ::getrusage(who, &usage);
+    sum_s += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  }
+  return sum_s * 1e6;
+}
+
+using Measure = std::function<std::vector<double>(const EchoSettings&)>;
+
+void add(Series& series, EchoSettings settings, const Measure& measure) {
+  const double begin_us = processor_us();
+  const std::vector<double> times_us = measure(settings);
+  const double middle_us = processor_us();
+  const int samples = settings.samples;
+  settings.samples = 1;
+  static_cast<void>(measure(settings));
+  series.times_us.insert(series.times_us.end(), times_us.begin(), times_us.end());
+  series.processor_us += 2.0 * middle_us - begin_us - processor_us();
+  series.steps += samples - 1;
+}
+
+std::vector<double> coupled(const EchoSettings& settings) {
   const std::filesystem::path scenario =
       std::filesystem::temp_directory_path() / ("step_growth_" + std::to_string(::getpid()) + ".yaml");
   write_storeys(scenario, settings.peers, settings.samples + settings.warm_up);
   std::vector<std::string> ids;
   for (int i = 1; i <= settings.peers; ++i) ids.push_back("storey_" + std::to_string(i));
-  append(growth.step_us, coupled_step_us(scenario, ids, settings.warm_up, settings.domain, {}));
+  std::vector<double> times_us = coupled_step_us(scenario, ids, settings.warm_up, settings.domain, {});
   std::filesystem::remove(scenario);
-  append(growth.echo_us, fast_dds_echo_us(settings));
-  append(growth.udp_us, udp_echo_us(settings));
+  return times_us;
+}
+
+void measure(const EchoSettings& settings, Growth& growth) {
+  add(growth.step, settings, coupled);
+  add(growth.echo, settings, fast_dds_echo_us);
+  add(growth.udp, settings, udp_echo_us);
+}
+
+using PerSite = std::function<double(const Series&, int)>;
+
+void print(const char* what, const std::vector<int>& sites, const std::map<int, Growth>& measured,
+           const PerSite& per_site) {
+  std::printf("%s per substructure [us], and over that with %d\n", what, sites.front());
+  std::printf("%5s  %18s  %18s  %18s\n", "sites", "coupled step", "Fast DDS echo", "UDP echo");
+  const Growth& first = measured.at(sites.front());
+  for (const int count : sites) {
+    std::printf("%5d", count);
+    for (const auto series : {&Growth::step, &Growth::echo, &Growth::udp}) {
+      const double per_site_us = per_site(measured.at(count).*series, count);
+      std::printf("  %10.1f  %5.2fx", per_site_us, per_site_us / per_site(first.*series, sites.front()));
+    }
+    std::printf("\n");
+  }
 }
 
 int run(const std::vector<int>& sites, int rounds, EchoSettings settings) {
@@ -52,21 +110,10 @@ int run(const std::vector<int>& sites, int rounds, EchoSettings settings) {
       measure(settings, measured[count]);
     }
   }
-  std::printf("median per substructure [us], and over that with %d\n", sites.front());
-  std::printf("%5s  %18s  %18s  %18s\n", "sites", "coupled step", "Fast DDS echo", "UDP echo");
-  const auto cost = [&](const std::vector<double>& times_us, int count) {
-    return percentile_us(times_us, 0.5) / count;
-  };
-  const Growth& first = measured[sites.front()];
-  for (const int count : sites) {
-    const Growth& growth = measured[count];
-    std::printf("%5d", count);
-    for (const auto times : {&Growth::step_us, &Growth::echo_us, &Growth::udp_us}) {
-      const double per_site_us = cost(growth.*times, count);
-      std::printf("  %10.1f  %5.2fx", per_site_us, per_site_us / cost(first.*times, sites.front()));
-    }
-    std::printf("\n");
-  }
+  print("median", sites, measured,
+        [](const Series& series, int count) { return percentile_us(series.times_us, 0.5) / count; });
+  print("processor time of a step", sites, measured,
+        [](const Series& series, int count) { return series.processor_us / series.steps / count; });
   return 0;
 }
 

@@ -94,11 +94,11 @@ class TracedTransport final : public Transport {
   std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex index) override {
     return std::make_unique<ReceivedCommands>(inner_.command_inbox(index), *this);
   }
-  std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() override {
-    return std::make_unique<Answers>(inner_.measurement_outbox(), stamps_);
+  std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox(SubstructureIndex index) override {
+    return std::make_unique<Answers>(inner_.measurement_outbox(index), stamps_);
   }
-  std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() override {
-    return std::make_unique<ReceivedAnswers>(inner_.measurement_inbox(), *this);
+  std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox(std::uint16_t count) override {
+    return std::make_unique<ReceivedAnswers>(inner_.measurement_inbox(count), *this);
   }
 
  private:

@@ -25,8 +25,10 @@ install(FILES
   DESTINATION ${package_directory} COMPONENT development)
 
 if(HYBRIDTEST_FAST_DDS)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/launch/scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/hybridtest
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/launch/scenarios ${PROJECT_SOURCE_DIR}/launch/profiles DESTINATION ${CMAKE_INSTALL_DATADIR}/hybridtest
     COMPONENT programs)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/launch/security/make_credentials
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/hybridtest/security COMPONENT programs)
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hybridtest COMPONENT programs)
 endif()
@@ -52,6 +54,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME hybridtest)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "openssl")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION
 "Part of a structure is computed, the part that cannot be modelled well stands in
 a laboratory as a specimen. In every step, actuators push the specimen to the

@@ -8,6 +8,7 @@
 
 #include "core/assert.hpp"
 #include "core/client_fault.hpp"
+#include "core/message_copies.hpp"
 #include "core/stall.hpp"
 
 namespace hybridtest {
@@ -18,8 +19,15 @@ using std::chrono::milliseconds;
 /// Interval at which arm and stop are sent again until every participant has followed them.
 constexpr Duration kControlRepeat = milliseconds{250};
 
+/// Interval at which silent links are looked for.
+constexpr Duration kLinkLook = milliseconds{100};
+
 /// For the others to leave a test that was never armed: nothing moves.
 constexpr Duration kLeaveUnarmed = milliseconds{500};
+
+/// In real time, where the rehearsal lost answers: copies of the first command that starts the time of a site. Without
+/// it the site would start when the second comes, and answer after every deadline.
+constexpr int kStartCopies = 4;
 
 /// Recorded as the times of an exchange that was not answered.
 constexpr double kUnanswered = std::numeric_limits<double>::quiet_NaN();
@@ -43,9 +51,11 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSou
       record_{record},
       ledger_{settings_.substructures.size()},
       commands_(settings_.substructures.size()),
+      clocks_{settings_.substructures.size()},
+      heard_before_silence_(settings_.substructures.size()),
       restoring_force_n_{Eigen::VectorXd::Zero(source_->current().displacement_m.size())},
       applied_force_n_{Eigen::VectorXd::Zero(source_->current().displacement_m.size())} {
-  HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSubstructures);
+  HYBRIDTEST_ASSERT(settings_.substructures.size() <= kMaxSimulatedSubstructures);
   HYBRIDTEST_ASSERT(settings_.load.covers(settings_.last_step, restoring_force_n_.size()));
   HYBRIDTEST_ASSERT(settings_.stiffness_n_per_m.size() == 0 ||
                     settings_.stiffness_n_per_m.rows() == restoring_force_n_.size());
@@ -69,8 +79,11 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSou
     }
   }
   // In paced mode a site answers one step after the command: when its actuators have reached the target.
-  if (settings_.mode == CouplingMode::paced) {
-    settings_.repeat_after += from_seconds(settings_.step_s * settings_.time_scale);
+  const bool is_paced = settings_.mode == CouplingMode::paced;
+  const Duration paced_step = is_paced ? from_seconds(settings_.step_s * settings_.time_scale) : Duration{};
+  for (const CoupledSubstructure& substructure : settings_.substructures) {
+    repeats_.emplace_back(settings_.repeat_after + paced_step,
+                          substructure.role == Role::experimental_site ? paced_step : Duration{});
   }
 }
 
@@ -156,16 +169,15 @@ void Coordinator::settle(Instant now) noexcept {
   TestAnnouncement announcement;
   announcement.test_name = settings_.test_name;
   announcement.coordinator = presence_.identity().incarnation;
+  if (resumed_) announcement.succeeds = resumed_->first_coordinator;
   announcement.scenario_digest = presence_.identity().scenario_digest;
   announcement.mode = settings_.mode;
   announcement.step_s = settings_.step_s;
   announcement.duration_s = settings_.duration_s;
   announcement.time_scale = settings_.time_scale;
-  announcement.substructure_count = static_cast<std::uint16_t>(settings_.substructures.size());
-  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
-    const auto& substructure = settings_.substructures[i];
-    announcement.substructures[i] = {substructure.id, substructure.role,
-                                     static_cast<std::uint16_t>(substructure.interface.size())};
+  for (const CoupledSubstructure& substructure : settings_.substructures) {
+    announcement.substructures.push_back(
+        {substructure.id, substructure.role, static_cast<std::uint16_t>(substructure.interface.size())});
   }
   ports_.announcements.send(announcement);
   presence_.set_state(LifecycleState::ready);
@@ -179,11 +191,18 @@ void Coordinator::assemble(Instant now) noexcept {
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     if (peer == nullptr || peer->status.state != LifecycleState::refused) continue;
-    report(now, Severity::fault, EventCode::digest_mismatch, substructure.id);
+    const bool is_same_scenario = peer->status.scenario_digest == presence_.identity().scenario_digest;
+    if (!resumed_ && is_same_scenario) {
+      // It gave up before it heard of this coordinator.
+      report(now, Severity::fault, EventCode::participant_missing, substructure.id);
+      begin_stop(now, StopReason::not_assembled, substructure.id);
+      return;
+    }
+    report(now, Severity::fault, resumed_ ? EventCode::resume_refused : EventCode::digest_mismatch, substructure.id);
     begin_stop(now, StopReason::refused, substructure.id);
     return;
   }
-  if (everyone_is(LifecycleState::ready) && has_source) {
+  if ((resumed_ ? everyone_goes_on() : everyone_is(LifecycleState::ready)) && everyone_is_linked() && has_source) {
     for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
       ledger_.bind(static_cast<SubstructureIndex>(i),
                    presence_.find(settings_.substructures[i].id)->status.incarnation);
@@ -200,7 +219,7 @@ void Coordinator::arm(Instant now) noexcept {
   watch_participants(now);
   if (phase_ != Phase::arming) return;
   if (everyone_is(LifecycleState::armed)) {
-    report(now, Severity::information, EventCode::test_armed);
+    if (!resumed_) report(now, Severity::information, EventCode::test_armed);
     if (!rehearsal_) {
       start(now);
       return;
@@ -250,6 +269,7 @@ void Coordinator::judge_rehearsal(Instant now) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const auto index = static_cast<SubstructureIndex>(i);
     const Duration round_trip = rehearsal_->percentile(index, 99);
+    is_lossy_ = is_lossy_ || rehearsal_->percentile(index, 100) == Duration::max();
     usual_round_trip_ = std::max(usual_round_trip_, std::min(rehearsal_->percentile(index, 50), available));
     const bool is_in_time = round_trip <= available;
     const bool starts = is_in_time || settings_.bridging.start_anyway;
@@ -273,25 +293,40 @@ void Coordinator::judge_rehearsal(Instant now) noexcept {
 void Coordinator::start(Instant now) noexcept {
   control(ControlVerb::start);
   presence_.set_state(LifecycleState::running);
-  report(now, Severity::information, EventCode::test_started);
   phase_ = Phase::running;
   phase_began_ = now;
-  started_ = now;
   step_completed_ = now;
   step_due_ = now;
+  if (!resumed_) {
+    report(now, Severity::information, EventCode::test_started);
+    started_ = now;
+    return;
+  }
+  started_ = resumed_->started;
+  report(now, Severity::warning, EventCode::test_continued, {},
+         {static_cast<double>(completed_steps_), to_seconds(now - resumed_->last_recorded)});
+  if (completed_steps_ > settings_.last_step) begin_stop(now, StopReason::completed);
 }
 
 void Coordinator::run(Instant now) noexcept {
   watch_participants(now);
+  clock_is_fresh_ = true;
+  if (record_.clocks != nullptr) clocks_.record(now, false, *record_.clocks);
   while (phase_ == Phase::running) {
     if (!command_is_open_ && !open_next(now)) return;
     if (!command_is_sent_) {
       if (is_paused_ || now < step_due_) return;
-      for (std::size_t i = 0; i < commands_.size(); ++i) send_command(static_cast<SubstructureIndex>(i), now);
+      const int copies = is_lossy_ && ledger_.step() == 1 ? kStartCopies : 1;
+      for (int copy = 0; copy < copies; ++copy) {
+        for (std::size_t i = 0; i < commands_.size(); ++i) send_command(static_cast<SubstructureIndex>(i), now);
+      }
       command_is_sent_ = true;
       ledger_.open(ledger_.step(), ledger_.iteration(), now);
-      for (std::size_t i = 0; i < commands_.size(); ++i) ledger_.count_attempt(static_cast<SubstructureIndex>(i));
-      repeat_due_ = now + settings_.repeat_after;
+      for (std::size_t i = 0; i < commands_.size(); ++i) {
+        for (int copy = 0; copy < copies; ++copy) ledger_.count_attempt(static_cast<SubstructureIndex>(i));
+        repeats_[i].open(now);
+      }
+      repeat_due_ = first_repeat();
       // The previous step is recorded now, while the substructures work on this one.
       record_step(now);
     }
@@ -311,7 +346,29 @@ void Coordinator::run(Instant now) noexcept {
   }
 }
 
+void Coordinator::watch_links(Instant now) noexcept {
+  if (now < links_due_) return;
+  links_due_ = now + kLinkLook;
+  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+    const ParticipantId& id = settings_.substructures[i].id;
+    const Peer* peer = presence_.find(id);
+    if (peer == nullptr || peer->status.state == LifecycleState::lost) continue;
+    const bool is_silent = presence_.is_silent(*peer, now);
+    Instant& heard = heard_before_silence_[i];
+    if (is_silent == (heard != Instant{})) continue;
+    const double silent_s = to_seconds((is_silent ? now : peer->last_seen) - (is_silent ? peer->last_seen : heard));
+    if (is_silent) {
+      report(now, Severity::warning, EventCode::link_silent, id, {silent_s, to_seconds(presence_.silence_most())});
+    } else {
+      report(now, Severity::information, EventCode::link_back, id, {silent_s, 0.0});
+    }
+    heard = is_silent ? peer->last_seen : Instant{};
+  }
+}
+
 void Coordinator::watch_participants(Instant now) noexcept {
+  watch_links(now);
+  if (watched_ == presence_.changes()) return;
   // Whoever obeyed an emergency stop has left perhaps, and the others after it: the stop is the cause, and not the
   // loss.
   const bool is_emergency = std::ranges::any_of(settings_.substructures, [&](const CoupledSubstructure& substructure) {
@@ -360,6 +417,10 @@ void Coordinator::watch_participants(Instant now) noexcept {
       begin_stop(now, StopReason::opensees_lost, kOpenSeesId);
       return;
     }
+    if (any(peer->status.faults & FaultFlags::resume_refused)) {
+      begin_stop(now, StopReason::resume_refused, substructure.id);
+      return;
+    }
     if (any(peer->status.faults & FaultFlags::model_failed)) {
       begin_stop(now, StopReason::model_failed, substructure.id);
       return;
@@ -371,7 +432,9 @@ void Coordinator::watch_participants(Instant now) noexcept {
   }
   if (has_recording_fault && settings_.stop_on_recording_failure) {
     begin_stop(now, StopReason::recording_failed, recorder == nullptr ? ParticipantId{kCoordinatorId} : recorder->id);
+    return;
   }
+  watched_ = presence_.changes();
 }
 
 const CoupledSubstructure* Coordinator::owes_answer(const CoupledSubstructure& except) const noexcept {
@@ -433,16 +496,18 @@ void Coordinator::open_command(Instant now) noexcept {
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     DisplacementCommand& command = commands_[i];
     const InterfaceMap& interface = settings_.substructures[i].interface;
-    if (iteration == 0) {
+    // The history is for sites; of a wide interface it would make each command four times as large.
+    const Step points = interface.size() <= kMaxSiteDofs ? kCommandPoints : 1;
+    if (iteration == 0 && points > 1) {
       // Velocity and acceleration of the previous point are in equilibrium now; its displacement is what was commanded.
       if (step > 0) fill_rates(interface, source_->completed(), command.points[0]);
-      std::rotate(command.points.begin(), command.points.end() - 1, command.points.end());
+      for (std::size_t k = command.points.size() - 1; k > 0; --k) {
+        message_copies::carry(command.points[k - 1], command.points[k], message_copies::Move{});
+      }
     }
     fill_point(interface, step, current, command.points[0]);
     command.iteration = iteration;
     command.is_trial = source_->is_trial();
-    // The history is for sites; of a wide interface it would make each command four times as large.
-    const Step points = interface.size() <= kMaxSiteDofs ? kCommandPoints : 1;
     command.point_count = static_cast<std::uint8_t>(std::min(step + 1, points));
     command.substructure = static_cast<SubstructureIndex>(i);
     command.coordinator = presence_.identity().incarnation;
@@ -452,27 +517,40 @@ void Coordinator::open_command(Instant now) noexcept {
 
 void Coordinator::send_command(SubstructureIndex substructure, Instant now) noexcept {
   commands_[substructure].send_time = now.time_since_epoch();
+  clock_is_fresh_ = false;
   ports_.commands.send(commands_[substructure]);
 }
 
 void Coordinator::repeat_unanswered(Instant now) noexcept {
   if (now < repeat_due_) return;
-  repeat_due_ = now + settings_.repeat_after;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const auto index = static_cast<SubstructureIndex>(i);
-    if (ledger_.has_answered(index)) continue;
+    if (now < repeats_[i].due()) continue;
     ++commands_[i].attempt;
     ledger_.count_attempt(index);
     send_command(index, now);
-    if (commands_[i].attempt == 1) {
-      report(now, Severity::warning, EventCode::command_repeated, settings_.substructures[i].id, {1.0, 0.0});
+    repeats_[i].sent_again(now);
+    if (repeats_[i].becomes_overdue(now)) {
+      report(now, Severity::warning, EventCode::command_repeated, settings_.substructures[i].id,
+             {static_cast<double>(commands_[i].attempt), 0.0});
     }
   }
+  repeat_due_ = first_repeat();
+}
+
+Instant Coordinator::first_repeat() const noexcept {
+  Instant first = kNever;
+  for (const CommandRepeats& repeats : repeats_) first = std::min(first, repeats.due());
+  return first;
 }
 
 void Coordinator::take_answer(const ForceMeasurement& answer, Instant now) noexcept {
   switch (ledger_.enter(answer, now)) {
-    case LedgerEntry::accepted: last_to_answer_ = answer.substructure; break;
+    case LedgerEntry::accepted:
+      last_to_answer_ = answer.substructure;
+      repeats_[answer.substructure].answered(answer, now);
+      if (clock_is_fresh_) clocks_.add(answer, now);
+      break;
     case LedgerEntry::stale:
       if (is_real_time()) bridges_[answer.substructure].take_late(answer.step, answer.force_n);
       break;
@@ -552,20 +630,25 @@ void Coordinator::complete_command(Instant now) noexcept {
   record_exchanges();
   if (!collect_forces(now)) return;
   if (is_real_time() && !watch_deadlines(now)) return;
-  settings_.load.ground_at(ledger_.step(), applied_force_n_);
-  if (settings_.load.has_forces()) {
-    settings_.load.forces_at(ledger_.step(), forces_n_);
-    applied_force_n_ += forces_n_;
-  }
+  record_answers();
   const bool was_trial = source_->is_trial();
-  if (!was_trial) iterations_ = source_->iteration();
-  command_is_open_ = false;
-  source_->advance(restoring_force_n_, applied_force_n_);
+  advance_source();
   if (was_trial) {
     go_on_trying(now);
   } else {
     complete_step(now);
   }
+}
+
+void Coordinator::advance_source() noexcept {
+  settings_.load.ground_at(ledger_.step(), applied_force_n_);
+  if (settings_.load.has_forces()) {
+    settings_.load.forces_at(ledger_.step(), forces_n_);
+    applied_force_n_ += forces_n_;
+  }
+  if (!source_->is_trial()) iterations_ = source_->iteration();
+  command_is_open_ = false;
+  source_->advance(restoring_force_n_, applied_force_n_);
 }
 
 bool Coordinator::collect_forces(Instant now) noexcept {
@@ -622,12 +705,17 @@ void Coordinator::add_elastic_force() noexcept {
 
 void Coordinator::record_step(Instant now) noexcept {
   if (std::exchange(recorded_steps_, completed_steps_) == completed_steps_) return;
+  fill_step_row(to_seconds(now - started_));
+  record_.steps.append(row_);
+}
+
+void Coordinator::fill_step_row(double wall_time_s) noexcept {
   const MotionState& completed = source_->completed();
   const auto step = completed_steps_ - 1;
   std::size_t next = 0;
   row_[next++] = static_cast<double>(step);
   row_[next++] = static_cast<double>(step) * settings_.step_s;
-  row_[next++] = to_seconds(now - started_);
+  row_[next++] = wall_time_s;
   const std::size_t ground_motions = settings_.load.ground_count();
   if (ground_motions == 0) row_[next++] = 0.0;
   for (std::size_t k = 0; k < ground_motions; ++k) row_[next++] = settings_.load.ground_acceleration(k, step);
@@ -639,7 +727,6 @@ void Coordinator::record_step(Instant now) noexcept {
     if (settings_.load.has_forces()) row_[next++] = forces_n_[dof];
   }
   row_[next++] = iterations_;
-  record_.steps.append(row_);
 }
 
 void Coordinator::record_exchanges() noexcept {
@@ -667,13 +754,14 @@ void Coordinator::record_exchanges() noexcept {
 void Coordinator::begin_stop(Instant now, StopReason reason, const ParticipantId& who) noexcept {
   if (phase_ == Phase::stopping || phase_ == Phase::done) return;
   reason_ = reason;
-  const bool was_armed = phase_ >= Phase::arming;
+  const bool was_armed = phase_ >= Phase::arming || resumed_;
   stop_by_ = now + (was_armed ? settings_.stop_timeout : std::min(settings_.stop_timeout, kLeaveUnarmed));
   if (phase_ == Phase::running) {
     running_time_ = now - started_;
     record_step(now);
     if (command_is_sent_ && !ledger_.is_complete()) record_exchanges();
     record_bridges(true);
+    if (record_.clocks != nullptr) clocks_.record(now, true, *record_.clocks);
   }
   report(now, reason == StopReason::completed ? Severity::information : Severity::warning, EventCode::test_stopped, who,
          {static_cast<double>(reason), 0.0});
@@ -695,10 +783,12 @@ void Coordinator::stop(Instant now) noexcept {
 
 void Coordinator::end_unassembled(Instant now, LifecycleState wanted) noexcept {
   ParticipantId first;
-  for (const auto& substructure : settings_.substructures) {
+  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+    const CoupledSubstructure& substructure = settings_.substructures[i];
     const Peer* peer = presence_.find(substructure.id);
-    if (peer != nullptr && has_reached(peer->status.state, wanted)) continue;
-    report(now, Severity::fault, EventCode::participant_missing, substructure.id);
+    const bool is_there = peer != nullptr && has_reached(peer->status.state, wanted);
+    if (is_there && is_linked(i)) continue;
+    report(now, Severity::fault, EventCode::participant_missing, substructure.id, {is_there ? 1.0 : 0.0, 0.0});
     if (first.empty()) first = substructure.id;
   }
   if (const ParticipantId awaited = source_->awaited(now); !awaited.empty()) {
@@ -706,6 +796,17 @@ void Coordinator::end_unassembled(Instant now, LifecycleState wanted) noexcept {
     if (first.empty()) first = kOpenSeesId;
   }
   begin_stop(now, StopReason::not_assembled, first);
+}
+
+bool Coordinator::is_linked(std::size_t substructure) const noexcept {
+  return !ports_.is_linked || ports_.is_linked(static_cast<SubstructureIndex>(substructure));
+}
+
+bool Coordinator::everyone_is_linked() const noexcept {
+  for (std::size_t i = 0; i < settings_.substructures.size(); ++i) {
+    if (!is_linked(i)) return false;
+  }
+  return true;
 }
 
 bool Coordinator::everyone_is(LifecycleState wanted) const noexcept {

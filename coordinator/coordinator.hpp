@@ -2,10 +2,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "coordinator/clock_windows.hpp"
+#include "coordinator/command_repeats.hpp"
 #include "coordinator/excitation/applied_load.hpp"
 #include "coordinator/force_bridge.hpp"
 #include "coordinator/motion_source.hpp"
@@ -46,7 +51,8 @@ struct CoordinatorSettings {
   Duration discovery_timeout = std::chrono::seconds{30};
   Duration arm_timeout = std::chrono::seconds{10};
   Duration stop_timeout = std::chrono::seconds{10};  // for the other participants to come to rest
-  /// An unanswered command is sent again after this time; in paced mode the length of a step is added.
+  /// A command is sent again after this time while it is not known yet how long an answer takes, see CommandRepeats; in
+  /// paced mode the length of a step is added.
   Duration repeat_after = std::chrono::milliseconds{200};
   BridgingSettings bridging;  // in real time
 };
@@ -57,6 +63,8 @@ struct CoordinatorPorts {
   Outbox<TestControl>& control_out;
   Inbox<ForceMeasurement>& measurements;
   Outbox<DisplacementCommand>& commands;
+  /// Whether the commands and measurements of a substructure are connected, at this end. Empty: always.
+  std::function<bool(SubstructureIndex)> is_linked = {};
 };
 
 /// Tables of `coordinator.h5`.
@@ -64,6 +72,26 @@ struct CoordinatorRecord {
   RowSink& steps;
   RowSink& exchanges;
   RowSink* bridges = nullptr;  // of a test in real time
+  RowSink* clocks = nullptr;   // what the exchanges say of the clocks; none without
+  RowSink* answers = nullptr;  // of a test that can be resumed
+};
+
+/// One command to all substructures and its answers, as the table `answers` has them.
+struct AnsweredCommand {
+  Step step = kNoStep;
+  std::uint16_t iteration = 0;
+  bool is_trial = false;
+  // One per substructure, at the interface:
+  std::vector<InterfaceVector> displacement_m{};
+  std::vector<InterfaceVector> velocity_m_per_s{};
+  std::vector<InterfaceVector> force_n{};
+};
+
+/// A test whose coordinator died, as the recording has it.
+struct ResumedTest {
+  Incarnation first_coordinator = 0;
+  Instant started{};        // the test, by the clock of this process
+  Instant last_recorded{};  // the last step in the recording, likewise
 };
 
 /// State of the test, for the progress display and the summary.
@@ -89,6 +117,14 @@ class Coordinator final : public Node {
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
 
+  /// Before the first advance(): takes a command of the recording with its answers, in the order of the recording.
+  /// @return false when the source of motion commands something else, in any bit, or has no command of its own.
+  [[nodiscard]] bool replay(const AnsweredCommand& recorded) noexcept;
+  /// The row of `steps` of the step that replay() completed last; its wall time is 0.
+  [[nodiscard]] std::span<const double> replayed_row() const noexcept { return row_; }
+  /// After the last replay(): this coordinator takes the place of the one that recorded.
+  void resume(const ResumedTest& test) noexcept { resumed_ = test; }
+
   /// Ends the test safely, as Ctrl-C does, at the next advance().
   void request_stop(StopReason reason) noexcept { requested_stop_ = reason; }
   /// The process of the OpenSees that leads has ended, and will not connect again.
@@ -105,6 +141,8 @@ class Coordinator final : public Node {
                                                 bool has_forces);
   [[nodiscard]] static TableLayout exchanges_layout();
   [[nodiscard]] static TableLayout bridges_layout();
+  /// One row per command, substructure and interface degree of freedom.
+  [[nodiscard]] static TableLayout answers_layout();
 
  private:
   enum class Phase : std::uint8_t { settling, assembling, arming, rehearsing, running, stopping, done };
@@ -121,6 +159,7 @@ class Coordinator final : public Node {
   void stop(Instant now) noexcept;
 
   void watch_participants(Instant now) noexcept;
+  void watch_links(Instant now) noexcept;
   /// Opens the next command, if the source has one.
   /// @return false when it has none yet or the test ends.
   [[nodiscard]] bool open_next(Instant now) noexcept;
@@ -128,6 +167,8 @@ class Coordinator final : public Node {
   void open_command(Instant now) noexcept;
   void send_command(SubstructureIndex substructure, Instant now) noexcept;
   void repeat_unanswered(Instant now) noexcept;
+  /// When the first unanswered command is to be sent again.
+  [[nodiscard]] Instant first_repeat() const noexcept;
   /// The open step has a deadline.
   [[nodiscard]] bool has_deadline() const noexcept { return is_real_time() && ledger_.step() > 0; }
   [[nodiscard]] bool is_real_time() const noexcept { return settings_.mode == CouplingMode::real_time; }
@@ -158,6 +199,13 @@ class Coordinator final : public Node {
   /// K u of the elastic part, added to the forces of the substructures.
   void add_elastic_force() noexcept;
   void record_step(Instant now) noexcept;
+  /// The last completed step, into `row_`.
+  void fill_step_row(double wall_time_s) noexcept;
+  void record_answers() noexcept;
+  /// The load of the open step; then the source takes the forces.
+  void advance_source() noexcept;
+  /// Everyone who takes part in a resumed test has accepted this coordinator, or has restored its state.
+  [[nodiscard]] bool everyone_goes_on() const noexcept;
   void record_exchanges() noexcept;
   /// @param who   ended the test: a participant's id or `operator`.
   void begin_stop(Instant now, StopReason reason, const ParticipantId& who = {}) noexcept;
@@ -165,6 +213,9 @@ class Coordinator final : public Node {
   [[nodiscard]] const CoupledSubstructure* owes_answer(const CoupledSubstructure& except) const noexcept;
   void watch_pace(Instant now) noexcept;
   void end_unassembled(Instant now, LifecycleState wanted) noexcept;
+  /// At this end; the substructure is ready when it is at its own.
+  [[nodiscard]] bool is_linked(std::size_t substructure) const noexcept;
+  [[nodiscard]] bool everyone_is_linked() const noexcept;
   [[nodiscard]] bool everyone_is(LifecycleState state) const noexcept;
   [[nodiscard]] Instant next_wake(Instant now, Instant presence_wake) const noexcept;
   void report(Instant now, Severity severity, EventCode code, const ParticipantId& subject = {},
@@ -180,17 +231,22 @@ class Coordinator final : public Node {
   CoordinatorPorts ports_;
   CoordinatorRecord record_;
 
+  std::optional<ResumedTest> resumed_;
   Phase phase_ = Phase::settling;
   Instant phase_began_{};
   bool began_ = false;
+  std::uint64_t watched_ = 0;  // Presence::changes() at which all participants could go on
   StepLedger ledger_;
   std::vector<DisplacementCommand> commands_;  // newest one per substructure, with its history
   ForceMeasurement measurement_;               // the one being taken
-  Instant repeat_due_ = kNever;
-  Instant step_due_{};            // paced: earliest time to send the commands of the open step
-  bool command_is_open_ = false;  // the source has given one
+  std::vector<CommandRepeats> repeats_;        // one per substructure
+  Instant repeat_due_ = kNever;                // no command is sent again before
+  Instant step_due_{};                         // paced: earliest time to send the commands of the open step
+  bool command_is_open_ = false;               // the source has given one
   bool command_is_sent_ = false;
   bool is_paused_ = false;
+  ClockWindows clocks_;
+  bool clock_is_fresh_ = false;  // nothing was sent since it was read: what is taken now had come by then
   // In real time:
   std::optional<Rehearsal> rehearsal_;
   std::vector<ForceBridge> bridges_;  // one per substructure
@@ -203,6 +259,7 @@ class Coordinator final : public Node {
   };
   std::vector<Misses> misses_;   // likewise
   Duration usual_round_trip_{};  // of the slowest substructure
+  bool is_lossy_ = false;        // the rehearsal lost an answer
   Instant step_zero_{};
   StopReason requested_stop_ = StopReason::none;
   bool lead_has_left_ = false;
@@ -213,6 +270,8 @@ class Coordinator final : public Node {
   Instant started_{};
   Instant step_completed_{};  // the last one; paced: or the end of a pause
   double longest_stall_s_ = 0.0;
+  std::vector<Instant> heard_before_silence_;  // zero while a substructure is not silent
+  Instant links_due_{};
   SubstructureIndex last_to_answer_ = 0;
   Duration running_time_{};
   Instant stop_by_{};  // then the coordinator leaves, whether the others are at rest or not

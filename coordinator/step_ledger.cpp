@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/message_copies.hpp"
+
 namespace hybridtest {
 
 void StepLedger::bind(SubstructureIndex substructure, Incarnation incarnation) noexcept {
@@ -13,14 +15,14 @@ void StepLedger::open(Step step, std::uint16_t iteration, Instant now) noexcept 
   iteration_ = iteration;
   opened_ = now;
   answered_ = 0;
-  for (Account& account : std::span{accounts_}.first(count_)) {
+  for (Account& account : accounts_) {
     account.answered = false;
     account.attempts = 0;
   }
 }
 
 LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) noexcept {
-  if (measurement.substructure >= count_) return LedgerEntry::foreign;
+  if (measurement.substructure >= accounts_.size()) return LedgerEntry::foreign;
   Account& account = accounts_[measurement.substructure];
   const std::pair answered{measurement.step, measurement.iteration};
   const std::pair opened{step_, iteration_};
@@ -29,7 +31,7 @@ LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) 
   if (answered < opened) return LedgerEntry::stale;
   if (account.answered) return LedgerEntry::duplicate;
   account.answered = true;
-  account.answer = measurement;
+  copy_message(measurement, account.answer);
   account.round_trip = now - opened_;
   ++answered_;
   return LedgerEntry::accepted;

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "core/messages.hpp"
 #include "core/time.hpp"
@@ -22,7 +21,7 @@ enum class LedgerEntry : std::uint8_t {
 /// it took. Each is completed exactly once, also when the network loses, repeats or reorders messages.
 class StepLedger {
  public:
-  explicit StepLedger(std::size_t substructures) noexcept : count_{substructures} {}
+  explicit StepLedger(std::size_t substructures) : accounts_(substructures) {}
 
   /// Binds a substructure to the process that was armed; answers of others are foreign.
   void bind(SubstructureIndex substructure, Incarnation incarnation) noexcept;
@@ -34,7 +33,7 @@ class StepLedger {
   [[nodiscard]] std::uint16_t iteration() const noexcept { return iteration_; }
   /// When the open command was sent.
   [[nodiscard]] Instant opened() const noexcept { return opened_; }
-  [[nodiscard]] bool is_complete() const noexcept { return answered_ == count_; }
+  [[nodiscard]] bool is_complete() const noexcept { return answered_ == accounts_.size(); }
   [[nodiscard]] bool has_answered(SubstructureIndex substructure) const noexcept {
     return accounts_[substructure].answered;
   }
@@ -66,12 +65,11 @@ class StepLedger {
     ForceMeasurement answer;
   };
 
-  std::size_t count_;
   std::size_t answered_ = 0;
   Step step_ = kNoStep;
   std::uint16_t iteration_ = 0;
   Instant opened_{};
-  std::array<Account, kMaxSubstructures> accounts_{};
+  std::vector<Account> accounts_;  // by substructure
 };
 
 }  // namespace hybridtest

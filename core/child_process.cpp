@@ -85,7 +85,9 @@ std::vector<std::string> ChildProcess::last_lines(std::size_t count) const {
   std::ifstream log{log_file_};
   std::vector<std::string> last;
   for (std::string line; std::getline(log, line);) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    // Some programs, ssh among them, end their lines as a terminal wants it.
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    if (line.empty()) continue;
     last.push_back(line);
     if (last.size() > count) last.erase(last.begin());
   }

@@ -97,7 +97,13 @@ std::string describe(const Event& event) {
     case EventCode::participant_ready: return "ready";
     case EventCode::participant_lost:
       return subject + " is lost: no message within the liveliness lease (timeouts.liveliness_lease_s)";
-    case EventCode::participant_missing: return subject + " did not appear or did not get ready in time";
+    case EventCode::participant_missing:
+      if (event.values[0] >= 1.0) {
+        return subject +
+               " is ready, but the connection for its commands and measurements was not made in time: run "
+               "`hybridtest doctor` on both hosts";
+      }
+      return subject + " did not appear or did not get ready in time";
     case EventCode::digest_mismatch:
       return "the scenario differs from that of " + subject +
              "; start every participant with the same file and the same --set";
@@ -126,7 +132,12 @@ std::string describe(const Event& event) {
     case EventCode::test_paused: return "test paused";
     case EventCode::test_resumed: return "test resumed";
     case EventCode::emergency_stop: return "emergency stop";
-    case EventCode::interlock_warned: return "warning only, " + interlock_text(event);
+    case EventCode::interlock_warned:
+      if (event.subject == "command_age") {
+        return "no command for " + number(event.values[0]) + " s (limit " + number(event.values[1]) +
+               " s): going on when one comes";
+      }
+      return "warning only, " + interlock_text(event);
     case EventCode::interlock_cleared: return "the interlocks that can clear have cleared";
     case EventCode::zero_offset:
       return "zero offset of " + event.subject.text() + ": " + number(event.values[0]) + " m, " +
@@ -138,6 +149,10 @@ std::string describe(const Event& event) {
     case EventCode::test_stalled:
       return "the test stood still for " + number(event.values[0]) + " s (a step takes " + number(event.values[1]) +
              " s); last to answer: " + subject;
+    case EventCode::link_silent:
+      return "nothing from " + subject + " for " + number(event.values[0]) + " s: waiting up to " +
+             number(event.values[1]) + " s for its link (timeouts.link_s)";
+    case EventCode::link_back: return subject + " is back after " + number(event.values[0]) + " s: going on";
     case EventCode::no_equilibrium:
       return "no equilibrium after " + number(event.values[0]) + " trials: the last one was corrected by " +
              number(event.values[1]) +
@@ -182,6 +197,23 @@ std::string describe(const Event& event) {
       return subject + " missed " + number(event.values[0]) + " deadlines in a row; bridging.most_in_a_row is " +
              number(event.values[1]);
     case EventCode::pause_refused: return "a real-time test cannot pause; stop it instead";
+    case EventCode::coordinator_awaited:
+      return "the coordinator is lost: holding, and waiting up to " + number(event.values[0]) +
+             " s (timeouts.resume_s) for `hybridtest run --resume`";
+    case EventCode::coordinator_succeeded:
+      return "held for " + number(event.values[0]) + " s; the resumed coordinator is there";
+    case EventCode::test_continued:
+      return "test resumed from its recording with " + number(event.values[0]) + " steps, after " +
+             number(event.values[1]) + " s without a coordinator";
+    case EventCode::imposed_differently:
+      return "the resumed coordinator asked " + subject + " for " + number(event.values[1]) +
+             " m in a step that was imposed with " + number(event.values[0]) +
+             " m; a specimen cannot go back: start a new test";
+    case EventCode::answer_forgotten:
+      return "the resumed coordinator asked " + subject + " for step " + number(event.values[1]) +
+             ", and its memory begins with step " + number(event.values[0]) + ": start a new test";
+    case EventCode::resume_refused:
+      return subject + " was not part of this test, which is resumed, or lost what it had imposed: start a new test";
   }
   return "unknown event";
 }

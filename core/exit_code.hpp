@@ -24,7 +24,7 @@ struct TestEnd {
 };
 
 /// All of them, one row per StopReason; docs/ends.md describes each.
-inline constexpr std::array<TestEnd, 18> kTestEnds{{
+inline constexpr std::array<TestEnd, 19> kTestEnds{{
     {StopReason::none, "none", "end unknown", kExitEndedEarly},
     {StopReason::completed, "completed", "completed", kExitCompleted},
     {StopReason::interrupted, "interrupted", "stopped by the operator", kExitEndedEarly},
@@ -44,6 +44,8 @@ inline constexpr std::array<TestEnd, 18> kTestEnds{{
     {StopReason::deadlines_missed, "deadlines_missed", "ended: too many deadlines missed in a row", kExitEndedEarly},
     {StopReason::network_too_slow, "network_too_slow", "never started: the round trip does not fit into a step",
      kExitConfiguration},
+    {StopReason::resume_refused, "resume_refused", "ended: the resumed test asked for another motion than was imposed",
+     kExitEndedEarly},
 }};
 
 /// @return the row of `none` for a number that is no reason.

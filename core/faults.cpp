@@ -25,6 +25,7 @@ std::string_view name(FaultFlags single_flag) noexcept {
     case FaultFlags::stuck_sensor: return "stuck_sensor";
     case FaultFlags::tracking_indicator: return "tracking_indicator";
     case FaultFlags::model_failed: return "model_failed";
+    case FaultFlags::resume_refused: return "resume_refused";
   }
   return "several";
 }
@@ -65,6 +66,8 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::real_time_refused: return "real_time_refused";
     case EventCode::answer_overdue: return "answer_overdue";
     case EventCode::test_stalled: return "test_stalled";
+    case EventCode::link_silent: return "link_silent";
+    case EventCode::link_back: return "link_back";
     case EventCode::no_equilibrium: return "no_equilibrium";
     case EventCode::opensees_missing: return "opensees_missing";
     case EventCode::opensees_refused: return "opensees_refused";
@@ -77,6 +80,12 @@ std::string_view name(EventCode code) noexcept {
     case EventCode::answers_bridged: return "answers_bridged";
     case EventCode::deadlines_missed: return "deadlines_missed";
     case EventCode::pause_refused: return "pause_refused";
+    case EventCode::coordinator_awaited: return "coordinator_awaited";
+    case EventCode::coordinator_succeeded: return "coordinator_succeeded";
+    case EventCode::test_continued: return "test_continued";
+    case EventCode::imposed_differently: return "imposed_differently";
+    case EventCode::answer_forgotten: return "answer_forgotten";
+    case EventCode::resume_refused: return "resume_refused";
   }
   return "unknown";
 }

@@ -37,6 +37,7 @@ enum class FaultFlags : std::uint32_t {
   stuck_sensor = 1U << 15U,        // reads the same while the command moves
   tracking_indicator = 1U << 16U,  // the specimen lags or leads too far
   model_failed = 1U << 17U,        // of a numerical substructure
+  resume_refused = 1U << 18U,      // a resumed coordinator asked for another motion than was imposed
 };
 HYBRIDTEST_FLAG_OPERATORS(FaultFlags)
 
@@ -74,6 +75,7 @@ enum class StopReason : std::uint8_t {
   model_failed,        // of a numerical substructure
   deadlines_missed,    // real time: too many in a row
   network_too_slow,    // real time: the round trip does not fit into a step
+  resume_refused,      // a resumed coordinator asked for another motion than was imposed
 };
 
 enum class EventCode : std::uint16_t {
@@ -106,6 +108,8 @@ enum class EventCode : std::uint16_t {
   real_time_refused,  // subject: which request; values: errno, requested value
   answer_overdue,     // subject: who; values[0]: time since the command was sent [s]
   test_stalled,       // subject: who answered last; values: time without a new step [s], wall time of a step [s]
+  link_silent,        // subject: who; values: silent for [s], waited for [s]
+  link_back,          // subject: who; values[0]: was silent for [s]
   no_equilibrium,     // values: trials, last correction [m]
   opensees_missing,   // that leads; subject: the substructure whose element has not connected
   opensees_refused,   // a client of an element; subject: the substructure; values[0]: ClientFault; values[1]: see
@@ -120,6 +124,13 @@ enum class EventCode : std::uint16_t {
   answers_bridged,       // subject: the substructure; values: in a row, in the test so far
   deadlines_missed,      // subject: the substructure; values: in a row, allowed in a row
   pause_refused,
+  // Of a test whose coordinator died:
+  coordinator_awaited,    // values[0]: at most [s]
+  coordinator_succeeded,  // values[0]: waited [s]
+  test_continued,         // by the coordinator; values: steps of the recording, time without a coordinator [s]
+  imposed_differently,    // subject: the substructure; values: imposed, commanded now [m]
+  answer_forgotten,       // subject: the substructure; values: oldest step that it remembers, step commanded
+  resume_refused,         // subject: who cannot join a test that is resumed
 };
 
 [[nodiscard]] std::string_view name(FaultFlags single_flag) noexcept;

@@ -19,7 +19,11 @@
 /// restoring force positive when it resists a positive displacement.
 namespace hybridtest {
 
+/// In a test whose participants are processes on a network: a test announcement of a fixed size has room for so many.
 inline constexpr int kMaxSubstructures = 32;
+/// In a test under simulated time, in one process and without DDS. Every participant has a recording, and a process may
+/// usually have 1024 files open.
+inline constexpr int kMaxSimulatedSubstructures = 1000;
 /// Number of points in each command: the newest one and those before it.
 inline constexpr int kCommandPoints = 4;
 /// In one block of live signals.
@@ -69,6 +73,7 @@ enum class LifecycleState : std::uint8_t {
   stopping,  // bringing the rig to rest
   finished,  // at rest, records closed, about to leave
   refused,   // does not take part; the event gives the reason
+  waiting,   // the coordinator is lost, and a successor is waited for; the specimen is held, the state of a model kept
   lost,
 };
 
@@ -83,13 +88,14 @@ struct SubstructureAnnouncement {
 struct TestAnnouncement {
   FixedText<64> test_name;
   Incarnation coordinator = 0;
+  /// The first coordinator of the test that is resumed; 0 for a new test.
+  Incarnation succeeds = 0;
   ScenarioDigest scenario_digest{};
   CouplingMode mode = CouplingMode::lockstep;
-  double step_s = 0.0;      // [s] model time
-  double duration_s = 0.0;  // [s] model time
-  double time_scale = 1.0;  // [-] wall time over model time, paced mode
-  std::uint16_t substructure_count = 0;
-  std::array<SubstructureAnnouncement, kMaxSubstructures> substructures{};
+  double step_s = 0.0;                                    // [s] model time
+  double duration_s = 0.0;                                // [s] model time
+  double time_scale = 1.0;                                // [-] wall time over model time, paced mode
+  std::vector<SubstructureAnnouncement> substructures{};  // at most kMaxSubstructures over a network
   bool operator==(const TestAnnouncement&) const = default;
 };
 

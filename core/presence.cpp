@@ -1,6 +1,9 @@
 #include "core/presence.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <functional>
+#include <string_view>
 
 namespace hybridtest {
 namespace {
@@ -21,8 +24,14 @@ constexpr Duration kOnItsWay = std::chrono::milliseconds{50};
 }  // namespace
 
 Presence::Presence(const Identity& identity, Duration lease, Inbox<ParticipantStatus>& inbox,
-                   Outbox<ParticipantStatus>& outbox, Outbox<Event>& events) noexcept
-    : identity_{identity}, lease_{lease}, inbox_{inbox}, outbox_{outbox}, events_{events} {
+                   Outbox<ParticipantStatus>& outbox, Outbox<Event>& events, std::size_t peers_at_most)
+    : identity_{identity},
+      lease_{lease},
+      inbox_{inbox},
+      outbox_{outbox},
+      events_{events},
+      places_(std::bit_ceil(2 * peers_at_most)) {
+  peers_.reserve(peers_at_most);
   own_.id = identity.id;
   own_.role = identity.role;
   own_.incarnation = identity.incarnation;
@@ -31,7 +40,7 @@ Presence::Presence(const Identity& identity, Duration lease, Inbox<ParticipantSt
 
 Instant Presence::advance(Instant now) noexcept {
   bool has_heard = false;
-  for (ParticipantStatus status; inbox_.take(status); has_heard = true) learn(status, now);
+  for (; inbox_.take(heard_); has_heard = true) learn(heard_, now);
   // Leases begin anew with a status and end at the time that was found: in between there is nothing to look at.
   if (has_heard || now >= next_lease_) check_leases(now);
 
@@ -46,12 +55,13 @@ Instant Presence::advance(Instant now) noexcept {
 
 void Presence::check_leases(Instant now) noexcept {
   next_lease_ = kNever;
-  for (Peer& peer : std::span{peers_}.first(peer_count_)) {
+  for (Peer& peer : peers_) {
     if (has_left(peer.status.state)) continue;
-    if (now - peer.last_seen >= lease_) {
+    if (now - peer.last_seen >= lost_after_) {
       peer.status.state = LifecycleState::lost;
+      ++changes_;
     } else {
-      next_lease_ = std::min(next_lease_, peer.last_seen + lease_);
+      next_lease_ = std::min(next_lease_, peer.last_seen + lost_after_);
     }
   }
 }
@@ -66,19 +76,30 @@ void Presence::raise(FaultFlags faults) noexcept {
   if ((own_.faults | faults) == own_.faults) return;
   own_.faults |= faults;
   status_changed_ = true;
+  ++changes_;
+}
+
+std::size_t Presence::place_of(const ParticipantId& id) const noexcept {
+  std::size_t place = std::hash<std::string_view>{}(id.view());
+  for (;; ++place) {
+    place &= places_.size() - 1;
+    if (places_[place] == 0 || peers_[places_[place] - 1U].status.id == id) return place;
+  }
 }
 
 const Peer* Presence::find(const ParticipantId& id) const noexcept {
-  const auto known = std::span{peers_}.first(peer_count_);
-  const auto found =
-      std::ranges::find(known, id, [](const Peer& peer) -> const ParticipantId& { return peer.status.id; });
-  return found == known.end() ? nullptr : &*found;
+  const std::uint16_t position = places_[place_of(id)];
+  return position == 0 ? nullptr : &peers_[position - 1U];
 }
 
 bool Presence::is_alive(Incarnation incarnation) const noexcept {
-  return std::ranges::any_of(std::span{peers_}.first(peer_count_), [incarnation](const Peer& peer) {
+  return std::ranges::any_of(peers_, [incarnation](const Peer& peer) {
     return peer.status.incarnation == incarnation && !has_left(peer.status.state);
   });
+}
+
+bool Presence::is_silent(const Peer& peer, Instant now) const noexcept {
+  return !has_left(peer.status.state) && now - peer.last_seen >= lease_;
 }
 
 void Presence::report(Instant now, Severity severity, EventCode code, const ParticipantId& subject,
@@ -102,14 +123,15 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
     judge_duplicate(status, now);
     return;
   }
-  const auto known = std::span{peers_}.first(peer_count_);
-  auto place =
-      std::ranges::find(known, status.id, [](const Peer& peer) -> const ParticipantId& { return peer.status.id; });
-  if (place == known.end()) {
-    if (peer_count_ == peers_.size()) return;
-    peers_[peer_count_++] = Peer{status, now};
+  std::uint16_t& position = places_[place_of(status.id)];
+  if (position == 0) {
+    if (peers_.size() == peers_.capacity()) return;
+    peers_.push_back(Peer{status, now});
+    position = static_cast<std::uint16_t>(peers_.size());
+    ++changes_;
     return;
   }
+  Peer* const place = &peers_[position - 1U];
   const bool is_other_process = place->status.incarnation != status.incarnation;
   if (is_other_process) {
     // The known participant stays until it has left: a younger one with the same id must not replace
@@ -122,6 +144,8 @@ void Presence::learn(const ParticipantStatus& status, Instant now) noexcept {
   }
   // A transport reports a loss with the last status it knows; an answered step stays answered.
   const Step last_step = is_other_process ? status.last_step : std::max(place->status.last_step, status.last_step);
+  const ParticipantStatus& known = place->status;
+  if (is_other_process || status.state != known.state || status.faults != known.faults) ++changes_;
   *place = Peer{status, now};
   place->status.last_step = last_step;
 }

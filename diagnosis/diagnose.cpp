@@ -79,6 +79,11 @@ double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetti
   return most;
 }
 
+/// The probability that the cause is among the candidates at all.
+double in_library(const Judgement& judgement) {
+  return judgement.verdict == Verdict::partial ? tuning::kPartialRight : tuning::kNamedRight;
+}
+
 /// The causes of the verdict first, then the other candidates.
 /// @param part   of the whole explained gap, that this stage explains.
 std::vector<RankedCause> rank(const Stage& stage, double part) {
@@ -92,11 +97,11 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
       listed.push_back(selection.chosen.effects[i].type);
       if (judgement.is_correction(i)) continue;
-      RankedCause cause = ranked(selection.chosen.effects[i], selection.chosen.parameters[i]);
+      RankedCause cause = ranked(selection.chosen, i);
       cause.is_cause = true;
       cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
-      cause.probability = selection.chosen_probabilities[i];
+      cause.probability = in_library(judgement) * selection.chosen_probabilities[i];
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
@@ -110,8 +115,8 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
     const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
     const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
-    RankedCause cause = ranked(fit.effects.front(), fit.parameters.front());
-    cause.probability = selection.probabilities[i];
+    RankedCause cause = ranked(fit, 0);
+    cause.probability = in_library(judgement) * selection.probabilities[i];
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;
     ranking.push_back(std::move(cause));
@@ -196,8 +201,8 @@ std::vector<RankedCause> corrections_of(std::span<const Stage> stages) {
   std::vector<RankedCause> corrections;
   for (const Stage& stage : stages) {
     for (const std::size_t i : stage.judgement.corrections) {
-      corrections.push_back(ranked(stage.selection.chosen.effects[i], stage.selection.chosen.parameters[i]));
-      corrections.back().probability = stage.selection.chosen_probabilities[i];
+      corrections.push_back(ranked(stage.selection.chosen, i));
+      corrections.back().probability = in_library(stage.judgement) * stage.selection.chosen_probabilities[i];
       corrections.back().share = stage.selection.shares[i];
     }
   }
@@ -253,6 +258,12 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     const Verdict verdict = verdict_carried_over(
         stage.judgement.verdict, shrinks(model, causes, at_suspects(stage.problem, held_out), seed), policy);
     if (verdict == stage.judgement.verdict) continue;
+    if (verdict == Verdict::partial) {
+      notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
+                      " leaves more of the held-out recordings than of the fitted ones.");
+      stage.judgement.verdict = verdict;
+      continue;
+    }
     notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
                     " fits the fitted recordings but not the held-out ones.");
     stage.judgement = Judgement{};
@@ -277,17 +288,25 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
   }
   std::ranges::sort(outputs);
   std::vector<Stage> stages;
+  std::vector<FoundEffect> found;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     Stage stage{judged_at(fine, outputs[i]), {}, {}};
     IdentificationProblem thinner = judged_at(coarse, outputs[i]);
-    stage.selection = select_effects(stage.problem, thinner, settings.threads, progress.round(i, outputs.size()));
+    const PartProgress of_stage = progress.round(i, outputs.size());
+    stage.problem.progress = of_stage;
+    thinner.progress = of_stage;
+    stage.selection = select_effects(stage.problem, thinner, settings.threads, of_stage);
     settle_noise(stage.problem, stage.selection.chosen);
     stage.judgement = judge(stage.problem, stage.selection, settings.policy);
     if (stage.changes_model() && i + 1 < outputs.size()) {
       SiteModel corrected = fine.model;
-      std::ranges::copy(stage.selection.chosen.effects, std::back_inserter(corrected.effects));
-      fine = make_problem(corrected, segments);
-      coarse = make_problem(corrected, thin);
+      const FitOutcome& chosen = stage.selection.chosen;
+      std::ranges::copy(chosen.effects, std::back_inserter(corrected.effects));
+      for (std::size_t j = 0; j < chosen.effects.size(); ++j) {
+        found.push_back({chosen.effects[j], chosen.covariances[j]});
+      }
+      fine = make_problem(corrected, segments, found);
+      coarse = make_problem(corrected, thin, found);
     }
     stages.push_back(std::move(stage));
   }
@@ -390,6 +409,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     return diagnosis;
   }
   IdentificationProblem problem = make_problem(model, segments);
+  problem.progress = progress;
   std::vector<Stage> stages =
       judge_stages(model, segments, problem, settings, progress.part(tuning::kPrepared, tuning::kSelected));
   std::vector<Judgement*> all_judgements;

@@ -1,9 +1,39 @@
 #include "diagnosis/progress.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <utility>
+
+#include "diagnosis/tuning.hpp"
+
 namespace hybridtest {
 
+struct PartProgress::Shared {
+  ProgressSink sink;
+  ProgressClock clock;
+  std::atomic<std::size_t> predictions = 0;
+  std::mutex mutex;  // of the following, and of calls of the sink
+  ProgressReport last;
+  Instant last_at;
+
+  void send() {
+    last.predictions = predictions;
+    if (clock) last_at = clock();
+    sink(last);
+  }
+};
+
+PartProgress::PartProgress(ProgressSink sink, ProgressClock now) {
+  if (!sink) return;
+  shared_ = std::make_shared<Shared>();
+  shared_->sink = std::move(sink);
+  shared_->clock = std::move(now);
+  if (shared_->clock) shared_->last_at = shared_->clock();
+}
+
 PartProgress PartProgress::part(double from, double to) const {
-  PartProgress inner{sink_};
+  PartProgress inner = *this;
   inner.from_ = from_ + from * (to_ - from_);
   inner.to_ = from_ + to * (to_ - from_);
   return inner;
@@ -15,9 +45,20 @@ PartProgress PartProgress::round(std::size_t index, std::size_t rounds) const {
 }
 
 void PartProgress::report(std::string_view stage, std::size_t done, std::size_t all) const {
-  if (!sink_) return;
+  if (!shared_) return;
   const double share = all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1.0;
-  sink_({.stage = stage, .done = done, .all = all, .share = from_ + share * (to_ - from_)});
+  const std::scoped_lock lock{shared_->mutex};
+  shared_->last = {.stage = stage, .done = done, .all = all, .share = from_ + share * (to_ - from_)};
+  shared_->send();
+}
+
+void PartProgress::alive() const {
+  if (!shared_) return;
+  ++shared_->predictions;
+  if (!shared_->clock) return;
+  const std::scoped_lock lock{shared_->mutex};
+  const bool is_silent = shared_->clock() - shared_->last_at >= std::chrono::seconds{tuning::kSilence_s};
+  if (is_silent && !shared_->last.stage.empty()) shared_->send();
 }
 
 }  // namespace hybridtest

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "core/message_copies.hpp"
 
 namespace hybridtest {
 namespace {
@@ -23,6 +24,11 @@ constexpr double kClockSlewMost = 4e-4;
 
 /// Motion smaller than this share of the displacement limit does not scale the tracking indicator.
 constexpr double kMotionShareMin = 0.05;
+
+void copy_feedback(const RigFeedback& from, RigFeedback& to) noexcept {
+  copy_values(from.displacement_m, to.displacement_m);
+  copy_values(from.force_n, to.force_n);
+}
 
 double period_s(const ControlLoopSettings& settings) noexcept { return settings.step_s / settings.periods_per_step; }
 
@@ -68,15 +74,16 @@ ControlLoop::ControlLoop(const ControlLoopSettings& settings, Rig& rig, SiteComp
 }
 
 Instant ControlLoop::advance(Instant now) noexcept {
-  LoopRequest request;
-  while (ports_.requests.take(request)) obey(request, now);
+  while (ports_.requests.take(request_)) obey(request_, now);
 
   // A command is overdue only when there is no target that is still to be reached.
   const bool waits_for_target = follows_targets() && !is_paused_ && !trajectory_.has_target() && !is_reached_;
   command_age_s_ = waits_for_target ? to_seconds(now - last_target_at_) : 0.0;
-  for (int periods = 0; has_due_period(now) && periods < kPeriodsPerAdvance; ++periods) run_period();
-  // In lockstep there are no control periods between two targets, so overdue commands are checked here.
-  if (!is_paced_by_time() && phase_ == Phase::running) static_cast<void>(passes_interlocks(false));
+  int periods = 0;
+  for (; has_due_period(now) && periods < kPeriodsPerAdvance; ++periods) run_period();
+  // In lockstep there are no control periods between two targets, so overdue commands are checked here. Where there was
+  // one, it has checked the same values.
+  if (!is_paced_by_time() && phase_ == Phase::running && periods == 0) static_cast<void>(passes_interlocks(false));
   return next_wake(now);
 }
 
@@ -212,7 +219,7 @@ Instant ControlLoop::next_wake(Instant now) const noexcept {
 
 void ControlLoop::run_period() noexcept {
   command_.time_s = static_cast<double>(command_.sample) * period_s_;
-  command_before_m_ = command_.displacement_m;
+  copy_values(command_.displacement_m, command_before_m_);
   motion_flags_ = MeasurementFlags::none;
   if (phase_ == Phase::running) {
     is_reached_ = trajectory_.advance(period_s_, reached_) || is_reached_;
@@ -246,7 +253,10 @@ void ControlLoop::run_period() noexcept {
 }
 
 void ControlLoop::shape_command() noexcept {
-  target_ = trajectory_.point();
+  const TrajectoryPoint& path = trajectory_.point();
+  copy_values(path.displacement_m, target_.displacement_m);
+  copy_values(path.velocity_m_per_s, target_.velocity_m_per_s);
+  copy_values(path.acceleration_m_per_s2, target_.acceleration_m_per_s2);
   if (!start_offset_.is_over()) {
     target_.displacement_m += start_offset_.displacement_m();
     target_.velocity_m_per_s += start_offset_.velocity_m_per_s();
@@ -257,7 +267,7 @@ void ControlLoop::shape_command() noexcept {
                                  target_.acceleration_m_per_s2[k], feedback_.displacement_m[k], feedback_.force_n[k]};
     wanted_command_m_[k] = compensation_.commands[static_cast<std::size_t>(k)]->command(input);
   }
-  compensated_command_m_ = wanted_command_m_;
+  copy_values(wanted_command_m_, compensated_command_m_);
   if (resume_offset_.is_over()) return;
   wanted_command_m_ += resume_offset_.displacement_m();
   resume_offset_.advance(period_s_);
@@ -276,9 +286,9 @@ void ControlLoop::limit_motion() noexcept {
 }
 
 void ControlLoop::exchange() noexcept {
-  feedback_before_ = feedback_;
+  copy_feedback(feedback_, feedback_before_);
   rig_fault_ = rig_.exchange(command_, reading_) != RigStatus::healthy;
-  feedback_ = reading_;
+  copy_feedback(reading_, feedback_);
   zero_offsets_.take_off(feedback_);
 }
 
@@ -298,7 +308,7 @@ void ControlLoop::capture_zero_offsets() noexcept {
 }
 
 void ControlLoop::compensate_forces() noexcept {
-  compensated_force_before_n_ = compensated_force_n_;
+  copy_values(compensated_force_n_, compensated_force_before_n_);
   for (Eigen::Index k = 0; k < settings_.dofs; ++k) {
     compensated_force_n_[k] = compensation_.forces[static_cast<std::size_t>(k)]->corrected_force(
         {target_.displacement_m[k], feedback_.displacement_m[k], feedback_.force_n[k]});
@@ -420,19 +430,22 @@ void ControlLoop::report_cleared() noexcept { ports_.reports.send(loop_report::C
 
 void ControlLoop::report_measurement() noexcept {
   is_reached_ = false;
-  const auto at_target = [&](const SiteVector& before, const SiteVector& after) -> SiteVector {
-    if (reached_.fraction >= 1.0) return after;
-    return before + reached_.fraction * (after - before);
+  const auto at_target = [&](const SiteVector& before, const SiteVector& after, SiteVector& value) {
+    if (reached_.fraction >= 1.0) {
+      copy_values(after, value);
+    } else {
+      value = before + reached_.fraction * (after - before);
+    }
   };
-  StepMeasurement measurement;
-  measurement.step = reached_.target.step;
-  measurement.model_time_s = reached_.target.model_time_s;
-  measurement.target_displacement_m = reached_.target.displacement_m;
-  measurement.imposed_displacement_m = command_.displacement_m;
-  measurement.measured_displacement_m = at_target(feedback_before_.displacement_m, feedback_.displacement_m);
-  measurement.force_n = at_target(compensated_force_before_n_, compensated_force_n_);
+  auto& measurement = *std::get_if<StepMeasurement>(&measurement_);
+  measurement.step = reached_.step;
+  measurement.model_time_s = reached_.model_time_s;
+  copy_values(reached_.displacement_m, measurement.target_displacement_m);
+  copy_values(command_.displacement_m, measurement.imposed_displacement_m);
+  at_target(feedback_before_.displacement_m, feedback_.displacement_m, measurement.measured_displacement_m);
+  at_target(compensated_force_before_n_, compensated_force_n_, measurement.force_n);
   measurement.flags = reached_.flags | motion_flags_;
-  ports_.reports.send(measurement);
+  ports_.reports.send(measurement_);
 }
 
 double ControlLoop::model_time_s() const noexcept { return trajectory_.point().path_time_s / settings_.time_scale; }

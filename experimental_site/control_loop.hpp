@@ -112,6 +112,8 @@ class ControlLoop final : public Node {
   EnergyErrorMonitor energy_error_;
   TrackingIndicator tracking_;
   ControlLoopPorts ports_;
+  LoopRequest request_;                        // taken last
+  LoopReport measurement_{StepMeasurement{}};  // reported last
   ControlRecord record_;
   Trajectory trajectory_;
   FadingOffset start_offset_;   // from the position of the rig to the start of the path

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/config_error.hpp"
+#include "core/message_copies.hpp"
 
 namespace hybridtest {
 
@@ -18,6 +19,7 @@ EnergyErrorMonitor::EnergyErrorMonitor(SiteMatrix initial_stiffness_n_per_m, dou
 
 void EnergyErrorMonitor::reset() noexcept {
   energy_error_j_ = 0.0;
+  ratio_ = 0.0;
   strain_energy_j_ = strain_energy_j_min_;
   has_sample_ = false;
 }
@@ -27,13 +29,14 @@ void EnergyErrorMonitor::sample(const SiteVector& target_m, const SiteVector& me
   const SiteVector error_m = target_m - measured_m;
   if (has_sample_) energy_error_j_ += 0.5 * (force_n + force_n_).dot(error_m - error_m_);
   has_sample_ = true;
-  error_m_ = error_m;
-  force_n_ = force_n;
+  copy_values(error_m, error_m_);
+  copy_values(force_n, force_n_);
   double strain_energy_j = 0.0;
   for (Eigen::Index row = 0; row < target_m.size(); ++row) {
     strain_energy_j += 0.5 * target_m[row] * initial_stiffness_n_per_m_.row(row).dot(target_m);
   }
   strain_energy_j_ = std::max(strain_energy_j_, strain_energy_j);
+  ratio_ = energy_error_j_ / strain_energy_j_;
 }
 
 }  // namespace hybridtest

@@ -21,13 +21,14 @@ class EnergyErrorMonitor {
   void sample(const SiteVector& target_m, const SiteVector& measured_m, const SiteVector& force_n) noexcept;
 
   [[nodiscard]] double energy_error_j() const noexcept { return energy_error_j_; }
-  [[nodiscard]] double ratio() const noexcept { return energy_error_j_ / strain_energy_j_; }
+  [[nodiscard]] double ratio() const noexcept { return ratio_; }
 
  private:
   SiteMatrix initial_stiffness_n_per_m_;
   double strain_energy_j_min_;
   double strain_energy_j_;
   double energy_error_j_ = 0.0;
+  double ratio_ = 0.0;
   bool has_sample_ = false;
   SiteVector error_m_;
   SiteVector force_n_;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/message_copies.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -19,10 +21,13 @@ struct Finding {
 };
 
 /// NaN counts as zero here, so that it hides no other value; the interlock `not_finite` acts on it.
-[[nodiscard]] double largest(const SiteVector& values) noexcept {
+/// @param values   a vector, or a difference of two that is not stored.
+template <class Values>
+[[nodiscard]] double largest(const Eigen::MatrixBase<Values>& values) noexcept {
   double largest = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    if (std::isfinite(values[k])) largest = std::max(largest, std::fabs(values[k]));
+    const double value = values.coeff(k);
+    if (std::isfinite(value)) largest = std::max(largest, std::fabs(value));
   }
   return largest;
 }
@@ -51,30 +56,23 @@ void count_stuck(bool is_same, double command_m, double while_moving_m, Interloc
   if (stuck.command_moved_m > while_moving_m) ++stuck.samples;
 }
 
-void remember(const SiteLimits& limits, const InterlockInput& input, InterlockState& state) noexcept {
-  const Eigen::Index dofs = input.measured_displacement_m.size();
-  if (!std::exchange(state.has_sample, true)) {
-    state.measured_displacement_m = SiteVector::Constant(dofs, kNotANumber);  // equal to no reading
-    state.measured_force_n = state.measured_displacement_m;
-  }
-  for (Eigen::Index k = 0; k < dofs; ++k) {
+void count_same_readings(const SiteLimits& limits, const InterlockInput& input, InterlockState& state) noexcept {
+  // A rig with a fault repeats its last readings: there is nothing to be learnt of its sensors.
+  const bool compares = state.has_sample && !input.rig_fault;
+  for (Eigen::Index k = 0; k < input.measured_displacement_m.size(); ++k) {
     const auto dof = static_cast<std::size_t>(k);
     const double command_m = input.command_displacement_m[k];
-    // A rig with a fault repeats its last readings: there is nothing to be learnt of its sensors.
-    const auto is_same = [&](double value, double before) { return value == before && !input.rig_fault; };
-    count_stuck(is_same(input.measured_displacement_m[k], state.measured_displacement_m[k]), command_m,
+    count_stuck(compares && input.measured_displacement_m[k] == state.measured_displacement_m[k], command_m,
                 limits.stuck_while_moving_m, state.displacement_stuck[dof]);
-    count_stuck(is_same(input.force_n[k], state.measured_force_n[k]), command_m, limits.stuck_while_moving_m,
+    count_stuck(compares && input.force_n[k] == state.measured_force_n[k], command_m, limits.stuck_while_moving_m,
                 state.force_stuck[dof]);
   }
-  state.measured_displacement_m = input.measured_displacement_m;
-  state.measured_force_n = input.force_n;
 }
 
-[[nodiscard]] Finding find_step(const SiteVector& value, const SiteVector& before, bool is_new,
-                                const std::optional<double>& limit) noexcept {
-  if (!is_new || before.size() != value.size()) return {};
-  return against(largest(value - before), limit);
+void remember(const InterlockInput& input, InterlockState& state) noexcept {
+  state.has_sample = true;
+  copy_values(input.measured_displacement_m, state.measured_displacement_m);
+  copy_values(input.force_n, state.measured_force_n);
 }
 
 [[nodiscard]] Finding find_stuck(const SiteLimits& limits, const InterlockInput& input,
@@ -92,19 +90,24 @@ void remember(const SiteLimits& limits, const InterlockInput& input, InterlockSt
 
 [[nodiscard]] double displacement_of(const InterlockInput& input) noexcept {
   const double measured_m = largest(input.measured_displacement_m);
-  return input.phase == SitePhase::resting ? measured_m : std::fmax(measured_m, largest(input.target_displacement_m));
+  return input.phase == SitePhase::resting ? measured_m : std::max(measured_m, largest(input.target_displacement_m));
 }
 
 /// The value measured one control sample earlier.
 struct Before {
-  SiteVector displacement_m;
-  SiteVector force_n;
+  bool is_known;
+  const SiteVector& displacement_m;
+  const SiteVector& force_n;
 };
 
-/// Inlined where the kind is known, so that no interlock costs the choice between all of them.
-[[nodiscard, gnu::always_inline]] inline Finding find(InterlockKind kind, const SiteLimits& limits,
-                                                      const InterlockInput& input, const Before& before,
-                                                      const InterlockState& state) noexcept {
+[[nodiscard]] Finding find_step(const InterlockInput& input, const SiteVector& value, bool is_known,
+                                const SiteVector& before, const std::optional<double>& limit) noexcept {
+  if (!limit || !input.is_new_sample || !is_known || before.size() != value.size()) return {};
+  return against(largest(value - before), *limit);
+}
+
+[[nodiscard]] Finding find(InterlockKind kind, const SiteLimits& limits, const InterlockInput& input,
+                           const Before& before, const InterlockState& state) noexcept {
   switch (kind) {
     case InterlockKind::not_finite: return {true, !is_finite(input), kNotANumber, 0.0};
     case InterlockKind::rig_status: return {true, input.rig_fault, 0.0, 0.0};
@@ -115,10 +118,10 @@ struct Before {
     case InterlockKind::displacement: return against(displacement_of(input), limits.displacement_m);
     case InterlockKind::force: return against(largest(input.force_n), limits.force_n);
     case InterlockKind::displacement_step:
-      return find_step(input.measured_displacement_m, before.displacement_m, input.is_new_sample,
+      return find_step(input, input.measured_displacement_m, before.is_known, before.displacement_m,
                        limits.displacement_step_m);
     case InterlockKind::force_step:
-      return find_step(input.force_n, before.force_n, input.is_new_sample, limits.force_step_n);
+      return find_step(input, input.force_n, before.is_known, before.force_n, limits.force_step_n);
     case InterlockKind::stuck_sensor: return find_stuck(limits, input, state);
     default: break;
   }
@@ -126,7 +129,8 @@ struct Before {
   switch (kind) {
     case InterlockKind::velocity: return against(largest(input.target_velocity_m_per_s), limits.velocity_m_per_s);
     case InterlockKind::tracking_error:
-      return against(largest(input.target_displacement_m - input.measured_displacement_m), limits.tracking_error_m);
+      if (!limits.tracking_error_m) return {};
+      return against(largest(input.target_displacement_m - input.measured_displacement_m), *limits.tracking_error_m);
     case InterlockKind::energy_error: return against(std::fabs(input.energy_error_ratio), limits.energy_error_ratio);
     case InterlockKind::tracking_indicator:
       return against(std::fabs(input.tracking_lag_sine), limits.tracking_indicator);
@@ -157,14 +161,44 @@ void add(InterlockVerdict& verdict, const InterlockTrip& trip) noexcept {
   *place = trip;
 }
 
-}  // namespace
+[[nodiscard]] bool is_within(double magnitude, const std::optional<double>& limit) noexcept {
+  return !limit || magnitude <= *limit;
+}
 
-InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
-                       InterlockState& state) noexcept {
-  const Before before = state.has_sample ? Before{state.measured_displacement_m, state.measured_force_n} : Before{};
-  if (input.is_new_sample) remember(limits, input, state);
-  InterlockVerdict verdict;
-#pragma GCC unroll 13
+/// Whether nothing can have tripped, in one pass over the values. Nearly every sample ends here. Where a value is not
+/// finite, a rule has no action or a value is not judged in this phase, false says nothing: conclude() finds out.
+[[nodiscard]] bool is_plainly_safe(const SiteLimits& limits, const InterlockInput& input, const Before& before,
+                                   const InterlockState& state) noexcept {
+  if (input.rig_fault || input.emergency_stop) return false;
+  if (input.expects_commands && !(input.command_age_s <= limits.command_age_s)) return false;
+  if (!is_within(std::fabs(input.energy_error_ratio), limits.energy_error_ratio)) return false;
+  if (!is_within(std::fabs(input.tracking_lag_sine), limits.tracking_indicator)) return false;
+  if (find_stuck(limits, input, state).is_passed) return false;
+  for (Eigen::Index k = 0; k < input.measured_displacement_m.size(); ++k) {
+    const double target_m = input.target_displacement_m[k];
+    const double measured_m = input.measured_displacement_m[k];
+    const double force_n = input.force_n[k];
+    // A sum is finite where all its terms are.
+    const double sum = target_m + measured_m + force_n + input.command_displacement_m[k];
+    if (!std::isfinite(sum)) return false;
+    if (std::max(std::fabs(target_m), std::fabs(measured_m)) > limits.displacement_m) return false;
+    if (std::fabs(force_n) > limits.force_n) return false;
+    if (!(std::fabs(input.target_velocity_m_per_s[k]) <= limits.velocity_m_per_s)) return false;
+    if (!is_within(std::fabs(target_m - measured_m), limits.tracking_error_m)) return false;
+    if (!before.is_known || !input.is_new_sample) continue;
+    if (!is_within(std::fabs(measured_m - before.displacement_m[k]), limits.displacement_step_m)) return false;
+    if (!is_within(std::fabs(force_n - before.force_n[k]), limits.force_step_n)) return false;
+  }
+  return true;
+}
+
+[[nodiscard]] bool has_tripped(const InterlockState& state) noexcept {
+  return std::ranges::any_of(state.latches, &InterlockState::Latch::is_tripped);
+}
+
+/// Latches what exceeds its limit, and clears what may clear.
+[[gnu::noinline]] void conclude(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
+                                const Before& before, InterlockState& state, InterlockVerdict& verdict) noexcept {
   for (std::size_t i = 0; i < kInterlockCount; ++i) {
     const InterlockRule& rule = rules[i];
     if (rule.action == SafetyAction::none) continue;
@@ -182,6 +216,20 @@ InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, co
     verdict.action = std::max(verdict.action, rule.action);
     if (rule.action == verdict.action) verdict.is_final = verdict.is_final || is_final(rule);
   }
+  state.has_tripped = has_tripped(state);
+}
+
+}  // namespace
+
+InterlockVerdict judge(const SiteLimits& limits, const InterlockRules& rules, const InterlockInput& input,
+                       InterlockState& state) noexcept {
+  const Before before{state.has_sample, state.measured_displacement_m, state.measured_force_n};
+  if (input.is_new_sample) count_same_readings(limits, input, state);
+  InterlockVerdict verdict;
+  if (state.has_tripped || !is_plainly_safe(limits, input, before, state)) {
+    conclude(limits, rules, input, before, state, verdict);
+  }
+  if (input.is_new_sample) remember(input, state);
   return verdict;
 }
 
@@ -195,7 +243,7 @@ std::optional<InterlockLevel> level_of(InterlockKind kind, const SiteLimits& lim
     case InterlockKind::stuck_sensor: return {};
     default: break;
   }
-  const Finding finding = find(kind, limits, input, {measured_displacement_m_before, force_n_before}, {});
+  const Finding finding = find(kind, limits, input, {true, measured_displacement_m_before, force_n_before}, {});
   if (!finding.is_judged) return {};
   return InterlockLevel{finding.observed, finding.limit};
 }
@@ -207,6 +255,7 @@ bool reset_by_operator(const InterlockRules& rules, InterlockState& state) noexc
     has_reset = has_reset || state.latches[i].is_tripped;
     state.latches[i] = {};
   }
+  state.has_tripped = has_tripped(state);
   return has_reset;
 }
 

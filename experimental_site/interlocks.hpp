@@ -102,6 +102,7 @@ struct InterlockState {
     double clear_for_s = 0.0;  // time since its condition was last present
   };
   std::array<Latch, kInterlockCount> latches{};
+  bool has_tripped = false;  // one of them
 
   bool has_sample = false;
   SiteVector measured_displacement_m;  // of the sample before
@@ -118,18 +119,18 @@ struct InterlockState {
 
 /// An interlock that tripped with this sample.
 struct InterlockTrip {
-  InterlockKind kind = InterlockKind::not_finite;
-  SafetyAction action = SafetyAction::none;
-  bool is_final = true;   // never clears: the test cannot go on
-  double observed = 0.0;  // in the fault's unit; NaN for `not_finite`
-  double limit = 0.0;
+  InterlockKind kind;
+  SafetyAction action;
+  bool is_final;    // never clears: the test cannot go on
+  double observed;  // in the fault's unit; NaN for `not_finite`
+  double limit;
 };
 
 struct InterlockVerdict {
-  SafetyAction action = SafetyAction::none;  // the most severe one in force
-  bool is_final = false;                     // one that never clears is in force with that action
-  std::array<InterlockTrip, kInterlockCount> trips{};
-  int trip_count = 0;        // new ones, most severe first
+  SafetyAction action = SafetyAction::none;          // the most severe one in force
+  bool is_final = false;                             // one that never clears is in force with that action
+  std::array<InterlockTrip, kInterlockCount> trips;  // new ones, most severe first; the rest is not set
+  int trip_count = 0;
   bool has_cleared = false;  // one cleared with this sample
 };
 

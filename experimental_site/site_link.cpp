@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/refused_resumption.hpp"
 #include "core/rehearsal_answer.hpp"
 
 namespace hybridtest {
@@ -12,18 +13,10 @@ namespace {
 /// Of the estimate of the drift. Long enough for several hundred commands at the rates of real-time tests.
 constexpr Duration kClockWindow = std::chrono::milliseconds{500};
 
-TargetPoint target_of(const CommandPoint& point) {
-  return {.step = point.step,
-          .model_time_s = point.model_time_s,
-          .displacement_m = point.displacement_m,
-          .velocity_m_per_s = point.velocity_m_per_s,
-          .acceleration_m_per_s2 = point.acceleration_m_per_s2};
-}
-
 }  // namespace
 
 SiteLink::SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence, MembershipPorts membership,
-                   SiteLinkPorts ports, RowSink& steps)
+                   SiteLinkPorts ports, RowSink& steps, std::size_t remembered)
     : index_{index},
       dofs_{dofs},
       mode_{mode},
@@ -31,6 +24,7 @@ SiteLink::SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presenc
       membership_{presence, membership},
       ports_{ports},
       steps_{steps},
+      memory_{remembered, dofs},
       row_(3 + 3 * static_cast<std::size_t>(dofs)) {}
 
 Instant SiteLink::advance(Instant now) noexcept {
@@ -50,8 +44,7 @@ void SiteLink::take_messages(Instant now) noexcept {
 
 Instant SiteLink::pass_reports_on(Instant now) noexcept {
   const Instant wake = presence_.advance(now);  // sends the state that the messages led to
-  LoopReport report;
-  while (ports_.reports.take(report)) handle(report, now);
+  while (ports_.reports.take(report_)) handle(report_, now);
   if (!is_done()) return wake;
   static_cast<void>(presence_.advance(now));  // sends the final state
   return kNever;
@@ -65,7 +58,12 @@ void SiteLink::follow(Request request) noexcept {
   switch (request) {
     case Request::arm: ports_.requests.send(loop_request::Arm{}); break;
     case Request::start:
-      ports_.requests.send(loop_request::Start{});
+      // Of a resumed test the loop has paused, and goes on.
+      if (membership_.has_successor()) {
+        ports_.requests.send(loop_request::Resume{});
+      } else {
+        ports_.requests.send(loop_request::Start{});
+      }
       presence_.set_state(LifecycleState::running);
       break;
     case Request::pause: ports_.requests.send(loop_request::Pause{}); break;
@@ -100,11 +98,24 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   if (presence_.state() != LifecycleState::running) return;
   const Step newest = command.newest().step;
   // A specimen has no state to go back to.
-  if (newest < passed_on_ || command.is_trial || !command.fits(dofs_)) return;
+  if (command.is_trial || !command.fits(dofs_)) return;
+  if (newest < passed_on_ && !membership_.has_successor()) return;
+  if (membership_.has_successor()) {
+    if (const CommandPoint* other = memory_.first_other(command, passed_on_)) {
+      refuse(Recall::different, *other, now);
+      return;
+    }
+  }
+  // A copy of a command that is being followed: its answer will tell the times of the first one.
+  if (!membership_.has_successor() && newest == passed_on_ && answer_.step != newest) return;
   command_send_time_ = command.send_time;
   receive_time_ = now.time_since_epoch();
+  if (membership_.has_successor() && newest <= passed_on_) {
+    answer_again(command.newest(), now);
+    return;
+  }
   if (newest == passed_on_) {
-    if (measured_.step == newest) answer(now, MeasurementFlags::repeated);
+    if (answer_.step == newest) answer(now, MeasurementFlags::repeated);
     return;
   }
   if (mode_ == CouplingMode::real_time && passed_on_ != kNoStep) {
@@ -113,10 +124,22 @@ void SiteLink::pass_on(const DisplacementCommand& command, Instant now) noexcept
   }
   for (int i = command.point_count - 1; i >= 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
-    if (point.step != passed_on_ + 1) continue;
-    if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
-    passed_on_ = point.step;
+    if (point.step == passed_on_ + 1 && !pass_target_on(point)) return;
   }
+}
+
+void SiteLink::answer_again(const CommandPoint& point, Instant now) noexcept {
+  switch (const Recall recall = memory_.recall(point, 0, answer_)) {
+    case Recall::answered: send_answer(now, answer_.flags | MeasurementFlags::repeated); break;
+    case Recall::pending: break;  // answered once it is measured
+    case Recall::different:
+    case Recall::forgotten: refuse(recall, point, now); break;
+  }
+}
+
+void SiteLink::refuse(Recall recall, const CommandPoint& point, Instant now) noexcept {
+  report_refused_resumption(recall, point, memory_, presence_, now);
+  begin_stop(StopReason::resume_refused);
 }
 
 void SiteLink::pass_on_in_time(const DisplacementCommand& command) noexcept {
@@ -124,10 +147,21 @@ void SiteLink::pass_on_in_time(const DisplacementCommand& command) noexcept {
   const int oldest = passed_on_ == 0 ? 0 : command.point_count - 1;
   for (int i = oldest; i >= 0; --i) {
     const CommandPoint& point = command.points[static_cast<std::size_t>(i)];
-    if (point.step <= passed_on_) continue;
-    if (!ports_.requests.send(loop_request::Target{target_of(point)})) return;
-    passed_on_ = point.step;
+    if (point.step > passed_on_ && !pass_target_on(point)) return;
   }
+}
+
+bool SiteLink::pass_target_on(const CommandPoint& point) noexcept {
+  TargetPoint& target = std::get_if<loop_request::Target>(&target_)->point;
+  target.step = point.step;
+  target.model_time_s = point.model_time_s;
+  target.displacement_m = point.displacement_m;
+  target.velocity_m_per_s = point.velocity_m_per_s;
+  target.acceleration_m_per_s2 = point.acceleration_m_per_s2;
+  if (!ports_.requests.send(target_)) return false;
+  passed_on_ = point.step;
+  memory_.keep_command(point.step, 0, point.displacement_m);
+  return true;
 }
 
 void SiteLink::follow_clock(const DisplacementCommand& command, Instant now) noexcept {
@@ -175,38 +209,44 @@ void SiteLink::handle(const LoopReport& report, Instant now) noexcept {
 }
 
 void SiteLink::take_measurement(const StepMeasurement& measurement, Instant now) noexcept {
-  measured_ = measurement;
-  presence_.set_last_step(measured_.step);
-  record_step();
+  answer_.step = measurement.step;
+  answer_.model_time_s = measurement.model_time_s;
+  answer_.imposed_displacement_m = measurement.imposed_displacement_m;
+  answer_.measured_displacement_m = measurement.measured_displacement_m;
+  answer_.force_n = measurement.force_n;
+  measured_flags_ = measurement.flags;
+  memory_.keep_answer(measurement.step, 0, measurement.model_time_s, measurement.imposed_displacement_m,
+                      measurement.measured_displacement_m, measurement.force_n, measurement.flags);
+  presence_.set_last_step(measurement.step);
+  record_step(measurement);
   if (presence_.state() == LifecycleState::running) answer(now, MeasurementFlags::none);
 }
 
 void SiteLink::answer(Instant now, MeasurementFlags flags) noexcept {
+  answer_.iteration = 0;  // a specimen is not tried
+  send_answer(now, measured_flags_ | flags);
+}
+
+void SiteLink::send_answer(Instant now, MeasurementFlags flags) noexcept {
   answer_.substructure = index_;
   answer_.sender = presence_.identity().incarnation;
-  answer_.step = measured_.step;
-  answer_.iteration = 0;  // a specimen is not tried
-  answer_.model_time_s = measured_.model_time_s;
-  answer_.imposed_displacement_m = measured_.imposed_displacement_m;
-  answer_.measured_displacement_m = measured_.measured_displacement_m;
-  answer_.force_n = measured_.force_n;
-  answer_.flags = measured_.flags | flags;
+  answer_.flags = flags;
   answer_.receive_time = receive_time_;
   answer_.send_time = now.time_since_epoch();
   answer_.command_send_time = command_send_time_;
   ports_.measurements.send(answer_);
 }
 
-void SiteLink::record_step() noexcept {
+void SiteLink::record_step(const StepMeasurement& measurement) noexcept {
   std::size_t next = 0;
-  row_[next++] = static_cast<double>(measured_.step);
-  row_[next++] = measured_.model_time_s;
+  row_[next++] = static_cast<double>(measurement.step);
+  row_[next++] = measurement.model_time_s;
   for (Eigen::Index k = 0; k < dofs_; ++k) {
-    row_[next++] = measured_.target_displacement_m[k];
-    row_[next++] = measured_.measured_displacement_m[k];
-    row_[next++] = measured_.force_n[k];
+    row_[next++] = measurement.target_displacement_m[k];
+    row_[next++] = measurement.measured_displacement_m[k];
+    row_[next++] = measurement.force_n[k];
   }
-  row_[next++] = static_cast<double>(static_cast<std::uint32_t>(measured_.flags));
+  row_[next++] = static_cast<double>(static_cast<std::uint32_t>(measurement.flags));
   steps_.append(row_);
 }
 

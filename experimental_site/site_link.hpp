@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/answer_memory.hpp"
 #include "core/membership.hpp"
 #include "core/messages.hpp"
 #include "core/node.hpp"
@@ -26,10 +27,14 @@ struct SiteLinkPorts {
 /// In real time it passes every new target on, also behind a gap, and keeps the control periods in step with the clock
 /// of the coordinator: the smallest of `receive_time - send_time` in a window of time is the difference of the clocks
 /// plus the shortest latency, and its change since the first window is the drift.
+///
+/// A coordinator that was resumed from its recording may command steps again that were imposed. They are answered from
+/// memory, and nothing moves; where it commands another displacement than was imposed, the link ends the test.
 class SiteLink final : public Node {
  public:
+  /// @param remembered   answers that are kept for a coordinator that is resumed.
   SiteLink(SubstructureIndex index, int dofs, CouplingMode mode, Presence& presence, MembershipPorts membership,
-           SiteLinkPorts ports, RowSink& steps);
+           SiteLinkPorts ports, RowSink& steps, std::size_t remembered = 0);
 
   /// Both halves, for a link whose loop has its own thread.
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -53,12 +58,19 @@ class SiteLink final : public Node {
   void follow(Request request) noexcept;
   void begin_stop(StopReason reason) noexcept;
   void pass_on(const DisplacementCommand& command, Instant now) noexcept;
+  /// A step that was imposed, for a resumed coordinator.
+  void answer_again(const CommandPoint& point, Instant now) noexcept;
+  /// Ends the test: the resumed coordinator asks for what cannot be.
+  void refuse(Recall recall, const CommandPoint& point, Instant now) noexcept;
   void pass_on_in_time(const DisplacementCommand& command) noexcept;
   void follow_clock(const DisplacementCommand& command, Instant now) noexcept;
+  /// @return false when it could not.
+  bool pass_target_on(const CommandPoint& point) noexcept;
   void handle(const LoopReport& report, Instant now) noexcept;
   void take_measurement(const StepMeasurement& measurement, Instant now) noexcept;
   void answer(Instant now, MeasurementFlags flags) noexcept;
-  void record_step() noexcept;
+  void send_answer(Instant now, MeasurementFlags flags) noexcept;
+  void record_step(const StepMeasurement& measurement) noexcept;
 
   SubstructureIndex index_;
   int dofs_;
@@ -69,6 +81,7 @@ class SiteLink final : public Node {
   RowSink& steps_;
   StopReason requested_stop_ = StopReason::none;
   StopReason stop_reason_ = StopReason::none;
+  AnswerMemory memory_;
   Step passed_on_ = kNoStep;      // newest target given to the loop
   Duration command_send_time_{};  // of the newest command, coordinator's clock
   Duration receive_time_{};
@@ -76,9 +89,12 @@ class SiteLink final : public Node {
   Instant window_began_ = kNever;
   Duration least_delay_ = Duration::max();  // in the window
   std::optional<Duration> first_delay_;     // least of the first window
-  StepMeasurement measured_;                // newest answer
-  DisplacementCommand command_;             // the ones being taken and sent; kept, so that their memory is used again
-  ForceMeasurement answer_;
+  // The ones being taken and sent; kept, so that their memory is used again.
+  DisplacementCommand command_;
+  LoopRequest target_{loop_request::Target{}};
+  LoopReport report_;
+  ForceMeasurement answer_;                                   // newest one, also for repeats
+  MeasurementFlags measured_flags_ = MeasurementFlags::none;  // of it
   std::vector<double> row_;
 };
 

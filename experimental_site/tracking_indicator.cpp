@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/message_copies.hpp"
+
 namespace hybridtest {
 
 TrackingIndicator::TrackingIndicator(int dofs, double period_s, double window_s, double displacement_m_min) noexcept
@@ -25,13 +27,14 @@ void TrackingIndicator::sample(const SiteVector& wanted_m, const SiteVector& mea
       into(mean_square_m2_, k, wanted_m[k] * wanted_m[k]);
       into(mean_change_square_m2_, k, change_m * change_m);
     }
+    lag_sine_ = largest_lag_sine();
   }
   has_sample_ = true;
-  wanted_m_ = wanted_m;
-  measured_m_ = measured_m;
+  copy_values(wanted_m, wanted_m_);
+  copy_values(measured_m, measured_m_);
 }
 
-double TrackingIndicator::lag_sine() const noexcept {
+double TrackingIndicator::largest_lag_sine() const noexcept {
   double largest = 0.0;
   for (Eigen::Index k = 0; k < mean_growth_m2_.size(); ++k) {
     const double scale_m2 =

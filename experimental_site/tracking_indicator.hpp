@@ -28,13 +28,16 @@ class TrackingIndicator {
   void sample(const SiteVector& wanted_m, const SiteVector& measured_m) noexcept;
 
   /// Of the degree of freedom where it is largest in magnitude, with its sign [-].
-  [[nodiscard]] double lag_sine() const noexcept;
+  [[nodiscard]] double lag_sine() const noexcept { return lag_sine_; }
 
  private:
+  [[nodiscard]] double largest_lag_sine() const noexcept;
+
   double kept_ = 0.0;                  // share of a mean that remains after one sample
   double square_m2_min_ = 0.0;         // added to mean(c^2)
   double change_square_m2_min_ = 0.0;  // added to mean(dc^2)
   bool has_sample_ = false;
+  double lag_sine_ = 0.0;
   SiteVector wanted_m_;
   SiteVector measured_m_;
   SiteVector mean_growth_m2_;

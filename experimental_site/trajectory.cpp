@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/message_copies.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -17,6 +19,14 @@ constexpr double kJoinBefore = 0.8;
 
 /// Below this rate the path counts as held.
 constexpr double kHeldBelow = 0.05;
+
+void copy_target(const TargetPoint& from, TargetPoint& to) noexcept {
+  to.step = from.step;
+  to.model_time_s = from.model_time_s;
+  copy_values(from.displacement_m, to.displacement_m);
+  copy_values(from.velocity_m_per_s, to.velocity_m_per_s);
+  copy_values(from.acceleration_m_per_s2, to.acceleration_m_per_s2);
+}
 
 }  // namespace
 
@@ -74,8 +84,8 @@ void Trajectory::set_target(const TargetPoint& target) noexcept {
 }
 
 void Trajectory::adopt(const TargetPoint& target) noexcept {
-  target_ = target;
-  known_ = target;
+  copy_target(target, target_);
+  if (settings_.keeps_time) known_ = target;
   has_target_ = true;
   aims_ = false;
   end_velocity_m_per_s_ = target.velocity_m_per_s / time_scale_;
@@ -84,8 +94,8 @@ void Trajectory::adopt(const TargetPoint& target) noexcept {
 
 void Trajectory::begin_segment() noexcept {
   segment_begin_s_ = path_time_s_;
-  begin_displacement_m_ = point_.displacement_m;
-  begin_velocity_m_per_s_ = slope_m_per_s_;
+  copy_values(point_.displacement_m, begin_displacement_m_);
+  copy_values(slope_m_per_s_, begin_velocity_m_per_s_);
 }
 
 void Trajectory::learn_target(const TargetPoint& target) noexcept {
@@ -142,11 +152,9 @@ void Trajectory::aim() noexcept {
 void Trajectory::miss_target(ReachedTarget& reached) noexcept {
   evaluate();  // at the end of the step
   has_missed_ = true;
-  reached.target = {.step = last_step_ + 1,
-                    .model_time_s = (interval_begin_s_ + step_s_) / time_scale_,
-                    .displacement_m = point_.displacement_m,
-                    .velocity_m_per_s = slope_m_per_s_ * time_scale_,
-                    .acceleration_m_per_s2 = point_.acceleration_m_per_s2 * (time_scale_ * time_scale_)};
+  reached.step = last_step_ + 1;
+  reached.model_time_s = (interval_begin_s_ + step_s_) / time_scale_;
+  reached.displacement_m = point_.displacement_m;
   flags_ |= MeasurementFlags::extrapolated | MeasurementFlags::late | MeasurementFlags::missed;
   if (last_step_ + 1 - known_.step > settings_.missed_most) flags_ |= MeasurementFlags::held;
   interval_begin_s_ += step_s_;
@@ -196,7 +204,9 @@ bool Trajectory::advance(double interval_s, ReachedTarget& reached) noexcept {
     evaluate();
     return false;
   }
-  reached.target = target_;
+  reached.step = target_.step;
+  reached.model_time_s = target_.model_time_s;
+  copy_values(target_.displacement_m, reached.displacement_m);
   reached.fraction = path_time_s_ > before_s ? (target_time_s - before_s) / (path_time_s_ - before_s) : 1.0;
   reached.flags = std::exchange(flags_, MeasurementFlags::none);
   leave_target();
@@ -234,12 +244,12 @@ void Trajectory::leave_target() noexcept {
   has_target_ = false;
   interval_begin_s_ += step_s_;
   segment_begin_s_ = interval_begin_s_;
-  begin_displacement_m_ = target_.displacement_m;
-  begin_velocity_m_per_s_ = end_velocity_m_per_s_;
+  copy_values(target_.displacement_m, begin_displacement_m_);
+  copy_values(end_velocity_m_per_s_, begin_velocity_m_per_s_);
   if (std::exchange(has_left_target_, true)) {
     begin_jerk_m_per_s3_ = (end_acceleration_m_per_s2_ - begin_acceleration_m_per_s2_) / step_s_;
   }
-  begin_acceleration_m_per_s2_ = end_acceleration_m_per_s2_;
+  copy_values(end_acceleration_m_per_s2_, begin_acceleration_m_per_s2_);
 }
 
 void Trajectory::halt() noexcept {

@@ -19,7 +19,9 @@ struct TrajectoryPoint {
 
 /// A target passed in the last sampling interval, for the measurement that belongs to it.
 struct ReachedTarget {
-  TargetPoint target;
+  Step step = kNoStep;
+  double model_time_s = 0.0;
+  SiteVector displacement_m;
   /// Share of the last sampling interval at which the target was passed, in (0, 1]; 1 when the
   /// sample falls on it.
   double fraction = 1.0;

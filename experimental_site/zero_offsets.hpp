@@ -26,6 +26,7 @@ class ZeroOffsets {
     mean_.force_n.setZero();
     offset_ = mean_;
     samples_ = 0;
+    has_offset_ = false;
   }
   /// Values that are not finite are left out; the interlock `not_finite` acts on them.
   void capture(const RigFeedback& feedback) noexcept {
@@ -34,11 +35,14 @@ class ZeroOffsets {
     const double share = 1.0 / static_cast<double>(samples_);
     mean_.displacement_m += share * (feedback.displacement_m - mean_.displacement_m);
     mean_.force_n += share * (feedback.force_n - mean_.force_n);
-    if (is_captured()) offset_ = mean_;
+    if (!is_captured()) return;
+    offset_ = mean_;
+    has_offset_ = true;
   }
   [[nodiscard]] bool is_captured() const noexcept { return samples_ >= wanted_samples_; }
 
   void take_off(RigFeedback& feedback) const noexcept {
+    if (!has_offset_) return;
     feedback.displacement_m -= offset_.displacement_m;
     feedback.force_n -= offset_.force_n;
   }
@@ -50,6 +54,7 @@ class ZeroOffsets {
   RigFeedback mean_;
   RigFeedback offset_;
   std::int64_t samples_ = 0;
+  bool has_offset_ = false;
 };
 
 }  // namespace hybridtest

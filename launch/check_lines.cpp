@@ -429,6 +429,13 @@ void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out) 
 
 void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
   if (scenario.opensees) return;  // the structure is not known here
+  if (scenario.substructures.size() > kMaxSubstructures) {
+    // The loop of each site is closed around all others: as many problems as sites, each of the size of all.
+    fmt::print(stderr,
+               "the stability is not judged: more than {} substructures; `hybridtest check` does, which takes long\n",
+               kMaxSubstructures);
+    return;
+  }
   const std::string found = instability(scenario);
   if (found.empty()) return;
   if (!even_if_unstable && has_known_rig_elsewhere(scenario)) {

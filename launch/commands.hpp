@@ -12,6 +12,7 @@ using CommandAction = std::function<int()>;
 void add_new_command(CLI::App& app, CommandAction& action);
 void add_check_command(CLI::App& app, CommandAction& action);
 void add_import_command(CLI::App& app, CommandAction& action);
+void add_participants_command(CLI::App& app, CommandAction& action);
 void add_run_command(CLI::App& app, CommandAction& action);
 void add_simulate_command(CLI::App& app, CommandAction& action);
 void add_watch_command(CLI::App& app, CommandAction& action);
@@ -25,6 +26,8 @@ void add_report_command(CLI::App& app, CommandAction& action);
 void add_runs_command(CLI::App& app, CommandAction& action);
 void add_replay_command(CLI::App& app, CommandAction& action);
 void add_study_command(CLI::App& app, CommandAction& action);
+void add_doctor_command(CLI::App& app, CommandAction& action);
+void add_discovery_server_command(CLI::App& app, CommandAction& action);
 void add_blind_command(CLI::App& app, CommandAction& action);
 void add_sweep_command(CLI::App& app, CommandAction& action);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/event_text.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
 #include "runtime/executor.hpp"
@@ -27,6 +28,7 @@ int send_control(const ControlOptions& options, ControlVerb verb) {
     const Instant now = clock.now();
     const OperatorRequest& path = paths.best();
     if (path.found().empty()) return now.time_since_epoch() > kDiscovery;
+    if (path.is_refused()) return true;
     if (now - path.last_discovery() > kPatience) return true;
     const bool knows_all = !path.stops() || path.is_complete() || now - path.last_discovery() > kMore;
     return knows_all && path.is_obeyed();
@@ -37,6 +39,12 @@ int send_control(const ControlOptions& options, ControlVerb verb) {
   if (path.found().empty()) {
     fmt::print(stderr, "{}: no participant of this test was found; check the test name, --domain and --peer\n",
                options.test_name);
+    return kExitConfiguration;
+  }
+  if (path.is_refused()) {
+    Event refused;
+    refused.code = EventCode::pause_refused;
+    fmt::print(stderr, "{}: {}\n", options.test_name, describe(refused));
     return kExitConfiguration;
   }
   std::vector<std::string> obeyed;

@@ -5,11 +5,12 @@
 #include <string>
 
 #include "diagnosis/progress.hpp"
+#include "runtime/executor.hpp"
 #include "scenario/scenario.hpp"
 
 namespace hybridtest {
 
-/// `diagnosis  43 %: effects fitted one by one, 12 of 42`
+/// `diagnosis  43 %: effects fitted one by one, 12 of 42 (8310 predictions)`
 [[nodiscard]] std::string progress_line(const ProgressReport& report);
 
 /// The display of a running diagnosis: one line, rewritten in place; on a terminal only.
@@ -28,6 +29,7 @@ class DiagnosisProgress {
  private:
   std::FILE* out_;
   std::string shown_;
+  ProcessClock clock_;
 };
 
 /// For `--diagnose`: diagnose_run() with its progress on standard error and the results on standard output.

@@ -22,8 +22,11 @@ int main(int argc, char** argv) {
   hybridtest::add_new_command(app, action);
   hybridtest::add_check_command(app, action);
   hybridtest::add_import_command(app, action);
+  hybridtest::add_participants_command(app, action);
   hybridtest::add_run_command(app, action);
   hybridtest::add_simulate_command(app, action);
+  hybridtest::add_doctor_command(app, action);
+  hybridtest::add_discovery_server_command(app, action);
   hybridtest::add_watch_command(app, action);
   hybridtest::add_control_commands(app, action);
   hybridtest::add_effects_command(app, action);

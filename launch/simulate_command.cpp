@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <atomic>
@@ -24,9 +25,12 @@
 #include "runtime/recording_watch.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/simulation.hpp"
+#include "transport/simulated/site_latencies.hpp"
 
 namespace hybridtest {
 namespace {
+
+constexpr double kLatencyMost_us = 1e7;
 
 struct SimulateOptions {
   std::filesystem::path scenario_file;
@@ -36,6 +40,8 @@ struct SimulateOptions {
   bool no_report = false;
   std::uint64_t seed = 0;
   double latency_us = 50.0;
+  double latency_spread = 0.0;
+  std::vector<std::string> site_latencies;
   double jitter_us = 0.0;
   double loss = 0.0;
   double duplication = 0.0;
@@ -64,10 +70,48 @@ std::pair<std::string, std::vector<Duration>> id_and_times(const std::string& te
   return {parts[0], durations};
 }
 
+/// `id:number`, in microseconds.
+simulated::SiteLatency site_latency(const std::string& text, const Scenario& scenario) {
+  const std::vector<std::string> parts = CLI::detail::split(text, ':');
+  const auto fail = [&](const std::string& what) { throw ConfigError{"--site-latency " + text + ": " + what}; };
+  if (parts.size() != 2) fail("expected ID:MICROSECONDS");
+  if (scenario.find(parts[0]) == nullptr) fail("the scenario has no substructure '" + parts[0] + "'");
+  double latency_us = 0.0;
+  if (!CLI::detail::lexical_cast(parts[1], latency_us) || !(latency_us >= 0.0) || latency_us > kLatencyMost_us) {
+    fail("'" + parts[1] + "' is not a latency; expected 0 to 1e7 us");
+  }
+  return {parts[0], from_seconds(latency_us * 1e-6)};
+}
+
+/// Drawn for all substructures, or none; and those that are given.
+std::vector<simulated::SiteLatency> site_latencies(const SimulateOptions& options, const Scenario& scenario) {
+  std::vector<simulated::SiteLatency> latencies;
+  for (const std::string& text : options.site_latencies) latencies.push_back(site_latency(text, scenario));
+  if (options.latency_spread == 0.0) return latencies;
+  std::vector<std::string> sites;
+  for (const SubstructureScenario& substructure : scenario.substructures) sites.push_back(substructure.id);
+  const auto drawn = simulated::draw_site_latencies(options.seed, sites, from_seconds(options.latency_us * 1e-6),
+                                                    options.latency_spread);
+  latencies.insert(latencies.end(), drawn.begin(), drawn.end());  // of two for one site the first counts
+  return latencies;
+}
+
+/// For the person at the screen: which sites are near and which are far.
+void print_latencies(std::vector<simulated::SiteLatency> latencies) {
+  if (latencies.empty()) return;
+  std::ranges::sort(latencies, {}, &simulated::SiteLatency::latency);
+  const auto told = [](const simulated::SiteLatency& one) {
+    return fmt::format("{:.3g} ms ({})", to_seconds(one.latency) * 1e3, one.participant);
+  };
+  fmt::print(stderr, "one-way latencies of {} sites: least {}, median {}, largest {}\n", latencies.size(),
+             told(latencies.front()), told(latencies[latencies.size() / 2]), told(latencies.back()));
+}
+
 SimulationSettings settings_from(const SimulateOptions& options, const Scenario& scenario) {
   SimulationSettings settings;
   settings.seed = options.seed;
   settings.network.latency = from_seconds(options.latency_us * 1e-6);
+  settings.network.site_latencies = site_latencies(options, scenario);
   settings.network.jitter = from_seconds(options.jitter_us * 1e-6);
   settings.network.loss = options.loss;
   settings.network.duplication = options.duplication;
@@ -113,14 +157,29 @@ void warn_of_unreached(const SimulateOptions& options, const SimulationSettings&
   }
 }
 
+/// The process may open as many files as the recordings need and some more.
+/// @throws ConfigError where the system does not allow it.
+void allow_open_files(std::size_t recordings) {
+  constexpr std::size_t kOthers = 32;  // standard streams, events.log, what libraries open
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= recordings + kOthers) return;
+  const rlim_t allowed = limit.rlim_cur;
+  limit.rlim_cur = std::min<rlim_t>(recordings + kOthers, limit.rlim_max);
+  if (limit.rlim_cur == recordings + kOthers && ::setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  throw ConfigError{fmt::format(
+      "{} participants have a recording each, and this process may open {} files; allow more with `ulimit -n {}`",
+      recordings, allowed, recordings + kOthers)};
+}
+
 /// The recordings of all participants.
 class SimulatedRecording {
  public:
   SimulatedRecording(const Scenario& scenario, const std::filesystem::path& directory, std::uint64_t seed) try
       : scenario_{scenario}, directory_{directory}, seed_{seed} {
-    make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario));
+    allow_open_files(scenario.substructures.size() + 1);
+    make(std::string{kCoordinatorId}, Role::coordinator, CoordinatorParticipant::tables(scenario), 1);
     for (const SubstructureScenario& substructure : scenario.substructures) {
-      make(substructure.id, substructure.role, substructure_tables(substructure));
+      make(substructure.id, substructure.role, substructure_tables(substructure), substructure.site.periods_per_step);
     }
   } catch (const RecordingError& error) {
     throw ConfigError{"--out " + directory.string() + ": cannot record there: " + error.what()};
@@ -129,10 +188,17 @@ class SimulatedRecording {
   [[nodiscard]] RowSink& sink(const std::string& participant, std::string_view table) {
     return parts_.at(participant).recorder->sink(table);
   }
-  void keep(const Event& event) { parts_.at(event.source.text()).recorder->events().send(event); }
+  void keep(const Event& event) {
+    Part& part = parts_.at(event.source.text());
+    part.recorder->events().send(event);
+    part.has_events = true;
+  }
   /// Writes what waits, often enough that a full disk loses the newest rows alone, and reports failures.
   void keep_house(const std::string& participant, Presence& presence, Instant now) {
     Part& part = parts_.at(participant);
+    const bool is_due = part.calls++ % calls_per_drain() == 0 || part.has_events || part.recorder->should_drain();
+    if (!is_due) return;
+    part.has_events = false;
     part.recorder->drain();
     if (part.watch.look(*part.recorder, presence, now)) failures_.push_back(part.recorder->error_text());
   }
@@ -154,17 +220,48 @@ class SimulatedRecording {
   /// More rows than one step can append between two calls of keep_house().
   static constexpr std::size_t kRingRows = 1U << 16U;
 
+  /// The same where memory for as many would be wasted on many participants.
+  [[nodiscard]] std::size_t ring_rows(std::string_view table, Role role, int periods_per_step) const {
+    constexpr std::size_t kCommands = 1024;  // twice those between two calls: a ring is drained when it is half full
+    const std::size_t substructures = scenario_.substructures.size();
+    if (substructures <= kMaxSubstructures) return kRingRows;
+    if (role != Role::coordinator) return kCommands * static_cast<std::size_t>(periods_per_step);
+    return table == "steps" ? kCommands : kCommands * substructures;  // one row for each of them
+  }
+  /// A substructure tells little; the coordinator of many tells something of each.
+  [[nodiscard]] std::size_t ring_events(Role role) const {
+    constexpr std::size_t kUsual = 1024;
+    constexpr std::size_t kOfOne = 64;
+    if (scenario_.substructures.size() <= kMaxSubstructures) return kUsual;
+    return role == Role::coordinator ? kOfOne * scenario_.substructures.size() : kOfOne;
+  }
+
+  /// Calls of keep_house() from one drain to the next where no event waits and no ring is half full. A drain flushes
+  /// the file, and a flush writes the unfinished chunks once more.
+  static constexpr int kCallsPerDrain = 8;
+
+  /// A flush looks at everything that HDF5 has open: of many files it is rarer, so that each row costs the same.
+  [[nodiscard]] int calls_per_drain() const {
+    const auto substructures = static_cast<int>(scenario_.substructures.size());
+    return kCallsPerDrain * std::max(1, substructures / kMaxSubstructures);
+  }
+
   struct Part {
     std::unique_ptr<Recorder> recorder;
+    int calls = 0;
+    bool has_events = false;
     RecordingWatch watch;
   };
 
-  void make(const std::string& id, Role role, std::vector<TableLayout> tables) {
+  void make(const std::string& id, Role role, std::vector<TableLayout> tables, int periods_per_step) {
     if (role == Role::coordinator) std::ranges::move(test_tables(), std::back_inserter(tables));
     std::vector<RecordedTable> recorded;
-    for (const TableLayout& table : tables) recorded.push_back({table, kRingRows});
-    parts_[id].recorder = std::make_unique<Recorder>(
-        run_file(directory_, id), run_file_header(scenario_, id, role, seed_, begin_.zero_unix_s()), recorded);
+    for (const TableLayout& table : tables) {
+      recorded.push_back({table, ring_rows(table.name, role, periods_per_step)});
+    }
+    parts_[id].recorder = std::make_unique<Recorder>(run_file(directory_, id),
+                                                     run_file_header(scenario_, id, role, seed_, begin_.zero_unix_s()),
+                                                     recorded, 1, ring_events(role));
   }
 
   const Scenario& scenario_;
@@ -194,6 +291,8 @@ int simulate_scenario(SimulateOptions options) {
   prepare_run_directory(options.directory, scenario);
   fmt::print(stderr, "{}: {} steps of {} s under simulated time, seed {}, recordings in {}\n", scenario.name,
              scenario.time.last_step, scenario.time.step_s, options.seed, options.directory.string());
+
+  print_latencies(settings.network.site_latencies);
 
   SimulatedRecording recording{scenario, options.directory, options.seed};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log{std::fopen((options.directory / "events.log").c_str(), "w"),
@@ -251,8 +350,16 @@ void add_simulate_command(CLI::App& app, CommandAction& action) {
   command->add_flag("--no-report", options->no_report, "Do not write RUN/report.html");
   command->add_option("--set", options->overrides, "Override one value of the scenario: key.path=value; repeatable");
   command->add_option("--latency-us", options->latency_us, "Latency of every message, in microseconds")
-      ->check(CLI::Range(0.0, 1e7))
+      ->check(CLI::Range(0.0, kLatencyMost_us))
       ->capture_default_str();
+  command
+      ->add_option("--latency-spread", options->latency_spread,
+                   "Every substructure gets a latency of its own, log-normal by the seed: --latency-us is the median, "
+                   "this the standard deviation of the natural logarithm; 0.6 is like the internet")
+      ->check(CLI::Range(0.0, 3.0))
+      ->capture_default_str();
+  command->add_option("--site-latency", options->site_latencies,
+                      "ID:MICROSECONDS: latency of the messages from and to this substructure; repeatable");
   command
       ->add_option("--jitter-us", options->jitter_us,
                    "Largest additional latency, in microseconds; uniformly distributed from 0")

@@ -45,19 +45,32 @@ std::string digest_of(const fs::path& file, const std::vector<std::string>& over
   return hex(read_scenario(file, overrides).digest);
 }
 
+/// What the case changes in the scenario.
+std::vector<std::string> overrides_of(const SweepPlan& plan, const SweepCase& one) {
+  std::vector<std::string> overrides;
+  const std::vector<std::string> arguments = plan.arguments(one, "run");
+  for (std::size_t k = 0; k + 1 < arguments.size(); ++k) {
+    if (arguments[k] == "--set") overrides.push_back(arguments[k + 1]);
+  }
+  return overrides;
+}
+
 /// Each value by itself, so that a wrong one is told before the first run.
 void check_values(const SweepPlan& plan) {
   std::set<std::vector<std::string>> read;
   const SweepCase first = plan.case_at(1);
+  const Scenario scenario = read_scenario(plan.scenario_file, overrides_of(plan, first));
+  for (const Varied& one : plan.varied) {
+    const std::optional<std::string> site = site_of_latency(one.key);
+    if (site && scenario.find(*site) == nullptr) {
+      throw ConfigError{"--vary " + one.key + ": the scenario has no substructure '" + *site + "'"};
+    }
+  }
   for (std::size_t i = 0; i < plan.varied.size(); ++i) {
     for (const std::string& value : plan.varied[i].values) {
       SweepCase one = first;
       one.values[i] = value == kSeedValue ? std::to_string(one.seed) : value;
-      std::vector<std::string> overrides;
-      const std::vector<std::string> arguments = plan.arguments(one, "run");
-      for (std::size_t k = 0; k + 1 < arguments.size(); ++k) {
-        if (arguments[k] == "--set") overrides.push_back(arguments[k + 1]);
-      }
+      const std::vector<std::string> overrides = overrides_of(plan, one);
       if (read.insert(overrides).second) static_cast<void>(read_scenario(plan.scenario_file, overrides));
     }
   }
@@ -218,7 +231,8 @@ void add_sweep_command(CLI::App& app, CommandAction& action) {
       ->required();
   command->add_option("--vary", options->varied,
                       "key.path=a,b,c or key.path=low..high/count[/log]; repeatable. A value @seed is the seed of the "
-                      "case. Also latency_us, jitter_us, loss, duplication, reordering of the network");
+                      "case. Also latency_us, latency_spread, site_latency_us[ID], jitter_us, loss, duplication, "
+                      "reordering of the network");
   command->add_option("--seeds", options->seeds, "first..last: each case is run with every seed")
       ->capture_default_str();
   command->add_option("--set", options->overrides, "Override one value in every case: key.path=value; repeatable");

@@ -55,7 +55,7 @@ int watch(WatchOptions options) {
   const ProcessClock clock;
   // Odd, in the range of whole numbers of JavaScript.
   const std::uint64_t first_cursor = draw_incarnation() & 0xff'ffff'ffffU;
-  Observer observer{options.network, test, first_cursor, time_utc};
+  Observer observer{options.network, test, first_cursor, options.allow_control, time_utc};
   wake_on_stop(observer.waker());
   {
     const WatchServer server{observer, clock, options.server};

@@ -1,14 +1,18 @@
 #include "numerical_substructure/numerical_node.hpp"
 
+#include <cstring>
 #include <utility>
 
+#include "core/message_copies.hpp"
+#include "core/refused_resumption.hpp"
 #include "core/rehearsal_answer.hpp"
 
 namespace hybridtest {
 
 NumericalNode::NumericalNode(SubstructureIndex index, CouplingMode mode, std::unique_ptr<SubstructureModel> model,
                              Presence& presence, MembershipPorts membership, Inbox<DisplacementCommand>& commands,
-                             Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded)
+                             Outbox<ForceMeasurement>& measurements, RowSink& steps, std::vector<Eigen::Index> recorded,
+                             std::size_t remembered)
     : index_{index},
       mode_{mode},
       model_{std::move(model)},
@@ -17,6 +21,7 @@ NumericalNode::NumericalNode(SubstructureIndex index, CouplingMode mode, std::un
       commands_{commands},
       measurements_{measurements},
       steps_{steps},
+      memory_{remembered, model_->interface_dofs()},
       force_n_{InterfaceVector::Zero(model_->interface_dofs())},
       recorded_{std::move(recorded)},
       row_(2 + 2 * recorded_.size()) {}
@@ -43,7 +48,7 @@ bool NumericalNode::is_done() const noexcept {
 void NumericalNode::obey(Request request) noexcept {
   switch (request) {
     case Request::arm:
-      model_->reset();
+      if (!is_restored_) model_->reset();
       presence_.set_state(LifecycleState::armed);
       break;
     case Request::start: presence_.set_state(LifecycleState::running); break;
@@ -71,6 +76,17 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
   const CommandPoint& newest = command.newest();
   const std::pair asked{newest.step, command.iteration};
   const std::pair answered{last_point_.step, last_iteration_};
+  if (membership_.has_successor()) {
+    // The newest point may be a trial, of which a step has several: it is compared with its own answer.
+    if (const CommandPoint* other = memory_.first_other(command, last_step_)) {
+      refuse(Recall::different, *other, now);
+      return;
+    }
+    if (asked <= answered) {
+      answer_again(command, now);
+      return;
+    }
+  }
   if (asked < answered) return;
   if (asked == answered) {
     answer(command, now, MeasurementFlags::repeated);
@@ -89,14 +105,47 @@ void NumericalNode::serve(const DisplacementCommand& command, Instant now) noexc
   answer_newest(now);
 }
 
+void NumericalNode::answer_again(const DisplacementCommand& command, Instant now) noexcept {
+  const CommandPoint& point = command.newest();
+  switch (const Recall recall = memory_.recall(point, command.iteration, answer_)) {
+    case Recall::answered: send_answer(command, now, MeasurementFlags::repeated); break;
+    case Recall::pending: break;
+    case Recall::different:
+    case Recall::forgotten: refuse(recall, point, now); break;
+  }
+}
+
+void NumericalNode::refuse(Recall recall, const CommandPoint& point, Instant now) noexcept {
+  report_refused_resumption(recall, point, memory_, presence_, now);
+  requested_stop_ = StopReason::resume_refused;
+  presence_.set_state(LifecycleState::finished);
+}
+
+NumericalNode::Restored NumericalNode::restore(const CommandPoint& point, std::uint16_t iteration,
+                                               const InterfaceVector& recorded_force_n) noexcept {
+  if (!std::exchange(is_restored_, true)) model_->reset();
+  if (!compute(point, false, Instant{})) return Restored::not_at_once;
+  last_iteration_ = iteration;
+  memory_.keep_command(point.step, iteration, point.displacement_m);
+  memory_.keep_answer(point.step, iteration, point.model_time_s, point.displacement_m, point.displacement_m, force_n_,
+                      MeasurementFlags::none);
+  const bool is_same = recorded_force_n.size() == force_n_.size() &&
+                       std::memcmp(recorded_force_n.data(), force_n_.data(),
+                                   sizeof(double) * static_cast<std::size_t>(force_n_.size())) == 0;
+  return is_same ? Restored::same : Restored::different;
+}
+
 void NumericalNode::answer_newest(Instant now) noexcept {
   last_iteration_ = command_.iteration;
+  memory_.keep_command(last_point_.step, last_iteration_, last_point_.displacement_m);
+  memory_.keep_answer(last_point_.step, last_iteration_, last_point_.model_time_s, last_point_.displacement_m,
+                      last_point_.displacement_m, force_n_, MeasurementFlags::none);
   answer(command_, now, MeasurementFlags::none);
 }
 
 bool NumericalNode::compute(const CommandPoint& point, bool is_trial, Instant now) noexcept {
   if (is_tried_) model_->revert();
-  computed_ = point;
+  message_copies::carry(point, computed_, message_copies::Copy{});
   is_trial_ = is_trial;
   return conclude(is_trial ? model_->begin_trial(point.displacement_m, point.velocity_m_per_s, force_n_, now)
                            : model_->begin_step(point.displacement_m, point.velocity_m_per_s, force_n_, now),
@@ -123,8 +172,8 @@ bool NumericalNode::conclude(ModelAnswer answer, Instant now) noexcept {
   }
   if (answer != ModelAnswer::ready) return false;
   is_tried_ = is_trial_;
-  last_point_ = computed_;
-  if (!is_trial_) record_step(computed_);
+  std::swap(last_point_, computed_);
+  if (!is_trial_) record_step(last_point_);
   return true;
 }
 
@@ -143,14 +192,18 @@ void NumericalNode::record_step(const CommandPoint& point) noexcept {
 }
 
 void NumericalNode::answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept {
-  answer_.substructure = index_;
-  answer_.sender = presence_.identity().incarnation;
   answer_.step = last_point_.step;
   answer_.iteration = last_iteration_;
   answer_.model_time_s = last_point_.model_time_s;
-  answer_.imposed_displacement_m = last_point_.displacement_m;
-  answer_.measured_displacement_m = last_point_.displacement_m;
-  answer_.force_n = force_n_;
+  copy_values(last_point_.displacement_m, answer_.imposed_displacement_m);
+  copy_values(last_point_.displacement_m, answer_.measured_displacement_m);
+  copy_values(force_n_, answer_.force_n);
+  send_answer(command, now, flags);
+}
+
+void NumericalNode::send_answer(const DisplacementCommand& command, Instant now, MeasurementFlags flags) noexcept {
+  answer_.substructure = index_;
+  answer_.sender = presence_.identity().incarnation;
   answer_.flags = flags;
   answer_.receive_time = now.time_since_epoch();
   answer_.send_time = now.time_since_epoch();

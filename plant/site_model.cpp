@@ -34,6 +34,34 @@ std::unique_ptr<Law> law_of(const SiteModel& model) {
   return model.make_law ? model.make_law() : nullptr;
 }
 
+namespace {
+
+/// Real bandwidth over that of the model.
+double bandwidth_ratio(const SiteModel& model) {
+  const EffectType* const error = find_effect(EffectInterface::transfer_system, ModelNumber::bandwidth);
+  double ratio = 1.0;
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type == error) ratio *= 1.0 + effect.values[0];
+  }
+  if (ratio != 1.0 && !model.has_bandwidth) {
+    throw ConfigError{
+        "the effect bandwidth_error changes a transfer system without a bandwidth; expected one of the type "
+        "first_order or second_order"};
+  }
+  return ratio;
+}
+
+}  // namespace
+
+std::unique_ptr<TransferSystem> transfer_system_of(const SiteModel& model, double sample_period_s) {
+  const double change_s = delay_change_s(model);
+  const double ratio = bandwidth_ratio(model);
+  // A linear system that is so much faster is the same one, sampled so much more slowly; but for its delay, which is
+  // as before, and so that much longer in its time.
+  const double longer_s = (ratio - 1.0) * (model.removable_delay_s + change_s);
+  return model.make_transfer_system(sample_period_s * ratio, change_s + longer_s);
+}
+
 double delay_change_s(const SiteModel& model) {
   const EffectType* const delay = find_effect(EffectInterface::transfer_system, "delay");
   double change_s = 0.0;

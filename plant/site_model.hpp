@@ -33,6 +33,7 @@ struct SiteModel {
   /// @param delay_change_s   added to the model's own delay, from -removable_delay_s to 0.
   std::function<std::unique_ptr<TransferSystem>(double sample_period_s, double delay_change_s)> make_transfer_system;
   double removable_delay_s = 0.0;                  // the transfer system's own pure delay
+  bool has_bandwidth = false;                      // the transfer system has a bandwidth or natural frequency
   std::function<std::unique_ptr<Law>()> make_law;  // empty: the specimen has no force
   /// @param delay_change_s   added to its setting, which stays between 0 and the most it may be. Empty: none.
   std::function<std::unique_ptr<Compensator>(double sample_period_s, double delay_change_s)> make_compensator;
@@ -48,6 +49,10 @@ struct SiteModel {
 /// The law of the specimen: the last replacement among the effects, else the model's own. null: no force.
 /// @throws ConfigError as the law.
 [[nodiscard]] std::unique_ptr<Law> law_of(const SiteModel& model);
+
+/// The transfer system with the delay and the bandwidth that the effects give it.
+/// @throws ConfigError as delay_change_s(), and for a `bandwidth_error` where there is no bandwidth.
+[[nodiscard]] std::unique_ptr<TransferSystem> transfer_system_of(const SiteModel& model, double sample_period_s);
 
 /// Sum of what the `delay` effects of the transfer system take off its own delay; zero or negative.
 /// @throws ConfigError when that is more than there is.

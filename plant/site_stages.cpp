@@ -64,8 +64,7 @@ TransferStage::TransferStage(std::unique_ptr<TransferSystem> transfer_system, St
 }
 
 TransferStage::TransferStage(const SiteModel& model, double sample_period_s)
-    : TransferStage{model.make_transfer_system(sample_period_s, delay_change_s(model)),
-                    effects_at(model, At::transfer_system, sample_period_s),
+    : TransferStage{transfer_system_of(model, sample_period_s), effects_at(model, At::transfer_system, sample_period_s),
                     effects_at(model, At::displacement_sensor, sample_period_s)} {}
 
 double TransferStage::step(const StageSample& sample) noexcept {

@@ -5,12 +5,14 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <string>
 
 #include "core/faults.hpp"
 #include "recording/error.hpp"
 #include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
+#include "recording/summary/clock_relation.hpp"
 
 namespace hybridtest {
 namespace {
@@ -48,16 +50,16 @@ void export_table(const RunFileReader& file, const TableLayout& layout, CsvFile&
   std::string text;
   for (const Column& column : layout.columns) text += (text.empty() ? "" : ",") + column.name;
   csv.write(text + "\n");
-  const std::size_t width = layout.columns.size();
-  for (std::size_t first = 0; first < file.row_count(layout.name); first += kRowsInMemory) {
-    const std::vector<double> values = file.rows(layout.name, first, kRowsInMemory);
+  read_rows(file, layout.name, [&](std::span<const double> row) {
     text.clear();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      append_number(text, values[i]);
-      text += (i + 1) % width == 0 ? '\n' : ',';
+    for (const double value : row) {
+      append_number(text, value);
+      text += ',';
     }
+    text.back() = '\n';
     csv.write(text);
-  }
+    return true;
+  });
 }
 
 void export_events(const RunFileReader& file, CsvFile& csv) {
@@ -100,6 +102,28 @@ void export_file(const std::filesystem::path& run_file, const std::filesystem::p
   written.push_back(csv.path());
 }
 
+/// How the clocks of the participants stand to the coordinator's.
+void export_clocks(const std::filesystem::path& coordinator_file, const std::filesystem::path& out_directory,
+                   std::vector<std::filesystem::path>& written) {
+  const std::vector<ParticipantClock> clocks = participant_clocks(RunFileReader{coordinator_file});
+  if (clocks.empty()) return;
+  CsvFile csv{out_directory / "clocks.csv"};
+  csv.write("participant,begin_s,end_s,at_s,offset_s,offset_uncertainty_s,drift,drift_uncertainty\n");
+  for (const ParticipantClock& clock : clocks) {
+    for (const ClockRelation& part : clock.parts) {
+      std::string text = clock.participant;
+      for (const double value : {part.begin_s, part.end_s, part.at_s, part.offset_s, part.offset_uncertainty_s,
+                                 part.drift, part.drift_uncertainty}) {
+        text += ',';
+        append_number(text, value);
+      }
+      csv.write(text + "\n");
+    }
+  }
+  csv.close();
+  written.push_back(csv.path());
+}
+
 }  // namespace
 
 void append_quoted(std::string& text, std::string_view value) {
@@ -121,7 +145,10 @@ std::vector<std::filesystem::path> export_csv(const std::filesystem::path& run_d
   if (run_files.empty()) throw RecordingError{run_directory.string() + ": no run file (*.h5) in this directory"};
   std::filesystem::create_directories(out_directory, error);
   std::vector<std::filesystem::path> written;
-  for (const auto& run_file : run_files) export_file(run_file, out_directory, written);
+  for (const auto& run_file : run_files) {
+    export_file(run_file, out_directory, written);
+    if (run_file.stem() == kCoordinatorId) export_clocks(run_file, out_directory, written);
+  }
   std::sort(written.begin(), written.end());
   return written;
 }

@@ -11,7 +11,8 @@ namespace hybridtest {
 void append_quoted(std::string& text, std::string_view value);
 
 /// Writes every table of every run file of a run directory as `<participant's file>.<table>.csv`,
-/// and its events as `<participant's file>.events.csv`.
+/// and its events as `<participant's file>.events.csv`. `clocks.csv` says how the clocks of the participants stand to
+/// the coordinator's, see ClockRelation; it is absent where nothing was exchanged.
 ///
 /// The first line names the columns, units included (`time_s,target_displacement_m,…`); numbers are
 /// the shortest text that reads back as the same double, `nan` and `inf` as such. The table `control`

@@ -10,7 +10,7 @@
 namespace hybridtest {
 namespace {
 
-/// Values moved from a ring to the file at once.
+/// Values moved from a ring to the file at once, at most.
 constexpr std::size_t kBlockValues = 32768;
 
 std::vector<TableLayout> layouts_of(const std::vector<RecordedTable>& tables) {
@@ -25,13 +25,12 @@ Recorder::Recorder(const std::filesystem::path& path, const RunFileHeader& heade
                    std::size_t event_sources, std::size_t events_per_source)
     : events_per_source_{events_per_source},
       taken_(tables.size() + 1),
-      rows_(kBlockValues),
       writer_{std::make_unique<RunFileWriter>(path, header, layouts_of(tables))} {
   for (const RecordedTable& table : tables) {
     const std::size_t width = table.layout.columns.size();
     table_names_.push_back(table.layout.name);
     rings_.push_back(std::make_unique<RowRing>(width, table.ring_rows));
-    rows_.resize(std::max(rows_.size(), width));
+    rows_.resize(std::max({rows_.size(), width, std::min(kBlockValues, width * table.ring_rows)}));
   }
   for (std::size_t i = 0; i < event_sources; ++i)
     event_rings_.push_back(std::make_unique<EventRing>(events_per_source));

@@ -32,11 +32,11 @@ class DeferringTransport final : public Transport {
   [[nodiscard]] std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) override {
     return network_.command_inbox(substructure);
   }
-  [[nodiscard]] std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() override {
-    return network_.measurement_outbox();
+  [[nodiscard]] std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox(SubstructureIndex substructure) override {
+    return network_.measurement_outbox(substructure);
   }
-  [[nodiscard]] std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() override {
-    return network_.measurement_inbox();
+  [[nodiscard]] std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox(std::uint16_t substructure_count) override {
+    return network_.measurement_inbox(substructure_count);
   }
   [[nodiscard]] std::unique_ptr<Outbox<TestControl>> control_outbox() override;
   [[nodiscard]] std::unique_ptr<Inbox<TestControl>> control_inbox() override { return network_.control_inbox(); }

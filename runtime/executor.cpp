@@ -26,6 +26,22 @@ extern "C" void request_stop(int signal) {
 
 }  // namespace
 
+double ProcessClock::zero_unix_s() const noexcept {
+  // Two clocks cannot be read at once. The best of a few attempts: the thread may lose its processor in between.
+  constexpr int kAttempts = 8;
+  auto shortest = std::chrono::steady_clock::duration::max();
+  double zero_s = 0.0;
+  for (int i = 0; i < kAttempts; ++i) {
+    const auto before = std::chrono::steady_clock::now();
+    const auto wall_time = std::chrono::system_clock::now().time_since_epoch();
+    const auto took = std::chrono::steady_clock::now() - before;
+    if (took >= shortest) continue;
+    shortest = took;
+    zero_s = std::chrono::duration<double>(wall_time - (before + took / 2 - start_)).count();
+  }
+  return zero_s;
+}
+
 void run_until(Node& node, Waker& waker, const ProcessClock& clock, const std::function<bool()>& is_done,
                const std::function<void(Instant)>& between) {
   while (true) {

@@ -20,10 +20,7 @@ class ProcessClock {
     return Instant{std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - start_)};
   }
   /// When this clock stood at zero: [s] since 1970-01-01T00:00:00Z by the wall clock of now.
-  [[nodiscard]] double zero_unix_s() const noexcept {
-    const auto wall_time = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration<double>(wall_time - (std::chrono::steady_clock::now() - start_)).count();
-  }
+  [[nodiscard]] double zero_unix_s() const noexcept;
   /// The deadline for a wait; kNever means no deadline.
   [[nodiscard]] std::chrono::steady_clock::time_point deadline(Instant instant) const noexcept {
     if (instant == kNever) return std::chrono::steady_clock::time_point::max();

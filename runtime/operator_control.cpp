@@ -36,6 +36,7 @@ void OperatorRequest::learn(const Event& event, Instant now) {
   const bool answers = (verb_ == ControlVerb::pause && event.code == EventCode::test_paused) ||
                        (verb_ == ControlVerb::resume && event.code == EventCode::test_resumed);
   if (answers) note_obeyed(event.source.text(), now);
+  if (verb_ == ControlVerb::pause && event.code == EventCode::pause_refused) is_refused_ = true;
 }
 
 void OperatorRequest::learn(const TestAnnouncement& announcement) {
@@ -44,7 +45,7 @@ void OperatorRequest::learn(const TestAnnouncement& announcement) {
 }
 
 std::optional<TestControl> OperatorRequest::due(Instant now) {
-  if (now < send_due_ || !may_send(now)) return std::nullopt;
+  if (is_refused_ || now < send_due_ || !may_send(now)) return std::nullopt;
   send_due_ = now + (stops() ? kRepeat : kRepeatQuestion);
   TestControl message;
   message.verb = verb_;
@@ -95,7 +96,7 @@ bool OperatorRequest::contains(const std::string& id) const {
 }
 
 std::span<const SubstructureAnnouncement> OperatorRequest::announced() const noexcept {
-  return std::span{announcement_.substructures}.first(is_announced_ ? announcement_.substructure_count : 0U);
+  return announcement_.substructures;  // none before it is announced
 }
 
 struct OperatorControl::Path {

@@ -25,7 +25,7 @@ struct FoundParticipant {
 /// A request of the operator on one network path: sent at once to each participant that is discovered, and repeated
 /// until all have obeyed. `stop` and `emergency_stop` count as obeyed when a participant leaves the test; an emergency
 /// stop goes to the sites directly and needs no coordinator. `pause` and `resume` count when the coordinator reports
-/// them.
+/// them. A test in real time refuses a pause.
 class OperatorRequest {
  public:
   /// @param sender   the incarnation of the operator's process.
@@ -46,6 +46,8 @@ class OperatorRequest {
   [[nodiscard]] std::vector<std::string> missing() const;
   /// Whoever has to obey has done so. For `pause` and `resume` that is the coordinator.
   [[nodiscard]] bool is_obeyed() const;
+  /// The coordinator has said that this test cannot do it.
+  [[nodiscard]] bool is_refused() const noexcept { return is_refused_; }
   /// It ends the test.
   [[nodiscard]] bool stops() const noexcept {
     return verb_ == ControlVerb::stop || verb_ == ControlVerb::emergency_stop;
@@ -64,6 +66,7 @@ class OperatorRequest {
   TestAnnouncement announcement_;
   bool is_announced_ = false;
   bool test_is_over_ = false;
+  bool is_refused_ = false;
   Instant last_discovery_{};
   Instant send_due_{};
 };

@@ -77,6 +77,33 @@ OpenSeesLeadSettings lead_settings(const Scenario& scenario) {
   return settings;
 }
 
+[[nodiscard]] bool can_be_resumed(const Scenario& scenario) { return scenario.timeouts.resume > Duration::zero(); }
+
+/// Answers that a substructure keeps for a coordinator that is resumed.
+std::size_t remembered(const Scenario& scenario, const SubstructureScenario& substructure) {
+  return can_be_resumed(scenario) ? AnswerMemory::answers_for(substructure.interface.size()) : 0;
+}
+
+/// Announcements that a substructure takes only when its end of the commands and measurements is connected: before it
+/// is ready, that is. Packets of discovery that are lost are repeated after seconds, and each port is discovered by
+/// itself.
+class AnnouncementsOnceLinked final : public Inbox<TestAnnouncement> {
+ public:
+  AnnouncementsOnceLinked(Transport& transport, SubstructureIndex substructure)
+      : transport_{transport}, substructure_{substructure}, announcements_{transport.announcement_inbox()} {}
+
+  [[nodiscard]] bool take(TestAnnouncement& announcement) noexcept override {
+    is_linked_ = is_linked_ || transport_.reachable(substructure_);
+    return is_linked_ && announcements_->take(announcement);
+  }
+
+ private:
+  Transport& transport_;
+  SubstructureIndex substructure_;
+  std::unique_ptr<Inbox<TestAnnouncement>> announcements_;
+  bool is_linked_ = false;
+};
+
 /// Under simulated time nothing waits for a model: its calls block.
 ModelSurroundings model_surroundings(const SubstructureScenario& substructure,
                                      const ParticipantSurroundings& surroundings) {
@@ -92,14 +119,23 @@ Participant::Participant(const Scenario& scenario, std::string_view id, Role rol
     : status_in_{surroundings.transport.status_inbox()},
       status_out_{surroundings.transport.status_outbox()},
       control_in_{surroundings.transport.control_inbox()},
-      presence_{Identity{id, role, surroundings.incarnation, scenario.digest}, scenario.timeouts.liveliness_lease,
-                *status_in_, *status_out_, surroundings.events} {}
+      presence_{
+          Identity{id, role, surroundings.incarnation, scenario.digest},
+          scenario.timeouts.liveliness_lease,
+          *status_in_,
+          *status_out_,
+          surroundings.events,
+          std::max<std::size_t>(kMaxSubstructures, role == Role::coordinator ? scenario.substructures.size() : 0) +
+              Presence::kOthers} {
+  presence_.wait_for_links(scenario.timeouts.link);
+}
 
 CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const ParticipantSurroundings& surroundings)
     : Participant{scenario, kCoordinatorId, Role::coordinator, surroundings},
       announcements_{surroundings.transport.announcement_outbox()},
       control_out_{surroundings.transport.control_outbox()},
-      measurements_{surroundings.transport.measurement_inbox()},
+      measurements_{
+          surroundings.transport.measurement_inbox(static_cast<std::uint16_t>(scenario.substructures.size()))},
       commands_{surroundings.transport.command_outbox(static_cast<std::uint16_t>(scenario.substructures.size()))} {
   std::unique_ptr<MotionSource> source;
   if (scenario.opensees) {
@@ -110,33 +146,40 @@ CoordinatorParticipant::CoordinatorParticipant(const Scenario& scenario, const P
   }
   coordinator_ = std::make_unique<Coordinator>(
       coordinator_settings(scenario), std::move(source), presence_,
-      CoordinatorPorts{*announcements_, *control_in_, *control_out_, *measurements_, *commands_},
+      CoordinatorPorts{*announcements_, *control_in_, *control_out_, *measurements_, *commands_,
+                       [&transport = surroundings.transport](SubstructureIndex i) { return transport.reachable(i); }},
       CoordinatorRecord{surroundings.sink("steps"), surroundings.sink("exchanges"),
-                        scenario.time.mode == CouplingMode::real_time ? &surroundings.sink("bridges") : nullptr});
+                        scenario.time.mode == CouplingMode::real_time ? &surroundings.sink("bridges") : nullptr,
+                        &surroundings.sink("clocks"),
+                        can_be_resumed(scenario) ? &surroundings.sink("answers") : nullptr});
 }
 
 std::vector<TableLayout> CoordinatorParticipant::tables(const Scenario& scenario) {
   std::vector<TableLayout> tables{
       Coordinator::steps_layout(scenario.recorded_names(), scenario.excitation.records.size(),
                                 !scenario.excitation.forces.empty()),
-      Coordinator::exchanges_layout()};
+      Coordinator::exchanges_layout(), ClockWindows::layout()};
   if (scenario.opensees) tables.push_back(OpenSeesLead::trials_layout());
   if (scenario.time.mode == CouplingMode::real_time) tables.push_back(Coordinator::bridges_layout());
+  if (can_be_resumed(scenario)) tables.push_back(Coordinator::answers_layout());
   return tables;
 }
 
 NumericalParticipant::NumericalParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
                                            const ParticipantSurroundings& surroundings)
     : Participant{scenario, substructure.id, Role::numerical_substructure, surroundings},
-      announcements_{surroundings.transport.announcement_inbox()},
+      announcements_{
+          std::make_unique<AnnouncementsOnceLinked>(surroundings.transport, scenario.index_of(substructure))},
       commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
-      measurements_{surroundings.transport.measurement_outbox()} {
+      measurements_{surroundings.transport.measurement_outbox(scenario.index_of(substructure))} {
   std::unique_ptr<SubstructureModel> model = substructure.make_model();
   model->start(model_surroundings(substructure, surroundings));
   numerical_ =
       std::make_unique<NumericalNode>(scenario.index_of(substructure), scenario.time.mode, std::move(model), presence_,
-                                      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
-                                      *commands_, *measurements_, surroundings.sink("steps"), substructure.recorded);
+                                      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery,
+                                                      scenario.timeouts.resume, surroundings.is_restored},
+                                      *commands_, *measurements_, surroundings.sink("steps"), substructure.recorded,
+                                      remembered(scenario, substructure));
 }
 
 std::vector<TableLayout> NumericalParticipant::tables(const SubstructureScenario& substructure) {
@@ -146,9 +189,10 @@ std::vector<TableLayout> NumericalParticipant::tables(const SubstructureScenario
 SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureScenario& substructure,
                                  const ParticipantSurroundings& surroundings, bool runs_loop)
     : Participant{scenario, substructure.id, Role::experimental_site, surroundings},
-      announcements_{surroundings.transport.announcement_inbox()},
+      announcements_{
+          std::make_unique<AnnouncementsOnceLinked>(surroundings.transport, scenario.index_of(substructure))},
       commands_{surroundings.transport.command_inbox(scenario.index_of(substructure))},
-      measurements_{surroundings.transport.measurement_outbox()},
+      measurements_{surroundings.transport.measurement_outbox(scenario.index_of(substructure))},
       requests_{kLoopQueue},
       reports_{kLoopQueue},
       waking_reports_{reports_, runs_loop ? nullptr : &surroundings.transport.waker()} {
@@ -162,10 +206,11 @@ SiteParticipant::SiteParticipant(const Scenario& scenario, const SubstructureSce
   loop_ = std::make_unique<ControlLoop>(settings, *rig_, substructure.make_compensation(control_period_s),
                                         std::move(energy_error), ControlLoopPorts{requests_, waking_reports_},
                                         surroundings.sink("control"));
-  link_ = std::make_unique<SiteLink>(scenario.index_of(substructure), settings.dofs, scenario.time.mode, presence_,
-                                     MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery},
-                                     SiteLinkPorts{*commands_, *measurements_, requests_, reports_},
-                                     surroundings.sink("steps"));
+  link_ = std::make_unique<SiteLink>(
+      scenario.index_of(substructure), settings.dofs, scenario.time.mode, presence_,
+      MembershipPorts{*announcements_, *control_in_, scenario.timeouts.discovery, scenario.timeouts.resume},
+      SiteLinkPorts{*commands_, *measurements_, requests_, reports_}, surroundings.sink("steps"),
+      remembered(scenario, substructure));
   if (runs_loop) node_.emplace(*link_, *loop_);
 }
 

@@ -30,6 +30,7 @@ struct ParticipantSurroundings {
   std::function<RowSink&(std::string_view table)> sink;
   Incarnation incarnation = 0;
   std::filesystem::path run_directory = {};  // empty under simulated time
+  bool is_restored = false;                  // see MembershipPorts
 };
 
 /// One participant of a test: its node, and the ports of the node.
@@ -66,6 +67,8 @@ class CoordinatorParticipant final : public Participant {
   /// See Coordinator::lead_has_left().
   void lead_has_left() noexcept { coordinator_->lead_has_left(); }
   [[nodiscard]] CoordinatorReport report() const noexcept { return coordinator_->report(); }
+  /// To restore the state of a recording, before the first advance().
+  [[nodiscard]] Coordinator& coordinator() noexcept { return *coordinator_; }
 
   [[nodiscard]] static std::vector<TableLayout> tables(const Scenario& scenario);
 
@@ -88,6 +91,8 @@ class NumericalParticipant final : public Participant {
   [[nodiscard]] StopReason stop_reason() const noexcept override { return numerical_->stop_reason(); }
   void request_stop(StopReason reason) noexcept override { numerical_->request_stop(reason); }
   [[nodiscard]] std::string failure_text() const { return numerical_->failure_text(); }
+  /// To restore the state of a recording, before the first advance().
+  [[nodiscard]] NumericalNode& numerical() noexcept { return *numerical_; }
 
   [[nodiscard]] static std::vector<TableLayout> tables(const SubstructureScenario& substructure);
 

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
 
 #include "core/assert.hpp"
 #include "core/config_error.hpp"
@@ -28,8 +29,11 @@
 #include "runtime/participant.hpp"
 #include "runtime/progress.hpp"
 #include "runtime/recording_watch.hpp"
+#include "runtime/refused_packets.hpp"
+#include "runtime/resume.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/version.hpp"
+#include "transport/fast_dds/credentials.hpp"
 #include "transport/fast_dds/fast_dds_transport.hpp"
 
 namespace hybridtest {
@@ -38,8 +42,8 @@ namespace {
 /// Capacity of the tables at control rate while the disk is busy: two minutes at 1 kHz.
 constexpr std::size_t kRingRows = 1U << 17U;
 
-/// After an emergency stop, with the rig at rest: longer than a discovery takes.
-constexpr Duration kLinger = std::chrono::milliseconds{500};
+/// For the others to hear the last word of this participant, with the rig at rest: longer than a discovery takes.
+constexpr Duration kLinger = std::chrono::seconds{1};
 
 /// In real time: how often what waits is sent and written.
 constexpr Duration kDeskPeriod = std::chrono::milliseconds{2};
@@ -51,7 +55,7 @@ constexpr int kNetworkBelow = 5;
 class ParticipantProgress {
  public:
   ParticipantProgress(const Scenario& scenario, const ParticipantProcessOptions& options, Role role)
-      : progress_{scenario, stderr} {
+      : progress_{scenario, stderr, heard_by(options, role)} {
     const char* what = role == Role::coordinator ? "the substructures" : "the coordinator";
     std::fprintf(stderr, "%s: test %s, DDS domain %u; waiting up to %.0f s for %s; Ctrl-C ends it\n",
                  options.id.c_str(), scenario.name.c_str(), static_cast<unsigned>(options.network.domain),
@@ -73,6 +77,12 @@ class ParticipantProgress {
  private:
   static constexpr Duration kLook = std::chrono::milliseconds{50};
 
+  /// All by the coordinator.
+  static std::vector<std::string> heard_by(const ParticipantProcessOptions& options, Role role) {
+    if (role == Role::coordinator) return {};
+    return {std::string{kCoordinatorId}, options.id};
+  }
+
   Progress progress_;
   Instant next_look_{};
 };
@@ -91,6 +101,7 @@ class ProcessSurroundings {
   ProcessSurroundings(const Scenario& scenario, const ParticipantProcessOptions& options, Role role,
                       const std::vector<TableLayout>& tables, const ProcessClock& clock)
       : run_directory_{options.run_directory},
+        is_restored_{options.resumes},
         incarnation_{draw_incarnation()},
         transport_{make_transport(scenario, options, role)},
         deferring_{scenario.time.mode == CouplingMode::real_time ? std::make_unique<DeferringTransport>(*transport_)
@@ -106,8 +117,8 @@ class ProcessSurroundings {
   }
 
   [[nodiscard]] ParticipantSurroundings surroundings() {
-    return {transport(), event_log_, [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
-            incarnation_, run_directory_};
+    return {transport(),  event_log_,     [this](std::string_view table) -> RowSink& { return recorder_.sink(table); },
+            incarnation_, run_directory_, is_restored_};
   }
   [[nodiscard]] Transport& transport() {
     if (deferring_) return *deferring_;
@@ -127,6 +138,10 @@ class ProcessSurroundings {
   }
   void show_progress(const Presence& presence, Instant now) {
     if (progress_) progress_->show(presence, now);
+  }
+  /// Nothing where there were none.
+  void tell_refused_packets() {
+    if (const std::string text = refused_packets_text(transport().counters()); !text.empty()) print(text);
   }
   /// A line of this process alone on standard error.
   void print(const std::string& text) {
@@ -166,12 +181,14 @@ class ProcessSurroundings {
   /// In real time the threads of the network have to run when a message comes, too.
   static std::unique_ptr<Transport> make_transport(const Scenario& scenario, const ParticipantProcessOptions& options,
                                                    Role role) {
-    if (scenario.time.mode != CouplingMode::real_time) {
-      return fast_dds::make_fast_dds_transport(options.network, scenario.name);
-    }
-    const InheritedRealTime inherited{real_time_of(scenario, options.id, role).priority};
+    const bool is_real_time = scenario.time.mode == CouplingMode::real_time;
     fast_dds::FastDdsSettings network = options.network;
-    network.best_effort_coupling = true;
+    network.best_effort_coupling =
+        is_real_time || std::ranges::all_of(scenario.substructures, [](const SubstructureScenario& substructure) {
+          return substructure.interface_names.size() <= fast_dds::FastDdsSettings::kDofsInOnePacket;
+        });
+    std::optional<InheritedRealTime> inherited;
+    if (is_real_time) inherited.emplace(real_time_of(scenario, options.id, role).priority);
     return fast_dds::make_fast_dds_transport(network, scenario.name);
   }
 
@@ -182,6 +199,7 @@ class ProcessSurroundings {
   }
 
   std::filesystem::path run_directory_;
+  bool is_restored_;
   Incarnation incarnation_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<DeferringTransport> deferring_;  // in real time
@@ -257,6 +275,14 @@ int exit_code_of(const Participant& participant, const Recorder& recorder) {
   return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
 }
 
+/// Others may discover this participant only now: the tool that sent an emergency stop then hears that it obeyed, and
+/// the coordinator that it refuses.
+void stay_to_be_heard(StopReason reason, const ProcessClock& clock) {
+  const bool is_news =
+      reason == StopReason::emergency_stop || reason == StopReason::refused || reason == StopReason::resume_refused;
+  if (is_news) rest_until(clock, clock.now() + kLinger);
+}
+
 /// @param meanwhile    called after each advance() of the node.
 /// @param at_the_end   called before the recording is closed, for its last rows.
 void run_to_the_end(
@@ -271,8 +297,7 @@ void run_to_the_end(
         meanwhile(now);
       });
   process.write_events();
-  // The tool that sent an emergency stop may discover this participant only now; it then hears that it obeyed.
-  if (participant.stop_reason() == StopReason::emergency_stop) rest_until(clock, clock.now() + kLinger);
+  stay_to_be_heard(participant.stop_reason(), clock);
   at_the_end();
 }
 
@@ -329,16 +354,34 @@ void run_in_real_time(
   }
   process.send_waiting();
   process.write_events();
-  // As in run_to_the_end().
-  if (participant.stop_reason() == StopReason::emergency_stop) rest_until(clock, clock.now() + kLinger);
+  stay_to_be_heard(participant.stop_reason(), clock);
   at_the_end();
 }
+
+/// The recording of the process whose place this one takes; nothing in a new test.
+class ResumedFile {
+ public:
+  explicit ResumedFile(const ParticipantProcessOptions& options) {
+    if (options.resumes) aside_ = std::make_unique<FileSetAside>(options.run_directory, options.id);
+  }
+  void keep() const noexcept { aside_->keep(); }
+
+ private:
+  std::unique_ptr<FileSetAside> aside_;
+};
 
 int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& options, const ProcessClock& clock) {
   std::vector<TableLayout> tables = CoordinatorParticipant::tables(scenario);
   std::ranges::move(test_tables(), std::back_inserter(tables));
+  const ResumedFile before{options};
   ProcessSurroundings process{scenario, options, Role::coordinator, tables, clock};
   CoordinatorParticipant participant{scenario, process.surroundings()};
+  if (options.resumes) {
+    const RunFileReader recorded = interrupted_recording(options.run_directory);
+    restore_coordinator(participant.coordinator(), scenario, recorded,
+                        first_coordinator(options.run_directory, recorded), process.recorder(), clock.zero_unix_s());
+    before.keep();
+  }
   wake_on_stop(process.transport().waker());
   std::optional<LeadProcess> lead;
   if (scenario.opensees) lead.emplace(*scenario.opensees, options.run_directory);
@@ -362,13 +405,20 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
   } else {
     run_to_the_end(participant, process, clock, scenario, watch_lead, finish);
   }
+  process.tell_refused_packets();
   return exit_code_of(participant, process.recorder());
 }
 
 int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
                   const ParticipantProcessOptions& options, const ProcessClock& clock) {
+  const ResumedFile before{options};
   ProcessSurroundings process{scenario, options, substructure.role, substructure_tables(substructure), clock};
   NumericalParticipant participant{scenario, substructure, process.surroundings()};
+  if (options.resumes) {
+    restore_numerical(participant.numerical(), scenario, substructure, interrupted_recording(options.run_directory),
+                      process.recorder());
+    before.keep();
+  }
   wake_on_stop(process.transport().waker());
   if (scenario.time.mode == CouplingMode::real_time) {
     run_in_real_time(participant, process, clock, real_time_of(scenario, options.id, substructure.role));
@@ -376,6 +426,7 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
     run_to_the_end(participant, process, clock, scenario);
   }
   if (const std::string text = participant.failure_text(); !text.empty()) process.print(text);
+  process.tell_refused_packets();
   return exit_code_of(participant, process.recorder());
 }
 
@@ -416,6 +467,7 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
     run_to_the_end(participant, process, clock, scenario);
   }
   set_assert_action(nullptr, nullptr);
+  process.tell_refused_packets();
   return exit_code_of(participant, process.recorder());
 }
 
@@ -433,6 +485,14 @@ void require_substructure(const Scenario& scenario, const std::string& id, Role 
   }
 }
 
+/// @throws ConfigError for a site.
+void require_restorable(const std::string& id, Role role) {
+  if (role != Role::experimental_site) return;
+  throw ConfigError{"--resume: the site '" + id +
+                    "' cannot be restarted in the middle of a test: what its specimen has gone through cannot be "
+                    "restored. Start a new test"};
+}
+
 int run_role(const Scenario& scenario, const ParticipantProcessOptions& options, Role role, const ProcessClock& clock) {
   if (role == Role::coordinator) return run_coordinator(scenario, options, clock);
   const SubstructureScenario& substructure = *scenario.find(options.id);
@@ -442,20 +502,41 @@ int run_role(const Scenario& scenario, const ParticipantProcessOptions& options,
 
 }  // namespace
 
+void require_distributable(const Scenario& scenario) {
+  if (scenario.substructures.size() <= kMaxSubstructures) return;
+  throw ConfigError{scenario.name + ": " + std::to_string(scenario.substructures.size()) +
+                    " substructures; a test whose participants are processes has at most " +
+                    std::to_string(kMaxSubstructures) + ". Use `hybridtest simulate`, which takes up to " +
+                    std::to_string(kMaxSimulatedSubstructures)};
+}
+
 int run_participant_process(const ParticipantProcessOptions& options, Role role) noexcept {
   catch_stop_signals();
   const ProcessClock clock;
   try {
     const Scenario scenario = read_scenario(options.scenario_file, options.overrides);
+    require_distributable(scenario);
     ParticipantProcessOptions effective = options;
     if (role == Role::coordinator) effective.id = kCoordinatorId;
-    effective.network.lease = scenario.timeouts.liveliness_lease;
-    effective.network.heartbeat_deadline = scenario.timeouts.liveliness_lease;
-    if (role != Role::coordinator) require_substructure(scenario, effective.id, role);
+    effective.network.lease = scenario.timeouts.silence_most();
+    effective.network.heartbeat_deadline = scenario.timeouts.silence_most();
+    effective.network.repair_period = fast_dds::FastDdsSettings::repair_period_for(scenario.substructures.size());
+    if (role != Role::coordinator) {
+      require_substructure(scenario, effective.id, role);
+      effective.network.substructure_id = effective.id;
+    }
+    if (const auto& credentials = effective.network.credentials) {
+      fast_dds::require_own_credentials(*credentials, scenario.name, effective.id);
+    }
     fast_dds::require_usable(effective.network);
     if (effective.run_directory.empty()) effective.run_directory = default_run_directory(scenario.name);
-    require_new_run(effective.run_directory, effective.id);
-    prepare_run_directory(effective.run_directory, scenario);
+    if (effective.resumes) {
+      require_resumable(effective.run_directory, scenario);
+      require_restorable(effective.id, role);
+    } else {
+      require_new_run(effective.run_directory, effective.id);
+      prepare_run_directory(effective.run_directory, scenario);
+    }
     const int exit_code = run_role(scenario, effective, role, clock);
     if (role == Role::coordinator && options.shows_progress) {
       // The files of the others may still be open, or on other hosts.
@@ -476,13 +557,18 @@ int participant_main(int argc, char** argv, Role role) {
   app.set_version_flag("--version", app.get_name() + " " + std::string{software_version()});
   ParticipantProcessOptions options;
   NetworkOptions network;
-  app.add_option("--scenario", options.scenario_file, "The test's scenario file, the same for every participant")
-      ->required();
+  auto* scenario =
+      app.add_option("--scenario", options.scenario_file, "The test's scenario file, the same for every participant");
   auto* id = app.add_option("--id", options.id, "Which substructure of the scenario this is");
   if (role != Role::coordinator) id->required();
   app.add_option("--set", options.overrides, "Override one value of the scenario, key.path=value; repeatable");
-  app.add_option("--out", options.run_directory, "Directory for the records of this participant")
-      ->default_str("runs/<name>_<time>");
+  auto* out = app.add_option("--out", options.run_directory, "Directory for the records of this participant")
+                  ->default_str("runs/<name>_<time>");
+  std::filesystem::path resumed;
+  auto* resume = app.add_option("--resume", resumed,
+                                "Take the place of a participant of this run directory that died; see docs/resume.md")
+                     ->excludes(scenario)
+                     ->excludes(out);
   bool is_quiet = false;
   app.add_flag("--quiet", is_quiet, "Print events only: no progress, no summary");
   network.add_to(app);
@@ -495,8 +581,22 @@ int participant_main(int argc, char** argv, Role role) {
     const int code = app.exit(error);
     return code == 0 ? 0 : kExitConfiguration;
   }
-  options.network = network.settings();
+  if (resume->count() == 0 && scenario->count() == 0) {
+    std::fprintf(stderr, "--scenario is required\nRun with --help for more information.\n");
+    return kExitConfiguration;
+  }
+  if (resume->count() > 0) {
+    options.resumes = true;
+    options.scenario_file = resumed / "scenario.yaml";
+    options.run_directory = resumed;
+  }
   options.shows_progress = !is_quiet;
+  try {
+    options.network = network.settings(role == Role::coordinator ? std::string{kCoordinatorId} : options.id);
+  } catch (const ConfigError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitConfiguration;
+  }
   return run_participant_process(options, role);
 }
 

@@ -15,9 +15,15 @@ struct ParticipantProcessOptions {
   std::vector<std::string> overrides;
   std::string id;                       // of the substructure; not used by the coordinator
   std::filesystem::path run_directory;  // created if it does not exist
+  /// Takes the place of a process of this run directory that died, with its state. The scenario is that of the
+  /// directory.
+  bool resumes = false;
   fast_dds::FastDdsSettings network;
   bool shows_progress = true;  // on standard error; and the coordinator's summary on standard output
 };
+
+/// @throws ConfigError for more substructures than a test over a network may have.
+void require_distributable(const Scenario& scenario);
 
 /// Runs one participant in this process: reads the scenario, joins the test, takes part until it ends,
 /// closes the records.

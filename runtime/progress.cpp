@@ -51,13 +51,18 @@ std::string_view name(LifecycleState state) noexcept {
     case LifecycleState::stopping: return "stopping";
     case LifecycleState::finished: return "finished";
     case LifecycleState::refused: return "refused";
+    case LifecycleState::waiting: return "waiting for a resumed coordinator";
     case LifecycleState::lost: return "lost";
   }
   return "unknown";
 }
 
-Progress::Progress(const Scenario& scenario, std::FILE* out)
-    : scenario_{scenario}, out_{out}, is_terminal_{isatty(fileno(out)) == 1} {}
+Progress::Progress(const Scenario& scenario, std::FILE* out, std::vector<std::string> heard)
+    : scenario_{scenario}, out_{out}, heard_{std::move(heard)}, is_terminal_{isatty(fileno(out)) == 1} {
+  if (!heard_.empty()) return;
+  heard_.emplace_back(kCoordinatorId);
+  for (const SubstructureScenario& substructure : scenario.substructures) heard_.push_back(substructure.id);
+}
 
 Progress::~Progress() {
   print_repeated(kNever);
@@ -171,8 +176,7 @@ std::string Progress::states() const {
     const auto known = states_.find(id);
     groups[known == states_.end() ? "not found yet" : name(known->second)].push_back(id);
   };
-  add(kCoordinatorId);
-  for (const SubstructureScenario& substructure : scenario_.substructures) add(substructure.id);
+  for (const std::string& id : heard_) add(id);
   if (groups.size() == 1) return fmt::format("all {} {}", groups.begin()->second.size(), groups.begin()->first);
   std::string text;
   for (const auto& [state, ids] : groups) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/messages.hpp"
 #include "core/time.hpp"
@@ -19,7 +20,8 @@ namespace hybridtest {
 class Progress {
  public:
   /// @param out   usually standard error; standard output is for the summary.
-  Progress(const Scenario& scenario, std::FILE* out);
+  /// @param heard   the participants whose states are shown; all of the scenario by default.
+  Progress(const Scenario& scenario, std::FILE* out, std::vector<std::string> heard = {});
   /// Prints what is left of repeated events and ends the rewritten line.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -54,6 +56,7 @@ class Progress {
 
   const Scenario& scenario_;
   std::FILE* out_;
+  std::vector<std::string> heard_;
   bool is_terminal_;
   bool line_is_shown_ = false;
   Instant now_{};  // of the last show()

@@ -54,6 +54,8 @@ struct SimulatedOutcome {
   bool is_done = false;
   StopReason reason = StopReason::none;
   FaultFlags faults = FaultFlags::none;
+  Duration clock_start{};    // simulated time when its clock stood at zero
+  double clock_drift = 0.0;  // [s/s] of its clock against simulated time
 };
 
 struct SimulationResult {

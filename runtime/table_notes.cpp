@@ -21,11 +21,18 @@ std::vector<TableNote> of_coordinator(const Scenario& scenario) {
       untimed("exchanges",
               "One row per command and answer: which substructure (index from 0 into substructure_ids), how long it "
               "took, how often the command was sent."),
+      untimed("clocks",
+              "One row per substructure and half second. there: command received less command sent, which is its clock "
+              "less the coordinator's plus a latency; back: answer received less answer sent. The least and the mean, "
+              "and when the least was, by the coordinator's clock."),
       untimed(
           "bridges",
           "In real time, one row per force that missed its deadline: its step and substructure, its place in the gap, "
           "the work that the force in its place did beyond the measured one (NaN where none followed), and whether "
           "the measured one came late (1) or was interpolated (0)."),
+      untimed("answers",
+              "Of a test that can be resumed (timeouts.resume_s), one row per command, substructure and interface "
+              "degree of freedom: what was commanded and the force that was answered, bit for bit."),
       untimed("opensees", "One row per question of the OpenSees that leads: its step, its trial and its own time."),
       untimed("test", "One row: how many steps were planned and taken, why the test ended, wall time and exit code."),
       untimed("ground_motions", "One row per applied ground motion, after scaling and correction."),

@@ -32,8 +32,11 @@ std::string seconds_text(double seconds) {
 /// The sections `limits`, the short form, and `interlocks`, each interlock in full.
 class SafetySections {
  public:
-  SafetySections(Section& site, CouplingMode mode)
-      : limits_{site.section_or_empty("limits")}, interlocks_{site.section_or_empty("interlocks")}, mode_{mode} {}
+  SafetySections(Section& site, CouplingMode mode, double link_s)
+      : limits_{site.section_or_empty("limits")},
+        interlocks_{site.section_or_empty("interlocks")},
+        mode_{mode},
+        link_s_{link_s} {}
 
   void read(const TrackingExpectation& rig, LoopScenario& loop) {
     loop_ = &loop;
@@ -85,9 +88,10 @@ class SafetySections {
     if (is_long && limits_.has("command_age_s")) {
       section.error("limit_s", "this limit is given under limits.command_age_s already");
     }
+    const double fallback_s = mode_ == CouplingMode::lockstep ? std::max(1.0, link_s_) : 1.0;
     loop_->limits.command_age_s =
-        is_long ? section.number("limit_s", kCommandAge) : limits_.number("command_age_s", kCommandAge, 1.0);
-    read_rule(InterlockKind::command_age, section);
+        is_long ? section.number("limit_s", kCommandAge) : limits_.number("command_age_s", kCommandAge, fallback_s);
+    read_rule(InterlockKind::command_age, section, mode_ == CouplingMode::paced && link_s_ > 0.0);
   }
 
   void read_tracking_indicator() {
@@ -131,13 +135,14 @@ class SafetySections {
     read_rule(InterlockKind::stuck_sensor, section);
   }
 
-  void read_rule(InterlockKind kind, Section& section) {
+  void read_rule(InterlockKind kind, Section& section, bool clears_by_default = false) {
     static const std::vector<std::string> kActions{"warn", "hold", "ramp_to_zero", "release"};
     static const std::vector<std::string> kClears{"when_cleared", "operator_reset", "never"};
     InterlockRule& rule = loop_->rules[static_cast<std::size_t>(kind)];
     const std::size_t fallback = static_cast<std::size_t>(rule.action) - 1;
     rule.action = static_cast<SafetyAction>(section.choice("action", kActions, kActions[fallback]) + 1);
-    rule.clears = static_cast<ClearCondition>(section.choice("clears", kClears, "never"));
+    const bool may_clear = clears_by_default && rule.action <= SafetyAction::hold;
+    rule.clears = static_cast<ClearCondition>(section.choice("clears", kClears, may_clear ? "when_cleared" : "never"));
     if (kind == InterlockKind::not_finite && rule.action == SafetyAction::warn) {
       section.error(
           "action",
@@ -158,6 +163,7 @@ class SafetySections {
   Section limits_;
   Section interlocks_;
   CouplingMode mode_;
+  double link_s_;
   LoopScenario* loop_ = nullptr;
 };
 
@@ -176,9 +182,10 @@ TrajectorySettings read_trajectory(Section section) {
 
 }  // namespace
 
-LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s, const TrackingExpectation& rig) {
+LoopScenario read_loop(Section& site, CouplingMode mode, double site_step_s, double link_s,
+                       const TrackingExpectation& rig) {
   LoopScenario loop;
-  SafetySections{site, mode}.read(rig, loop);
+  SafetySections{site, mode, link_s}.read(rig, loop);
   if (mode != CouplingMode::lockstep && loop.limits.command_age_s <= site_step_s) {
     site.error("limits", "command_age_s of " + seconds_text(loop.limits.command_age_s) +
                              " is no longer than a step, step_s times time_scale, of " + seconds_text(site_step_s) +

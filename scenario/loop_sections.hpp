@@ -38,8 +38,11 @@ struct TrackingExpectation {
 ///   - `stuck_sensor`: identical readings for 0.1 s longer than a reading may be late, after the command has moved by
 ///     a thousandth of the displacement limit: twice the step of a 12-bit converter over a range of both limits.
 /// @param site          the experimental substructure's section.
+/// Where the test waits for a link that is down, the site waits with it: in paced mode `command_age` clears by itself,
+/// in lockstep, where nothing moves meanwhile, its limit is that time.
 /// @param site_step_s   coupling step in site time.
-[[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s,
+/// @param link_s        for so long the test waits for a link that is down.
+[[nodiscard]] LoopScenario read_loop(config::Section& site, CouplingMode mode, double site_step_s, double link_s,
                                      const TrackingExpectation& rig);
 
 /// Reads `real_time`, of a site, a numerical substructure or the coordinator.

@@ -63,13 +63,37 @@ void read_time(Section section, TimeScenario& time) {
   section.finish();
 }
 
-void read_timeouts(Section& root, TimeoutScenario& timeouts) {
+/// Waiting for a resumed coordinator is for tests that can stand still, and that have their state in our recording.
+void check_resume(Section& root, const Scenario& scenario) {
+  if (scenario.timeouts.resume <= Duration::zero()) return;
+  if (scenario.time.mode == CouplingMode::real_time) {
+    root.error("timeouts", "resume_s: a test in real time cannot wait for a coordinator; leave it out, or use `paced`");
+  }
+  if (scenario.opensees) {
+    root.error("timeouts", "resume_s: OpenSees, which leads, cannot be resumed; leave it out");
+  }
+  const double lease_s = to_seconds(scenario.timeouts.silence_most());
+  for (const SubstructureScenario& substructure : scenario.substructures) {
+    if (substructure.role != Role::experimental_site) continue;
+    if (substructure.site.loop.limits.command_age_s > lease_s) continue;
+    root.error("timeouts", "resume_s: the site '" + substructure.id +
+                               "' would end the test before it knows that the coordinator is lost: give it a "
+                               "limits.command_age_s longer than timeouts.liveliness_lease_s");
+  }
+}
+
+void read_timeouts(Section& root, CouplingMode mode, TimeoutScenario& timeouts) {
   constexpr Range kTimeout{.low = 0.1, .high = 86400.0};
   Section section = root.section_or_empty("timeouts");
   timeouts.discovery = from_seconds(section.number("discovery_s", kTimeout, 30.0));
   timeouts.arm = from_seconds(section.number("arm_s", kTimeout, 10.0));
   timeouts.stop = from_seconds(section.number("stop_s", kTimeout, 10.0));
   timeouts.liveliness_lease = from_seconds(section.number("liveliness_lease_s", kTimeout, 2.0));
+  timeouts.link = from_seconds(section.number("link_s", {.low = 0.0, .high = 86400.0}, 0.0));
+  if (mode == CouplingMode::real_time && timeouts.link > Duration{0}) {
+    section.error("link_s", "in real time the test does not wait for a link that is down: leave it out");
+  }
+  timeouts.resume = from_seconds(section.number("resume_s", {.low = 0.0, .high = 86400.0}, 0.0));
   section.finish();
 }
 
@@ -297,7 +321,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   };
   site.has_estimator = std::ranges::any_of(commands, [](const auto& reading) { return bool{reading.make_at}; }) ||
                        std::ranges::any_of(forces, [](const auto& reading) { return bool{reading.make_at}; });
-  site.loop = read_loop(section, time.mode, site_step_s,
+  site.loop = read_loop(section, time.mode, site_step_s, std::chrono::duration<double>{scenario.timeouts.link}.count(),
                         tracking_expectation(rig, site.delays, site_step_s / site.periods_per_step));
   substructure.real_time = read_real_time(section, time.mode != CouplingMode::lockstep);
   if (time.mode == CouplingMode::real_time) {
@@ -375,8 +399,10 @@ bool is_held_by(const Eigen::SparseMatrix<double>& stiffness, Eigen::Index dof) 
 }
 
 void check_substructures(Section& root, const Scenario& scenario) {
-  if (scenario.substructures.empty() || scenario.substructures.size() > kMaxSubstructures) {
-    root.error("substructures", "expected 1 to " + std::to_string(kMaxSubstructures) + " substructures");
+  if (scenario.substructures.empty() || scenario.substructures.size() > kMaxSimulatedSubstructures) {
+    root.error("substructures", std::to_string(scenario.substructures.size()) + " substructures; expected 1 to " +
+                                    std::to_string(kMaxSubstructures) + ", or under simulated time alone up to " +
+                                    std::to_string(kMaxSimulatedSubstructures));
   }
   for (std::size_t i = 0; i < scenario.substructures.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -531,14 +557,16 @@ std::vector<Section> read_substructures(Section& root, const config::Document& d
   return substructures;
 }
 
-/// What is recorded, and the limits of time: the end of a scenario.
+/// What is recorded: the end of a scenario.
 void read_rest(Section& root, const DofTable& table, Scenario& scenario) {
-  scenario.recorded_dofs =
-      read_output(root, table, interface_dofs(scenario, kAllRecordedUpTo), !scenario.excitation.forces.empty());
+  // The interfaces of more substructures than go over a network may be more than a table has columns for.
+  const bool has_few = scenario.substructures.size() <= kMaxSubstructures;
+  scenario.recorded_dofs = read_output(root, table, {interface_dofs(scenario, kAllRecordedUpTo), has_few},
+                                       !scenario.excitation.forces.empty());
   for (SubstructureScenario& substructure : scenario.substructures) {
     substructure.recorded = recorded_interface(substructure, scenario.recorded_dofs);
   }
-  read_timeouts(root, scenario.timeouts);
+  check_resume(root, scenario);
   Section recording = root.section_or_empty("recording");
   scenario.stop_on_recording_failure = recording.choice("on_failure", {"stop", "continue"}, "stop") == 0;
   recording.finish();
@@ -664,6 +692,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<std:
   scenario.name = plain_name(root, "name", kTestNameLongest);
   if (root.has("description")) static_cast<void>(root.text("description", ""));
   read_time(root.section("time"), scenario.time);
+  read_timeouts(root, scenario.time.mode, scenario.timeouts);
   scenario.opensees = read_opensees_lead(root, document.directory(), scenario.files);
   if (scenario.time.mode == CouplingMode::real_time) {
     scenario.real_time = {read_bridging(root, scenario.time.step_s), read_real_time(root, true)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -48,6 +49,11 @@ struct TimeoutScenario {
   Duration arm{};
   Duration stop{};
   Duration liveliness_lease{};
+  Duration link{};    // how long a test waits for a link that is down; zero: no longer than the lease
+  Duration resume{};  // for which the others wait for a resumed coordinator; 0: they end the test
+
+  /// Of a participant that sends nothing.
+  [[nodiscard]] Duration silence_most() const noexcept { return std::max(liveliness_lease, link); }
 };
 
 /// Delay of the force at one interface degree of freedom, for the preflight. [s]

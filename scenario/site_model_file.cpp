@@ -83,7 +83,7 @@ void give_compensators(const std::vector<CompensatorReading>& readings, Section&
 /// Makes every part once, so that what they object to is found here.
 void try_out(const std::vector<SiteModel>& dofs, double period_s) {
   for (const SiteModel& dof : dofs) {
-    static_cast<void>(dof.make_transfer_system(period_s, delay_change_s(dof)));
+    static_cast<void>(transfer_system_of(dof, period_s));
     if (dof.make_law) static_cast<void>(dof.make_law());
     if (dof.make_compensator) static_cast<void>(dof.make_compensator(period_s, setting_change_s(dof)));
     for (const EffectInterface interface : site_interfaces()) static_cast<void>(effects_at(dof, interface, period_s));

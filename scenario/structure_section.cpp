@@ -252,12 +252,16 @@ Eigen::VectorXd read_influence(Section& excitation, const DofTable& dofs) {
   return uniform_influence(dofs, direction);
 }
 
-std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const std::vector<Eigen::Index>& always,
+std::vector<Eigen::Index> read_output(Section& root, const DofTable& dofs, const InterfaceRows& interfaces,
                                       bool records_forces) {
-  std::set<Eigen::Index> rows{always.begin(), always.end()};
+  std::set<Eigen::Index> rows;
+  if (interfaces.are_recorded) rows.insert(interfaces.rows.begin(), interfaces.rows.end());
   if (auto output = root.optional_section("output")) {
     for (const std::string& pattern : output->names("degrees_of_freedom")) {
-      if (pattern == "interfaces") continue;
+      if (pattern == "interfaces") {
+        rows.insert(interfaces.rows.begin(), interfaces.rows.end());
+        continue;
+      }
       const std::vector<int> found = dofs.matching(pattern == "all" ? "*" : pattern);
       if (found.empty()) output->error("degrees_of_freedom", no_such_dof(pattern, dofs));
       rows.insert(found.begin(), found.end());

@@ -44,12 +44,18 @@ struct StructureReading {
 /// Without the section `output`, as many degrees of freedom of a structure or of an interface are all recorded.
 inline constexpr std::size_t kAllRecordedUpTo = 100;
 
+/// Degrees of freedom at interfaces.
+struct InterfaceRows {
+  std::vector<Eigen::Index> rows;
+  bool are_recorded = true;  // in any case; otherwise where `output` lists `interfaces`
+};
+
 /// Rows of the degrees of freedom that the coordinator records, in order: those of `output`, or without that section
-/// all of a structure of up to kAllRecordedUpTo, of a larger one 20 evenly over the table; and the ones in `always`.
+/// all of a structure of up to kAllRecordedUpTo, of a larger one 20 evenly over the table; and those of `interfaces`.
 /// @param records_forces   a column more for each, the applied force.
 /// Reports more of them than the columns of a table hold, and names that are too long for a column.
 [[nodiscard]] std::vector<Eigen::Index> read_output(config::Section& root, const DofTable& dofs,
-                                                    const std::vector<Eigen::Index>& always, bool records_forces);
+                                                    const InterfaceRows& interfaces, bool records_forces);
 
 /// Row that the text at `key` addresses; reports an unknown one and returns 0.
 [[nodiscard]] int dof_position(config::Section& section, std::string_view key, const DofTable& dofs);

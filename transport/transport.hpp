@@ -28,6 +28,11 @@ struct TransportCounters {
   std::uint64_t malformed = 0;         // dropped because the bytes were not a valid message
   std::uint64_t unsent = 0;            // send() returned false
   std::uint64_t deadlines_missed = 0;  // heartbeats of participants that came late
+  // Packets that were refused before they were read (docs/security.md):
+  std::uint64_t refused_harmful = 0;        // would hang or end the process
+  std::uint64_t refused_in_plain_text = 0;  // with credentials: neither encrypted nor needed to find each other
+  std::uint64_t refused_announcements = 0;  // with credentials: false, or in the name of another participant
+  std::uint64_t refused_departures = 0;     // with credentials: that a participant has left; genuine ones, too
 };
 
 /// The connection of one participant to the test: makes the ports of its Node.
@@ -61,9 +66,12 @@ class Transport {
   /// Only commands for this substructure.
   [[nodiscard]] virtual std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) = 0;
 
-  [[nodiscard]] virtual std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() = 0;
-  /// Measurements of every substructure.
-  [[nodiscard]] virtual std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() = 0;
+  /// Only measurements of this substructure.
+  [[nodiscard]] virtual std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox(
+      SubstructureIndex substructure) = 0;
+  /// Measurements of substructures 0 .. count - 1.
+  [[nodiscard]] virtual std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox(
+      std::uint16_t substructure_count) = 0;
 
   [[nodiscard]] virtual std::unique_ptr<Outbox<TestControl>> control_outbox() = 0;
   [[nodiscard]] virtual std::unique_ptr<Inbox<TestControl>> control_inbox() = 0;
@@ -75,9 +83,9 @@ class Transport {
   [[nodiscard]] virtual std::unique_ptr<Outbox<SignalBlock>> signal_outbox() = 0;
   [[nodiscard]] virtual std::unique_ptr<Inbox<SignalBlock>> signal_inbox() = 0;
 
-  /// True when one and the same other participant takes this substructure's commands and sends
-  /// measurements, and this participant holds the opposite ports: a command sent now arrives.
-  /// A change signals waker().
+  /// True when one and the same other participant holds the opposite ports for the commands and the measurements of
+  /// this substructure, as far as this end knows. When both ends know it, what is sent arrives. Either end may ask. A
+  /// change signals waker().
   [[nodiscard]] virtual bool reachable(SubstructureIndex substructure) const noexcept = 0;
 
   [[nodiscard]] virtual TransportCounters counters() const noexcept = 0;

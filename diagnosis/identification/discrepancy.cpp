@@ -272,12 +272,22 @@ ResidualParts Discrepancy::parts(const Eigen::VectorXd& residual) const {
   return best_of(residual, std::move(remainders));
 }
 
-Eigen::VectorXd Discrepancy::pull(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) const {
-  const double repeatable =
-      best_of(residual, {left_out(residual, features_.cols(), tuning::kRidges[tuning::kRidges.size() / 2])}).repeatable;
-  if (repeatable <= 0.0) return Eigen::VectorXd::Zero(weights.cols());
-  const double of_each = repeatable / static_cast<double>(features_.cols());
-  return of_each * (features_.transpose() * weights).cwiseAbs2().colwise().sum().transpose();
+double Discrepancy::repeatable(const Eigen::VectorXd& residual) const {
+  return best_of(residual, {left_out(residual, features_.cols(), tuning::kRidges[tuning::kRidges.size() / 2])})
+      .repeatable;
+}
+
+Eigen::MatrixXd Discrepancy::pull(double energy, const Eigen::MatrixXd& weights) const {
+  if (energy <= 0.0) return Eigen::MatrixXd::Zero(1, weights.cols());
+  const double of_each = energy / static_cast<double>(features_.cols());
+  return std::sqrt(of_each) * (features_.transpose() * weights);
+}
+
+Eigen::VectorXd variances_of_sums(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
+  const std::vector<double> covariance = autocovariance(residual);
+  Eigen::VectorXd variances(weights.cols());
+  for (Eigen::Index i = 0; i < weights.cols(); ++i) variances[i] = variance_along(weights.col(i), covariance);
+  return variances;
 }
 
 double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual) {

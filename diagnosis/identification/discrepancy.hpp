@@ -36,11 +36,15 @@ class Discrepancy {
   /// @param residual   in the averaged samples of the segment, unweighted.
   [[nodiscard]] ResidualParts parts(const Eigen::VectorXd& residual) const;
 
-  /// Variances of numbers that are weighted sums of the residual, from the part of it that repeats: each feature may
-  /// hold as much of its energy as all do on average (all features, the middle penalty), and pulls at the numbers by
-  /// its product with their weights.
+  /// Mean square of a residual that repeats, by all features and the middle penalty; 0: nothing is seen to.
+  [[nodiscard]] double repeatable(const Eigen::VectorXd& residual) const;
+
+  /// How a misfit that repeats may pull at numbers that are weighted sums of the residual: each feature may hold as
+  /// much of its energy as all do on average, and pulls by its product with their weights.
+  /// @param energy    mean square of the misfit.
   /// @param weights   one column per number, one row per averaged sample.
-  [[nodiscard]] Eigen::VectorXd pull(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) const;
+  /// @return one row per feature, one column per number: R' R is their covariance.
+  [[nodiscard]] Eigen::MatrixXd pull(double energy, const Eigen::MatrixXd& weights) const;
 
  private:
   /// Of several remainders the one whose gain, minus its error, is largest; the residual itself if none counts.
@@ -59,6 +63,11 @@ class Discrepancy {
 /// Share of a residual's energy that is repeatable: seen again on held-out cycles. 0 to 1.
 /// @param residual   in the averaged samples of the segment, unweighted: `fit.measured` minus a prediction.
 [[nodiscard]] double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual);
+
+/// Variances of weighted sums of a residual that is the same noise throughout: its autocovariance with Bartlett's
+/// weights, which keep them positive (Newey and West, Econometrica 55, 1987).
+/// @param weights   one column per sum, one row per sample.
+[[nodiscard]] Eigen::VectorXd variances_of_sums(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights);
 
 /// Samples over the integrated autocorrelation time 1 + 2 sum r(k), summed up to the first lag beyond five of these
 /// times (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997). At least 1, at most all.

@@ -4,7 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/search.hpp"
@@ -93,10 +96,11 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
   }
 }
 
-/// Variances of the free parameters, and their degrees of freedom.
-struct Variances {
-  Eigen::VectorXd values;
-  double freedom = 1.0;
+/// What is not known of the free parameters.
+struct Doubt {
+  Eigen::VectorXd variances;   // beside a model whose numbers are right
+  Eigen::MatrixXd covariance;  // beside one whose numbers are slightly wrong
+  double freedom = 1.0;        // degrees of freedom of both
 };
 
 /// What a block pulls at the parameters, as if it had not pulled the fit towards itself: its residual over one minus
@@ -112,65 +116,242 @@ Eigen::VectorXd pull_of_block(const Eigen::MatrixXd& columns, const Eigen::Vecto
   return root * (leverage.eigenvectors() * scale.cwiseProduct(own));
 }
 
+/// How the residual moves parameters that are fitted by least squares, and slightly wrong numbers beside them that
+/// are known to some precision before the test.
+class Sandwich {
+ public:
+  /// @param precision   of each column's coefficient, in units of the squared residual of one sample; 0: not known.
+  Sandwich(const Eigen::MatrixXd& columns, const Eigen::VectorXd& precision)
+      : columns_{columns}, inverse_{inverse_of(columns, precision)} {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts{inverse_};
+    root_ = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    covariance_ = Eigen::MatrixXd::Zero(inverse_.rows(), inverse_.cols());
+  }
+
+  [[nodiscard]] Eigen::MatrixXd weights(Eigen::Index first, Eigen::Index size) const {
+    return columns_.middleRows(first, size) * inverse_;
+  }
+  [[nodiscard]] const Eigen::MatrixXd& covariance() const noexcept { return covariance_; }
+
+  /// Widens what is known so far of the first parameters to at least these variances; how they go together stays.
+  void widen_to(const Eigen::VectorXd& variances) {
+    for (Eigen::Index i = 0; i < variances.size(); ++i) {
+      const double known = covariance_(i, i);
+      if (known >= variances[i]) continue;
+      const double factor = known > 0.0 ? std::sqrt(variances[i] / known) : 0.0;
+      covariance_.row(i) *= factor;
+      covariance_.col(i) *= factor;
+      covariance_(i, i) = variances[i];
+    }
+  }
+  void add_block(const Eigen::VectorXd& residual, Eigen::Index first, Eigen::Index size) {
+    const Eigen::VectorXd pull = pull_of_block(columns_.middleRows(first, size), residual.segment(first, size), root_);
+    covariance_ += pull * pull.transpose();
+  }
+  /// @param pull   one column per parameter; see Discrepancy::pull().
+  void add_pull(const Eigen::MatrixXd& pull) { covariance_ += pull.transpose() * pull; }
+  /// What is not known of the numbers before the test. @param meat   its part between the two inverses.
+  void add_prior(const Eigen::VectorXd& meat) { covariance_ += inverse_ * meat.asDiagonal() * inverse_; }
+
+ private:
+  static Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& precision) {
+    Eigen::MatrixXd normal = columns.transpose() * columns;
+    normal.diagonal() += precision;
+    return regularised(std::move(normal)).ldlt().solve(Eigen::MatrixXd::Identity(columns.cols(), columns.cols()));
+  }
+
+  const Eigen::MatrixXd& columns_;
+  Eigen::MatrixXd inverse_;
+  Eigen::MatrixXd root_;
+  Eigen::MatrixXd covariance_;
+};
+
+/// The weighted changes by numbers of the model that may be slightly wrong beside these effects, one column for each,
+/// and by how much each may be off [standard deviation].
+struct WrongNumbers {
+  Eigen::MatrixXd columns;
+  std::vector<double> deviations;
+};
+
+/// What was found at a channel before is known as well as it could be told there.
+void add_found_before(const VariableProjection& projection, const IdentificationProblem& problem,
+                      WrongNumbers& numbers) {
+  const Eigen::Index count = problem.segments.front().found_changes.cols();
+  if (count == 0) return;
+  Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(projection.rows(), count);
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    changes.middleRows(projection.first_row(t), fit.measured.size()) = fit.weight * fit.found_changes;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (changes.col(i).squaredNorm() == 0.0) continue;
+    numbers.columns.conservativeResize(projection.rows(), numbers.columns.cols() + 1);
+    numbers.columns.rightCols(1) = changes.col(i);
+    numbers.deviations.push_back(1.0);
+  }
+}
+
+WrongNumbers numbers_beside(const VariableProjection& projection, const IdentificationProblem& problem,
+                            const FitOutcome& outcome) {
+  WrongNumbers numbers;
+  std::vector<const EffectType*> types;
+  double output = 0.0;
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    output += fit.weight * fit.weight * fit.measured.squaredNorm();
+    for (std::size_t i = 0; i < fit.number_types.size(); ++i) {
+      const EffectType* const type = fit.number_types[i];
+      const bool is_fitted =
+          std::ranges::find(outcome.effects, type, &EffectSetting::type) != outcome.effects.end() ||
+          (outcome.with_nuisance && std::ranges::find(fit.nuisance_types, type) != fit.nuisance_types.end());
+      // A zero is known exactly before a test.
+      if (is_fitted || type->traits.number == ModelNumber::offset) continue;
+      auto place = std::ranges::find(types, type) - types.begin();
+      if (place == static_cast<std::ptrdiff_t>(types.size())) {
+        types.push_back(type);
+        numbers.columns.conservativeResize(projection.rows(), place + 1);
+        numbers.columns.col(place).setZero();
+      }
+      numbers.columns.col(place).segment(projection.first_row(t), fit.measured.size()) +=
+          fit.weight * fit.number_slopes.col(static_cast<Eigen::Index>(i));
+    }
+  }
+  Eigen::Index kept = 0;
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    const Eigen::VectorXd column = numbers.columns.col(static_cast<Eigen::Index>(i));
+    if (column.squaredNorm() == 0.0) continue;
+    numbers.columns.col(kept++) = column;
+    // A bandwidth is known by itself; the others by what they change of the output.
+    const double size = types[i]->traits.number == ModelNumber::bandwidth ? 1.0 : column.norm() / std::sqrt(output);
+    numbers.deviations.push_back(tuning::kNumbersWithin / size);
+  }
+  numbers.columns.conservativeResize(projection.rows(), kept);
+  add_found_before(projection, problem, numbers);
+  return numbers;
+}
+
+/// Of what no model is expected to reproduce: its energy, in weighted squares.
+double allowed_energy(const FitSegment& fit) {
+  const double allowed = tuning::kModelAllowance * fit.weight;
+  return allowed * allowed * fit.measured.squaredNorm() / static_cast<double>(fit.measured.size());
+}
+
 /// Two parts. One is how much blocks disagree (Liang and Zeger, Biometrika 73, 1986, blocks as clusters, corrected for
 /// their small number): noise of any colour and distribution. The other is what repeats of the residual and that no
 /// difference between blocks shows: the discrepancy term, of which each feature may take as much as all take here on
 /// average, also along the columns of the parameters (random effects).
-Variances variances_of(const VariableProjection& projection, const IdentificationProblem& problem,
-                       const Linearisation& linear, const Eigen::VectorXd& residual) {
+///
+/// Beside wrong numbers both have a lower limit. So few blocks may agree by chance: noise that is the same throughout
+/// would move the parameters at least as much. And a misfit that fits the parameters leaves nothing to be seen: it is
+/// as large as what no model is expected to reproduce.
+Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
+               const Eigen::VectorXd& residual, const FitOutcome& outcome) {
   const Eigen::Index count = linear.columns.cols();
   if (count == 0) return {};
-  const Eigen::MatrixXd inverse =
-      regularised(linear.columns.transpose() * linear.columns).ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts{inverse};
-  const Eigen::MatrixXd root = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  Variances result{.values = Eigen::VectorXd::Zero(count)};
+  const WrongNumbers numbers = numbers_beside(projection, problem, outcome);
+  const auto beside = static_cast<Eigen::Index>(numbers.deviations.size());
+  Eigen::MatrixXd all(linear.columns.rows(), count + beside);
+  all.leftCols(count) = linear.columns;
+  if (beside > 0) all.rightCols(beside) = numbers.columns;
+  // Noise of one sample, as if all were independent of each other.
+  double independent = 0.0;
+  for (const std::size_t position : projection.touched()) independent += problem.segments[position].independent;
+  const double noise = residual.squaredNorm() / std::max(1.0, independent);
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(count + beside);
+  Eigen::VectorXd meat = precision;
+  for (Eigen::Index i = 0; i < beside; ++i) {
+    const double deviation = numbers.deviations[static_cast<std::size_t>(i)];
+    const double known = noise / (deviation * deviation);
+    precision[count + i] = known;
+    meat[count + i] = known * noise;
+  }
+  Sandwich right{linear.columns, Eigen::VectorXd::Zero(count)};
+  Sandwich wrong{all, precision};
+  Eigen::VectorXd by_noise = Eigen::VectorXd::Zero(count);
   double blocks = 0.0;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
+    const Eigen::Index begin = projection.first_row(t);
     for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b, blocks += 1.0) {
-      const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
-      result.values +=
-          pull_of_block(linear.columns.middleRows(first, size), residual.segment(first, size), root).cwiseAbs2();
+      right.add_block(residual, begin + fit.block_begins[b], size);
+      wrong.add_block(residual, begin + fit.block_begins[b], size);
     }
-    const Eigen::Index first = projection.first_row(t);
     const Eigen::Index size = fit.measured.size();
-    result.values +=
-        fit.discrepancy->pull(residual.segment(first, size), linear.columns.middleRows(first, size) * inverse);
+    by_noise += variances_of_sums(residual.segment(begin, size), wrong.weights(begin, size).leftCols(count));
   }
-  result.freedom = std::max(1.0, blocks - 1.0);
-  return result;
+  wrong.widen_to(by_noise);
+  wrong.add_prior(meat);
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    const Eigen::Index begin = projection.first_row(t);
+    const Eigen::Index size = fit.measured.size();
+    const double repeatable = fit.discrepancy->repeatable(residual.segment(begin, size));
+    right.add_pull(fit.discrepancy->pull(repeatable, right.weights(begin, size)));
+    wrong.add_pull(fit.discrepancy->pull(std::max(repeatable, allowed_energy(fit)), wrong.weights(begin, size)));
+  }
+  return {
+      .variances = right.covariance().diagonal(),
+      .covariance = tuning::kIntervalScale * tuning::kIntervalScale * wrong.covariance().topLeftCorner(count, count),
+      .freedom = std::max(1.0, blocks - 1.0)};
 }
 
-std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& projection,
-                                                      const IdentificationProblem& problem,
-                                                      const Eigen::VectorXd& places, const Projected& solution,
-                                                      const Linearisation& linear, const FitOutcome& outcome) {
-  std::vector<std::vector<ParameterEstimate>> result;
+/// Where a free parameter of the linearisation stands among those of the effects, and its unit there.
+struct FreeParameter {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  double unit = 0.0;
+};
+
+/// Nothing for a nuisance.
+std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen::VectorXd& places, std::size_t index) {
+  if (index < plan.searched.size()) {
+    const SearchedParameter& searched = plan.searched[index];
+    const double place = places[static_cast<Eigen::Index>(index)];
+    const double per_place = (searched.at(std::min(1.0, place + tuning::kSlopeStep)) -
+                              searched.at(std::max(0.0, place - tuning::kSlopeStep))) /
+                             (2.0 * tuning::kSlopeStep);
+    return FreeParameter{searched.effect, searched.parameter, std::abs(per_place)};
+  }
+  if (index - plan.searched.size() >= plan.linear.size()) return {};
+  const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
+  return FreeParameter{parameter.effect, parameter.parameter, parameter.unit};
+}
+
+/// Fills in the parameters of an outcome whose effects are known.
+void estimate(const VariableProjection& projection, const IdentificationProblem& problem, const Eigen::VectorXd& places,
+              const Projected& solution, const Linearisation& linear, FitOutcome& outcome) {
+  std::vector<std::vector<ParameterEstimate>>& result = outcome.parameters;
   for (const EffectSetting& effect : outcome.effects) {
+    const auto count = static_cast<Eigen::Index>(effect.values.size());
+    outcome.covariances.emplace_back(Eigen::MatrixXd::Zero(count, count));
     result.emplace_back();
     for (const double value : effect.values) result.back().push_back({.value = value});
   }
-  const Variances variances = variances_of(projection, problem, linear, solution.residual);
+  const Doubt doubt = doubt_of(projection, problem, linear, solution.residual, outcome);
   const SearchPlan& plan = projection.plan();
-  for (std::size_t i = 0; i < linear.free.size(); ++i) {
-    const double deviation = std::sqrt(variances.values[static_cast<Eigen::Index>(i)]);
-    const std::size_t index = linear.free[i];
-    if (index < plan.searched.size()) {
-      const SearchedParameter& searched = plan.searched[index];
-      const double place = places[static_cast<Eigen::Index>(index)];
-      const double per_place = (searched.at(std::min(1.0, place + tuning::kSlopeStep)) -
-                                searched.at(std::max(0.0, place - tuning::kSlopeStep))) /
-                               (2.0 * tuning::kSlopeStep);
-      ParameterEstimate& estimate = result[searched.effect][searched.parameter];
-      estimate.standard_error = deviation * std::abs(per_place);
-      estimate.freedom = variances.freedom;
-    } else if (index - plan.searched.size() < plan.linear.size()) {
-      const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
-      ParameterEstimate& estimate = result[parameter.effect][parameter.parameter];
-      estimate.standard_error = deviation * std::abs(parameter.unit);
-      estimate.freedom = variances.freedom;
+  std::vector<std::optional<FreeParameter>> free;
+  for (const std::size_t index : linear.free) free.push_back(free_parameter(plan, places, index));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::optional<FreeParameter>& here = free[i];
+    if (!here) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    ParameterEstimate& estimate = result[here->effect][here->parameter];
+    estimate.standard_error = std::sqrt(doubt.variances[row]) * std::abs(here->unit);
+    estimate.beside_wrong_numbers = std::sqrt(std::max(0.0, doubt.covariance(row, row))) * std::abs(here->unit);
+    estimate.freedom = doubt.freedom;
+    // Packets are taken up at whole samples: an arrival is known to one sample.
+    const EffectType& type = *outcome.effects[here->effect].type;
+    if (type.interface == EffectInterface::network && type.parameters[here->parameter].unit == "s") {
+      estimate.beside_wrong_numbers = std::max(estimate.beside_wrong_numbers,
+                                               problem.segments.front().segment.period_s / quantile_95(doubt.freedom));
+    }
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      const std::optional<FreeParameter>& there = free[j];
+      if (!there || there->effect != here->effect) continue;
+      outcome.covariances[here->effect](static_cast<Eigen::Index>(here->parameter),
+                                        static_cast<Eigen::Index>(there->parameter)) =
+          here->unit * there->unit * doubt.covariance(row, static_cast<Eigen::Index>(j));
     }
   }
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
@@ -181,7 +362,6 @@ std::vector<std::vector<ParameterEstimate>> estimates(const VariableProjection& 
   for (std::size_t i = 0; i < plan.linear.size(); ++i) {
     result[plan.linear[i].effect][plan.linear[i].parameter].at_bound = solution.held[i];
   }
-  return result;
 }
 
 /// For segments that the effects do not change: the residual of the baseline.
@@ -235,7 +415,7 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
     result.change = fit.measured - fit.baseline -
                     solution.residual.segment(projection.first_row(t), fit.measured.size()) / fit.weight;
   }
-  outcome.parameters = estimates(projection, problem, places, solution, linear, outcome);
+  estimate(projection, problem, places, solution, linear, outcome);
   return outcome;
 }
 
@@ -272,14 +452,16 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
 
 }  // namespace
 
-double half_width_95(const ParameterEstimate& estimate) noexcept {
+double quantile_95(double freedom) noexcept {
   const double z = tuning::kTwoSided95;
-  const double n = 1.0 / estimate.freedom;
-  const double quantile =
-      z + n * ((std::pow(z, 3) + z) / 4.0 +
-               n * ((5.0 * std::pow(z, 5) + 16.0 * std::pow(z, 3) + 3.0 * z) / 96.0 +
-                    n * (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * std::pow(z, 3) - 15.0 * z) / 384.0));
-  return quantile * estimate.standard_error;
+  const double n = 1.0 / freedom;
+  return z + n * ((std::pow(z, 3) + z) / 4.0 +
+                  n * ((5.0 * std::pow(z, 5) + 16.0 * std::pow(z, 3) + 3.0 * z) / 96.0 +
+                       n * (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * std::pow(z, 3) - 15.0 * z) / 384.0));
+}
+
+double half_width_95(const ParameterEstimate& estimate) noexcept {
+  return quantile_95(estimate.freedom) * estimate.standard_error;
 }
 
 double SegmentResult::held_out_mean_square(const FitSegment& segment) const {

@@ -13,10 +13,15 @@ struct ParameterEstimate {
   double standard_error = 0.0;  // from the differences between blocks, and from what repeats of the residual
   bool at_bound = false;        // of its search range
   double freedom = std::numeric_limits<double>::infinity();  // degrees of freedom of the standard error: blocks - 1
+  // The standard error when every number of the model may be slightly wrong beside; what an interval is made of.
+  double beside_wrong_numbers = 0.0;
 };
 
-/// Half of the 95 % interval: Student's quantile times the standard error. The quantile is expanded in the inverse of
-/// the degrees of freedom (Abramowitz and Stegun, 1964, 26.7.5; within 0.3 % from 4 on).
+/// Student's quantile of 95 %, two-sided, expanded in the inverse of the degrees of freedom (Abramowitz and Stegun,
+/// 1964, 26.7.5; within 0.3 % from 4 on).
+[[nodiscard]] double quantile_95(double freedom) noexcept;
+
+/// Half of the 95 % interval beside a model whose numbers are right.
 [[nodiscard]] double half_width_95(const ParameterEstimate& estimate) noexcept;
 
 /// Residuals of a fit on one segment, in its averaged samples.
@@ -33,6 +38,8 @@ struct SegmentResult {
 struct FitOutcome {
   std::vector<EffectSetting> effects;
   std::vector<std::vector<ParameterEstimate>> parameters;  // per effect
+  std::vector<Eigen::MatrixXd> covariances;                // per effect, of its parameters; the root of a diagonal is
+                                                           // ParameterEstimate::beside_wrong_numbers
   bool with_nuisance = false;
   std::vector<double> nuisance;         // coefficients of the touched segments' columns, one behind the other
   double cost_of_numbers = 0.0;         // of the free ones, beside these effects [nats]

@@ -1,11 +1,13 @@
 #include "diagnosis/identification/problem.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
+#include "core/config_error.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/localisation/floor.hpp"
@@ -122,6 +124,56 @@ void add_nuisances(const SiteModel& model, bool law_is_spring, FitSegment& fit) 
   add_nuisance(fit, displacement_sensor, ModelNumber::offset, ones);
 }
 
+void add_number_slope(const SiteModel& model, const EffectType* type, double step, FitSegment& fit) {
+  if (type == nullptr || !fit.segment.touched_by(*type)) return;
+  const EffectSetting setting{.type = type, .values = {step}};
+  fit.number_slopes.conservativeResize(fit.measured.size(), fit.number_slopes.cols() + 1);
+  fit.number_slopes.rightCols(1) =
+      (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
+  fit.number_types.push_back(type);
+}
+
+void add_number_slopes(const SiteModel& model, FitSegment& fit) {
+  fit.number_slopes = fit.nuisance;
+  fit.number_types = fit.nuisance_types;
+  if (!fit.segment.is_quasi_static) add_number_slope(model, find_effect(specimen, ModelNumber::damping), 1.0, fit);
+  if (model.has_bandwidth) {
+    add_number_slope(model, find_effect(transfer_system, ModelNumber::bandwidth), tuning::kStiffnessStep, fit);
+  }
+}
+
+/// The model with one of the effects that were found before moved; as it is where the effect would not accept that.
+Eigen::VectorXd predict_with_moved(const SiteModel& model, const FitSegment& fit, std::size_t position,
+                                   const Eigen::VectorXd& step) try {
+  SiteModel moved = model;
+  std::vector<double>& values = moved.effects[position].values;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += step[static_cast<Eigen::Index>(i)];
+  return fit.average(predict(moved, fit.segment));
+} catch (const ConfigError&) {
+  return fit.baseline;
+}
+
+void add_found_changes(const SiteModel& model, std::span<const FoundEffect> found, FitSegment& fit) {
+  Eigen::Index count = 0;
+  for (const FoundEffect& one : found) count += one.covariance.cols();
+  fit.found_changes = Eigen::MatrixXd::Zero(fit.measured.size(), count);
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Eigen::Index own = found[i].covariance.cols();
+    if (fit.segment.touched_by(*found[i].effect.type)) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts{found[i].covariance};
+      const Eigen::MatrixXd root = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+      for (Eigen::Index j = 0; j < own; ++j) {
+        const Eigen::VectorXd step = tuning::kCoefficientStep * root.col(j);
+        fit.found_changes.col(column + j) =
+            (predict_with_moved(model, fit, model.effects.size() - found.size() + i, step) - fit.baseline) /
+            tuning::kCoefficientStep;
+      }
+    }
+    column += own;
+  }
+}
+
 std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit) {
   if (!model.make_law || fit.segment.to != Channel::measured_force) return predict(model, fit.segment);
   const auto memory = std::make_shared<LawMemory>();
@@ -204,7 +256,7 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   fit.independent = independent;
 }
 
-FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) {
+FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment, std::span<const FoundEffect> found) {
   FitSegment fit;
   fit.segment = std::move(segment);
   fit.averaged = std::max<std::size_t>(
@@ -221,6 +273,8 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment) 
   fit.channel_floor = std::hypot(fit.channel_floor, fit.segment.step_noise, fit.smoothing_floor);
   fit.block_begins = blocks_of(fit);
   add_nuisances(model, law_is_spring, fit);
+  add_number_slopes(model, fit);
+  add_found_changes(model, found, fit);
   fit.discrepancy = std::make_shared<Discrepancy>(fit);
   take_noise(fit, fit.measured - fit.baseline);
   return fit;
@@ -254,13 +308,14 @@ Eigen::VectorXd FitSegment::average(std::span<const double> values) const {
   return columns.colwise().mean().transpose();
 }
 
-IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments) {
+IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments,
+                                   std::span<const FoundEffect> found) {
   IdentificationProblem problem;
   problem.model = model;
   problem.scales = scales_of(segments);
   problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
   for (Segment& segment : segments)
-    problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment)));
+    problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));
   mark_suspects(problem.segments);
   return problem;
 }
@@ -301,6 +356,13 @@ void free_numbers(const SiteModel& model, FitSegment& fit) {
   fit.numbers.resolved = std::min(1.0, noise / fit.numbers.slight);
   fit.numbers.off = fit.numbers.directions.transpose() * (fit.measured - fit.baseline);
   fit.measured -= fit.numbers.directions * fit.numbers.off;
+  for (Eigen::Index i = 0; i < fit.number_slopes.cols(); ++i) {
+    const Eigen::VectorXd slope = fit.number_slopes.col(i);
+    const Eigen::VectorXd left = slope - fit.numbers.directions * (fit.numbers.directions.transpose() * slope);
+    // One that is free already leaves nothing but rounding.
+    fit.number_slopes.col(i) = left.norm() > tuning::kCovarianceRidge * slope.norm() ? left : 0.0 * left;
+  }
+  fit.found_changes -= (fit.numbers.directions * (fit.numbers.directions.transpose() * fit.found_changes)).eval();
 }
 
 }  // namespace
@@ -318,7 +380,8 @@ IdentificationProblem judged_at(const IdentificationProblem& problem, Channel ou
 }
 
 bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
-  if (type.traits.number == ModelNumber::strength) return true;  // not linear, and so no nuisance
+  // Not linear, and so no nuisance.
+  if (type.traits.number == ModelNumber::strength || type.traits.number == ModelNumber::bandwidth) return true;
   return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
     return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
   });
@@ -341,6 +404,7 @@ Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem,
 
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                         std::span<const EffectSetting> added) {
+  problem.progress.alive();
   Eigen::VectorXd predicted = predict_with_right_numbers(problem, segment, added);
   const Eigen::MatrixXd& directions = segment.numbers.directions;
   if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));

@@ -8,6 +8,7 @@
 #include "diagnosis/identification/remembered_law.hpp"
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/progress.hpp"
 
 namespace hybridtest {
 
@@ -45,7 +46,12 @@ struct FitSegment {
   Eigen::VectorXd baseline;                       // likewise, of the model as the user gave it
   Eigen::MatrixXd nuisance;                       // changes that a slightly wrong model makes; see nuisance_types
   std::vector<const EffectType*> nuisance_types;  // one per column
-  double weight = 1.0;                            // inverse of the standard deviation used here
+  // Changes per unit of every number of the model that may be slightly wrong: the nuisances, damping and bandwidth.
+  Eigen::MatrixXd number_slopes;
+  std::vector<const EffectType*> number_types;  // one per column
+  // Changes by one standard deviation of what was found at a channel before, one column per direction of its doubt.
+  Eigen::MatrixXd found_changes;
+  double weight = 1.0;  // inverse of the standard deviation used here
   // Residual that a correct model leaves [standard deviation], after averaging and per sample: what the channels show
   // of their noise, at least; with nothing repeatable in the residual at hand, or after settle_noise(), also coloured
   // noise and hum, which only a residual shows.
@@ -74,10 +80,19 @@ struct IdentificationProblem {
   std::vector<FitSegment> segments;
   SignalScales scales;
   bool law_is_spring = false;  // linear in the range of the recordings, or there is no law
+  PartProgress progress;       // told of every prediction, so that no fit is silent, however long it takes
+};
+
+/// An effect of the model that was found at a channel before, and how well its parameters are known there.
+struct FoundEffect {
+  EffectSetting effect;
+  Eigen::MatrixXd covariance;
 };
 
 /// @param segments   of recordings of the role fit.
-[[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments);
+/// @param found      of the model's effects, the last ones in their order.
+[[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments,
+                                                 std::span<const FoundEffect> found = {});
 
 /// Takes floors, weights and numbers of independent samples from the residuals of the best fit at hand: of what the
 /// discrepancy term leaves of them on held-out cycles, which no function of the motion explains. Until then the noise

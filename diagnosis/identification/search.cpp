@@ -55,8 +55,15 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
   result.high = std::clamp(range.high * scale, parameter.low, parameter.high);
   const DelaySetting& setting = problem.model.compensator_delay;
   switch (range.restriction.limit) {
-    case SearchLimit::none: break;
+    case SearchLimit::none:
+    case SearchLimit::own_bandwidth: break;
     case SearchLimit::removable_delay: result.low = std::max(result.low, -problem.model.removable_delay_s); break;
+    case SearchLimit::within_motion:
+      if (problem.scales.velocity_m_per_s <= 0.0) break;
+      result.low =
+          std::clamp(tuning::kRelaxationOfSwing * problem.scales.displacement_m / problem.scales.velocity_m_per_s,
+                     result.low, result.high / tuning::kLogarithmicFactor);
+      break;
     case SearchLimit::compensator_setting:
       if (setting.most_s <= 0.0) break;
       result.low = std::max(result.low, -setting.set_s);
@@ -73,7 +80,8 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
   const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
   const SearchRange* const range = range_of(effect, parameter);
-  return range == nullptr || range->restriction.beside == other;
+  const bool has_none = range != nullptr && range->restriction.limit == SearchLimit::own_bandwidth;
+  return range == nullptr || range->restriction.beside == other || (has_none && !problem.model.has_bandwidth);
 }
 
 double SearchedParameter::at(double place) const noexcept {

@@ -35,6 +35,8 @@ enum class SearchLimit : std::uint8_t {
   none,
   removable_delay,      // at most the delay of the model's own transfer system is removed
   compensator_setting,  // the compensator's delay stays between zero and its maximum
+  own_bandwidth,        // searched where the model's transfer system has one
+  within_motion,        // at least a share of the time in which the motion changes
 };
 
 /// Further limits of a range.
@@ -84,6 +86,13 @@ inline constexpr std::array kRows{
     SearchRange{transfer_system, "delay", "delay_s", Scale::time_s, -0.1, 0.1, {.limit = SearchLimit::removable_delay}},
     SearchRange{transfer_system, "bandwidth", "time_constant_s", Scale::time_s, 0.0, 0.1},
     SearchRange{transfer_system, "bandwidth", "second_order_ratio", Scale::one, 0.0, 2.0},
+    SearchRange{transfer_system,
+                "bandwidth_error",
+                "bandwidth_error_ratio",
+                Scale::one,
+                -0.8,
+                2.0,
+                {.limit = SearchLimit::own_bandwidth}},
     SearchRange{transfer_system, "gain", "gain_error", Scale::one, -0.5, 0.5},
     SearchRange{transfer_system, "backlash", "clearance_m", Scale::displacement_m, 0.001, 1.0},
     SearchRange{transfer_system, "deadband", "deadband_m", Scale::displacement_m, 0.001, 0.5},
@@ -149,7 +158,8 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "contact", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 50.0},
     SearchRange{specimen, "contact", "position_m", Scale::displacement_m, -0.95, 0.95},
     SearchRange{specimen, "relaxation", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 3.0},
-    SearchRange{specimen, "relaxation", "time_constant_s", Scale::time_s, 0.005, 100.0},
+    SearchRange{
+        specimen, "relaxation", "time_constant_s", Scale::time_s, 0.005, 100.0, {.limit = SearchLimit::within_motion}},
     SearchRange{specimen, "inertia", "mass_kg", Scale::mass_kg, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen, "geometric_stiffness", "axial_force_n", Scale::force_n, -30.0, 30.0},
     SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, 1.1, 30.0},

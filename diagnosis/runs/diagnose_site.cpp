@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "core/config_error.hpp"
@@ -39,6 +40,30 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   if (!out.flush())
     throw ConfigError{file.string() +
                       ": this file cannot be written; check the permissions and the free space of the folder"};
+}
+
+/// Of a degree of freedom beside the one that the report is about; empty if it has no gap.
+std::string other_dof_in_words(const SiteDiagnosis& other) {
+  const report::DiagnosisReport& report = other.diagnosis.report;
+  if (report.verdict == Verdict::none || report.verdict == Verdict::not_excited) return {};
+  std::vector<std::string> causes;
+  for (const report::RankedCause& cause : report.ranking) {
+    if (!cause.is_cause) continue;
+    causes.push_back(fmt::format("{}: {}{}", cause.interface, cause.effect, report::law_in_words(cause)));
+    if (cause.parameters.empty()) continue;
+    const report::ReportedParameter& first = cause.parameters.front();
+    causes.back() += fmt::format(" ({} {:.5g})", first.name, first.value);
+  }
+  std::vector<std::string> gaps;
+  for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.is_at_fault) continue;
+    gaps.push_back(fmt::format("{} (NRMSE {:.4f}, floor {:.4f})", gap.interface, gap.nrmse, gap.floor_nrmse));
+  }
+  std::string text =
+      fmt::format("Degree of freedom {} has a gap too, verdict {}", other.dof + 1, report::name_of(report.verdict));
+  if (!gaps.empty()) text += ", at " + report::joined(gaps);
+  if (!causes.empty()) text += "; causes, also in the augmented model: " + report::joined(causes);
+  return text + ".";
 }
 
 std::string in_words(Verdict verdict) {
@@ -95,6 +120,7 @@ std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& mode
   for (const EffectSetting& cause : diagnosis.causes) {
     listed.push_back({cause, model.dofs.size() > 1 ? std::optional{static_cast<int>(dof)} : std::nullopt});
   }
+  listed.insert(listed.end(), other_causes.begin(), other_causes.end());
   return listed;
 }
 
@@ -132,16 +158,25 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
   settings.made_by = software_version();
   const std::size_t dofs = model.dofs.size();
   require_match(model, recordings);
-  SiteDiagnosis worst;
+  std::vector<SiteDiagnosis> all;
   const PartProgress whole = settings.progress;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;
     settings.progress = whole.round(dof, dofs);
-    Diagnosis diagnosis = diagnose(model.dofs[dof], recordings, settings);
-    if (dofs > 1)
-      diagnosis.report.notes.push_back(
-          fmt::format("This diagnosis is of degree of freedom {} of {}, which has the largest gap.", dof + 1, dofs));
-    if (dof == 0 || largest_gap(diagnosis) > largest_gap(worst.diagnosis)) worst = {std::move(diagnosis), dof, {}};
+    all.push_back({diagnose(model.dofs[dof], recordings, settings), dof, {}, {}});
+  }
+  const auto gap_of = [](const SiteDiagnosis& one) { return largest_gap(one.diagnosis); };
+  const auto largest = std::ranges::max_element(all, {}, gap_of);
+  SiteDiagnosis worst = std::move(*largest);
+  all.erase(largest);
+  std::vector<std::string>& notes = worst.diagnosis.report.notes;
+  if (dofs > 1) {
+    notes.push_back(fmt::format("This diagnosis is of degree of freedom {} of {}, which has the largest gap.",
+                                worst.dof + 1, dofs));
+  }
+  for (const SiteDiagnosis& other : all) {
+    if (std::string text = other_dof_in_words(other); !text.empty()) notes.push_back(std::move(text));
+    std::ranges::move(other.listed_causes(model), std::back_inserter(worst.other_causes));
   }
   if (model.compensators_were_given) {
     worst.diagnosis.report.notes.emplace_back("The model names no compensator. That of the run was used.");

@@ -17,6 +17,7 @@ struct SiteDiagnosis {
   Diagnosis diagnosis;
   std::size_t dof = 0;                          // 0-based
   std::vector<EffectSetting> structure_causes;  // effects of the scenario, not of the site's model
+  std::vector<ListedEffect> other_causes;       // of the site's other degrees of freedom
 
   /// The causes as the model's file lists them.
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
@@ -29,7 +30,8 @@ struct SiteDiagnosis {
 ///         column whose unit seems wrong compared with the prediction of the model.
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
-/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap.
+/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap. A note tells of each other degree of
+/// freedom that has one, with its causes.
 /// @param settings   what it says of model and version is filled in here.
 /// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,

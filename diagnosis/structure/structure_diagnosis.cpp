@@ -232,9 +232,12 @@ EffectSetting setting_of(const FittedRatio& ratio) { return {&ratio.effect->type
 void add_causes(const StructureDiagnosis& structure, double share_of_gap, std::vector<report::RankedCause>& ranking) {
   for (std::size_t i = 0; i < structure.fit.ratios.size(); ++i) {
     const FittedRatio& ratio = structure.fit.ratios[i];
-    report::RankedCause cause =
-        ranked(setting_of(ratio),
-               {{.value = ratio.value, .standard_error = ratio.standard_error, .at_bound = ratio.at_bound}});
+    report::RankedCause cause = ranked(setting_of(ratio),
+                                       {{.value = ratio.value,
+                                         .standard_error = ratio.standard_error,
+                                         .at_bound = ratio.at_bound,
+                                         .beside_wrong_numbers = ratio.standard_error}},
+                                       {});
     cause.probability = 1.0 - structure.gap_left;
     cause.share = share_of_gap * structure.shares[i];
     cause.is_cause = true;

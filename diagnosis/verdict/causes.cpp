@@ -7,20 +7,19 @@
 
 #include "core/parameters/unit_of.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/refutations.hpp"
+#include "diagnosis/verdict/remainder.hpp"
 
 namespace hybridtest {
 namespace {
 
 using report::Verdict;
 
-/// A cause is named when what it leaves is near the floor, or small and not well above it; with more left it is one
-/// part of the answer.
+/// With more left than a name allows, a cause is one part of the answer.
 Verdict verdict_by_remainder(const GapEnergy& after, double left, const VerdictPolicy& policy) noexcept {
   const double over_floor = after.floor > 0.0 ? std::sqrt(after.total / after.floor) : 0.0;
-  const bool is_small = left <= policy.named_leaves &&
-                        (over_floor <= tuning::kWellAboveFloor || left <= policy.named_leaves * tuning::kNearNothing);
   if (left > policy.partial_leaves) return Verdict::unknown;
-  return is_small || over_floor <= tuning::kNearFloor ? Verdict::named : Verdict::partial;
+  return leaves_little(left, over_floor, policy.named_leaves) ? Verdict::named : Verdict::partial;
 }
 
 /// The gap in units of the outputs. A model that is far off makes it larger than the output itself, and then hardly
@@ -112,6 +111,10 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.verdict = Verdict::unknown;
   }
   if (judgement.verdict == Verdict::unknown) return judgement;
+  // Where a search ran into its limit, something else may be meant.
+  for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+    if (is_cut_off(problem, selection.chosen, i)) judgement.verdict = Verdict::partial;
+  }
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
   const EffectType* const cause = only_cause(problem, selection, judgement);
@@ -130,21 +133,20 @@ namespace {
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
   report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
   parameter.is_at_bound = estimate.at_bound;
-  const double half = half_width_95(estimate);
+  const double half = quantile_95(estimate.freedom) * estimate.beside_wrong_numbers;
   if (half > 0.0) parameter.ci95 = report::Interval{estimate.value - half, estimate.value + half};
   return parameter;
 }
 
-/// A law's own parameters with their standard errors, to first order from those of the searched ones.
+/// A law's own parameters with their standard errors, to first order from the searched ones: those that go together
+/// may leave a product of theirs much better known than either.
 std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& effect,
-                                                         const std::vector<ParameterEstimate>& estimates) {
+                                                         const std::vector<ParameterEstimate>& estimates,
+                                                         const Eigen::MatrixXd& covariance) {
   const LawReplacement& law = *effect.type->replacement;
   const std::vector<LawParameter> own = law.written(effect.values);
   std::vector<ParameterEstimate> found(own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    found[i].value = own[i].value;
-    found[i].freedom = estimates.front().freedom;
-  }
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(own.size()), static_cast<Eigen::Index>(effect.values.size()));
   for (std::size_t j = 0; j < effect.values.size(); ++j) {
     std::vector<double> moved = effect.values;
     const double step = tuning::kCoefficientStep * (moved[j] == 0.0 ? 1.0 : moved[j]);
@@ -152,12 +154,16 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
     const std::vector<LawParameter> there = law.written(moved);
     for (std::size_t i = 0; i < own.size(); ++i) {
       const double slope = (there[i].value - own[i].value) / step;
-      found[i].standard_error = std::hypot(found[i].standard_error, slope * estimates[j].standard_error);
+      slopes(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = slope;
       found[i].at_bound = found[i].at_bound || (slope != 0.0 && estimates[j].at_bound);
     }
   }
+  const Eigen::VectorXd variances = (slopes * covariance * slopes.transpose()).diagonal();
   std::vector<report::ReportedParameter> parameters;
   for (std::size_t i = 0; i < own.size(); ++i) {
+    found[i].value = own[i].value;
+    found[i].freedom = estimates.front().freedom;
+    found[i].beside_wrong_numbers = std::sqrt(std::max(0.0, variances[static_cast<Eigen::Index>(i)]));
     parameters.push_back(reported(own[i].name, unit_of(own[i].name), found[i]));
   }
   return parameters;
@@ -165,7 +171,12 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
 
 }  // namespace
 
-report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates) {
+report::RankedCause ranked(const FitOutcome& fit, std::size_t position) {
+  return ranked(fit.effects[position], fit.parameters[position], fit.covariances[position]);
+}
+
+report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates,
+                           const Eigen::MatrixXd& covariance) {
   report::RankedCause cause;
   cause.interface = name_of(effect.type->interface);
   cause.effect = effect.type->name;
@@ -173,7 +184,7 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   if (effect.type->replacement != nullptr) {
     cause.law = effect.type->replacement->law;
     cause.in_words = effect.type->replacement->in_words;
-    cause.parameters = parameters_of_law(effect, estimates);
+    cause.parameters = parameters_of_law(effect, estimates, covariance);
     return cause;
   }
   for (std::size_t i = 0; i < estimates.size(); ++i) {
@@ -252,7 +263,7 @@ void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vecto
   for (const Trace& trace : traces) {
     std::vector<ParameterEstimate> read;
     for (const double value : trace.effect.values) read.push_back({.value = value});
-    report::RankedCause cause = ranked(trace.effect, read);
+    report::RankedCause cause = ranked(trace.effect, read, {});
     cause.probability = 1.0;
     cause.share = trace.gap_share / known;
     cause.is_cause = true;

@@ -32,8 +32,12 @@ void settle_corrections(std::span<Judgement* const> judgements);
 
 /// An effect with its parameters and their 95 % intervals, where they have a standard error; its probability, its share
 /// and whether it is a cause are set by the caller.
-/// @param estimates   one per parameter of the effect, in their order.
-[[nodiscard]] report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates);
+/// @param position   of the effect among those of the fit.
+[[nodiscard]] report::RankedCause ranked(const FitOutcome& fit, std::size_t position);
+/// @param estimates    one per parameter of the effect, in their order.
+/// @param covariance   of them; of a law in place of the specimen's own only.
+[[nodiscard]] report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates,
+                                         const Eigen::MatrixXd& covariance);
 
 /// Sorts the causes to the front, larger share first; the other candidates keep their order.
 void put_causes_first(std::vector<report::RankedCause>& ranking);

@@ -27,19 +27,30 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
   return score;
 }
 
+GapEnergy& GapEnergy::operator+=(const GapEnergy& other) noexcept {
+  total += other.total;
+  floor += other.floor;
+  allowed += other.allowed;
+  return *this;
+}
+
+bool GapEnergy::is_clear(double energy) const noexcept {
+  return energy > tuning::kSuspectOverFloor * tuning::kSuspectOverFloor * allowed;
+}
+
 GapEnergy gap_energy(const FitSegment& segment, const SegmentResult& result) {
   const double variance = segment.measured.squaredNorm() / static_cast<double>(segment.measured.size());
   if (variance <= 0.0) return {};
-  return {.total = result.held_out_mean_square(segment) / variance, .floor = segment.floor * segment.floor / variance};
+  return {.total = result.held_out_mean_square(segment) / variance,
+          .floor = segment.floor * segment.floor / variance,
+          .allowed = 1.0 / (segment.weight * segment.weight * variance)};
 }
 
 GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& outcome) {
   GapEnergy sum;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     if (!problem.segments[i].is_suspect) continue;
-    const GapEnergy one = gap_energy(problem.segments[i], outcome.segments[i]);
-    sum.total += one.total;
-    sum.floor += one.floor;
+    sum += gap_energy(problem.segments[i], outcome.segments[i]);
   }
   return sum;
 }
@@ -283,7 +294,6 @@ namespace {
 /// to explain.
 void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& candidates) {
   const FitOutcome baseline = fit_nothing(coarse, false);
-  const double total = gap_energy(coarse, baseline).excess();
   if (candidates.front().score < held_out_score(coarse, baseline) + tuning::kDetectionGain) return;
   for (const LawCandidate& law : law_candidates(coarse.law_is_spring)) {
     if (law.refines == nullptr) continue;
@@ -291,9 +301,7 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
     if (simpler == candidates.end()) continue;
     // The form of the law is in question only where a law leads.
     if (candidates.front().type->replacement == nullptr) return;
-    const GapEnergy left = gap_energy(coarse, candidates.front().fit);
-    constexpr double kClear = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
-    if (!(left.excess() > tuning::kNothingLeft * total && left.total > kClear * left.floor)) return;
+    if (!gap_energy(coarse, candidates.front().fit).is_clear()) return;
     EffectSetting start{.type = &law.type, .values = simpler->fit.effects.front().values};
     start.values.insert(start.values.end(), law.start.begin(), law.start.end());
     std::optional<Candidate> found = fit_together(coarse, &law.type, {start}, refit_effects);

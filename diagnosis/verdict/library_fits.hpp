@@ -24,9 +24,15 @@ namespace hybridtest {
 struct GapEnergy {
   double total = 0.0;
   double floor = 0.0;
+  double allowed = 0.0;  // the floor, and what no model is expected to reproduce
 
+  GapEnergy& operator+=(const GapEnergy& other) noexcept;
   /// The remaining gap above the floor.
   [[nodiscard]] double excess() const noexcept { return total > floor ? total - floor : 0.0; }
+  /// Whether an energy is clear of the floor: of this gap, or of a part of it.
+  [[nodiscard]] bool is_clear(double energy) const noexcept;
+  /// Whether a further effect could explain something.
+  [[nodiscard]] bool is_clear() const noexcept { return is_clear(total); }
 };
 [[nodiscard]] GapEnergy gap_energy(const IdentificationProblem& problem, const FitOutcome& outcome);
 /// Of one segment.

@@ -44,10 +44,15 @@ struct Suspect {
 };
 
 /// The largest of so many independent draws of noise, as it is expected.
-double noise_peak(const FitSegment& fit) {
-  const double level = std::max(fit.segment.measured_noise, fit.sample_floor);
+double peak_of_noise(const FitSegment& fit, double level) {
   return level * std::sqrt(2.0 * std::log(static_cast<double>(fit.segment.measured.size())));
 }
+
+double noise_peak(const FitSegment& fit) {
+  return peak_of_noise(fit, std::max(fit.segment.measured_noise, fit.sample_floor));
+}
+
+double own_noise_peak(const FitSegment& fit) { return peak_of_noise(fit, fit.segment.measured_noise); }
 
 double largest(std::span<const double> values) {
   double most = 0.0;
@@ -64,10 +69,12 @@ std::vector<double> changes_over(std::span<const double> values, std::size_t lag
   return changes;
 }
 
-/// Readings that a limit bounds, in its unit, and the noise that they may pass it by.
+/// Readings that a limit bounds, in its unit, and the noise that they may pass it by. How much of the largest is noise
+/// for certain, the channel alone says: of the floor a part may be a gap that another effect makes.
 struct Bounded {
   std::vector<double> readings;
   double noise = 0.0;
+  double own_noise = 0.0;
 };
 
 /// Speeds over windows of 1, 2, 4 … samples up to the length that speeds are checked over elsewhere: the wider, the
@@ -78,13 +85,17 @@ std::vector<Bounded> speeds(const FitSegment& fit) {
   for (std::size_t lag = 1; static_cast<double>(lag) * period_s <= tuning::kRestLength_s; lag *= 2) {
     Bounded speed{.readings = changes_over(fit.segment.measured, lag)};
     for (double& value : speed.readings) value /= period_s;
-    speed.noise = std::sqrt(2.0) * noise_peak(fit) / (static_cast<double>(lag) * period_s);
+    const double noise_of_speed = std::sqrt(2.0) / (static_cast<double>(lag) * period_s);
+    speed.noise = noise_of_speed * noise_peak(fit);
+    speed.own_noise = noise_of_speed * own_noise_peak(fit);
     result.push_back(std::move(speed));
   }
   return result;
 }
 
-std::vector<Bounded> readings(const FitSegment& fit) { return {{fit.segment.measured, noise_peak(fit)}}; }
+std::vector<Bounded> readings(const FitSegment& fit) {
+  return {{fit.segment.measured, noise_peak(fit), own_noise_peak(fit)}};
+}
 
 /// A limit that bounds what is read: `unit` of the limit.
 std::string limit_refuted(const Suspect& suspect, std::string_view name, std::string_view unit,
@@ -103,7 +114,7 @@ std::string limit_refuted(const Suspect& suspect, std::string_view name, std::st
                            100.0 * static_cast<double>(beyond) / static_cast<double>(bound.readings.size()),
                            report::quantity(limit.value, unit));
       }
-      reached = std::max(reached, largest(bound.readings) - bound.noise);
+      reached = std::max(reached, largest(bound.readings) - bound.own_noise);
     }
   }
   if (reached >= (1.0 - tuning::kBeyondLimit) * limit.value - unsure) return {};
@@ -255,6 +266,25 @@ bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, 
   return !absence_not_excluded({problem, fit.effects[position], fit.parameters[position]}).empty();
 }
 
+bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const EffectType& effect = *fit.effects[position].type;
+  if (effect.replacement != nullptr) return false;
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    const EffectParameter& parameter = effect.parameters[i];
+    const ParameterEstimate& estimate = fit.parameters[position][i];
+    const SearchRange* const range = search_range(effect, parameter);
+    if (!estimate.at_bound || range == nullptr || estimate.value == parameter.fallback) continue;
+    const double scale = problem.scales.of(range->scale);
+    const bool is_upper = estimate.value > 0.5 * scale * (range->low + range->high);
+    const bool is_chosen = is_upper
+                               ? scale * range->high < parameter.high
+                               : range->low < 0.0 && scale * range->low > parameter.low &&
+                                     !range->restriction.is_amount && range->restriction.limit == SearchLimit::none;
+    if (is_chosen) return true;
+  }
+  return false;
+}
+
 std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
     const Suspect suspect{problem, candidate.fit.effects[i], candidate.fit.parameters[i]};
@@ -263,6 +293,11 @@ std::string refutation(const IdentificationProblem& problem, const Candidate& ca
     for (const Check& check : kChecks) {
       const EffectType& type = *suspect.effect.type;
       if (why.empty() && check.interface == type.interface && check.effect == type.name) why = check.refuted(suspect);
+    }
+    // A single effect may be larger than the library expects; one beside others may then be anything.
+    const bool is_further = candidate.fit.effects.size() > 1 && suspect.effect.type == candidate.type;
+    if (why.empty() && is_further && is_cut_off(problem, candidate.fit, i)) {
+      why = suspect.name() + ": a parameter is at the limit of its search range";
     }
     if (!why.empty()) return why;
   }

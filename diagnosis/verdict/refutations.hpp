@@ -20,8 +20,13 @@ namespace hybridtest {
 /// - a candidate whose own interval (95 %), of what it is proportional to or of its only parameter, holds the value at
 ///   which it is absent;
 /// - a column that is shorter than ten times its drift;
+/// - a further effect with a parameter at the end of its search range, see is_cut_off();
 /// - dry friction that sticks over more than half of the path: that is an elastoplastic spring.
 [[nodiscard]] std::string refutation(const IdentificationProblem& problem, const Candidate& candidate);
+
+/// A parameter of an effect stands at the end of its search range at which the effect is largest, and the range ends
+/// there by choice: neither the parameter nor the model does.
+[[nodiscard]] bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
 /// Drops what is refuted; the order of the others stays.
 void drop_refuted(const IdentificationProblem& problem, std::vector<Candidate>& candidates);

@@ -49,10 +49,7 @@ std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& 
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
-    const GapEnergy one = gap_energy(fit, outcome.segments[i]);
-    GapEnergy& sum = sums[problem.segments[i].segment.recording];
-    sum.total += one.total;
-    sum.floor += one.floor;
+    sums[fit.segment.recording] += gap_energy(fit, outcome.segments[i]);
   }
   std::map<std::size_t, double> excess;
   for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
@@ -97,12 +94,6 @@ bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& bas
   const Typical change = typical(problem, baseline, without, with);
   const bool matters = change.explains > tuning::kAnotherEffectExplains || change.leaves < tuning::kSmallEffectLeaves;
   return change.leaves < tuning::kAnotherEffectLeaves && matters;
-}
-
-/// Something that a further effect could explain.
-bool is_more_left(const GapEnergy& left, double total) {
-  constexpr double kVariance = tuning::kSuspectOverFloor * tuning::kSuspectOverFloor;
-  return left.excess() > tuning::kNothingLeft * total && left.total > kVariance * left.floor;
 }
 
 /// The best of `beside` that is accepted; null when there is none.
@@ -243,12 +234,11 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
                                            const Selection& selection, std::size_t threads,
                                            const PartProgress& progress) {
   std::map<std::size_t, Growth> leaders;
-  const double total = gap_energy(problem, selection.baseline).excess();
   const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < count; ++i) {
     if (!may_lead(problem, selection, i)) continue;
     Growth leader = with_its_numbers(problem, coarse, selection, i);
-    const bool is_enough = !is_more_left(gap_energy(problem, leader.fit), total);
+    const bool is_enough = !gap_energy(problem, leader.fit).is_clear();
     if (!is_enough) {
       const std::vector<Candidate> beside =
           fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, count));
@@ -373,10 +363,9 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   }
   Growth growth =
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
-  const double total = gap_energy(problem, selection.baseline).excess();
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   for (std::size_t round = 0; growth.accepted.size() > 1 && growth.fit.effects.size() < tuning::kEffectsMax &&
-                              is_more_left(gap_energy(problem, growth.fit), total);
+                              gap_energy(problem, growth.fit).is_clear();
        ++round) {
     const std::vector<Candidate> beside =
         fit_beside(problem, coarse, growth.fit.effects, threads, further.round(round, tuning::kEffectsMax - 2));

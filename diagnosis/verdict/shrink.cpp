@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/random.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/remainder.hpp"
 
 namespace hybridtest {
 
@@ -82,7 +84,7 @@ report::Interval interval_of(const std::vector<BlockEnergy>& blocks, std::uint64
     drawn.push_back(removed(sum));
   }
   std::ranges::sort(drawn);
-  return {drawn[tuning::kResamplesBeyond], drawn[tuning::kResamples - 1 - tuning::kResamplesBeyond]};
+  return {drawn[tuning::kResamples / 40], drawn[tuning::kResamples - 1 - tuning::kResamples / 40]};
 }
 
 }  // namespace
@@ -122,11 +124,22 @@ bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
   return held_out.ci95->high < std::max(tuning::kCarriesOver, (1.0 - policy.partial_leaves) * explainable);
 }
 
+/// What was named leaves, on recordings that were not fitted, more than a name allows.
+bool leaves_a_part(const Shrink& held_out) {
+  const double floor = held_out.floor_nrmse;
+  const double over_floor = floor > 0.0 ? held_out.nrmse_after / floor : std::numeric_limits<double>::infinity();
+  return !leaves_little(held_out.unknown_share, over_floor, tuning::kNamedLeavesHeldOut);
+}
+
 }  // namespace
 
 Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out, const VerdictPolicy& policy) {
   const auto against = [&](const Shrink& one) { return contradicts(one, policy); };
-  if (!report::names_a_cause(verdict) || held_out.empty() || !std::ranges::all_of(held_out, against)) return verdict;
+  if (!report::names_a_cause(verdict) || held_out.empty()) return verdict;
+  if (!std::ranges::all_of(held_out, against)) {
+    const bool is_part = verdict == Verdict::named && std::ranges::any_of(held_out, leaves_a_part);
+    return is_part ? Verdict::partial : verdict;
+  }
   const bool is_clear = std::ranges::any_of(
       held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kUnknownOverFloor * one.floor_nrmse; });
   return is_clear ? Verdict::unknown : Verdict::none;

@@ -76,7 +76,7 @@ std::array<report::Interval, kInterfaces> intervals(const IdentificationProblem&
   std::array<report::Interval, kInterfaces> result;
   for (std::size_t k = 0; k < kInterfaces; ++k) {
     std::ranges::sort(drawn[k]);
-    result[k] = {drawn[k][tuning::kResamplesBeyond], drawn[k][tuning::kResamples - 1 - tuning::kResamplesBeyond]};
+    result[k] = {drawn[k][tuning::kResamples / 40], drawn[k][tuning::kResamples - 1 - tuning::kResamples / 40]};
   }
   return result;
 }

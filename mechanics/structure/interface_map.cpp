@@ -35,12 +35,10 @@ bool InterfaceMap::uses(Eigen::Index structure_dof) const noexcept {
 void InterfaceMap::to_interface(const Eigen::Ref<const Eigen::VectorXd>& structure,
                                 InterfaceVector& interface) const noexcept {
   HYBRIDTEST_ASSERT(structure.size() == structure_size_);
-  interface.resize(size());
-  for (Eigen::Index k = 0; k < size(); ++k) {
-    const auto [dof, base] = dofs_[static_cast<std::size_t>(k)];
-    interface[k] = structure[dof];
-    if (base != InterfaceDof::kGround) interface[k] -= structure[base];
-  }
+  if (interface.size() != size()) interface.resize(size());
+  const double* const from = structure.data();
+  double* to = interface.data();
+  for (const auto [dof, base] : dofs_) *to++ = base == InterfaceDof::kGround ? from[dof] : from[dof] - from[base];
 }
 
 void InterfaceMap::add_to_structure(const Eigen::Ref<const Eigen::VectorXd>& interface_n,

@@ -39,6 +39,7 @@
 #include "plant/effects/specimen/yielding.hpp"
 #include "plant/effects/transfer_system/backlash.hpp"
 #include "plant/effects/transfer_system/bandwidth.hpp"
+#include "plant/effects/transfer_system/bandwidth_error.hpp"
 #include "plant/effects/transfer_system/compliance.hpp"
 #include "plant/effects/transfer_system/deadband.hpp"
 #include "plant/effects/transfer_system/delay.hpp"
@@ -115,6 +116,7 @@ std::span<const EffectType> effect_library() noexcept {
       entry<CompensatorBias>(At::compensator, "bias"),
       entry<TransferDelay>(At::transfer_system, "delay"),
       entry<Bandwidth>(At::transfer_system, "bandwidth"),
+      entry<BandwidthError>(At::transfer_system, "bandwidth_error"),
       entry<TransferGain>(At::transfer_system, "gain"),
       entry<TransferBacklash>(At::transfer_system, "backlash"),
       entry<Deadband>(At::transfer_system, "deadband"),

@@ -41,7 +41,18 @@ enum class EffectFamily : std::uint8_t {
 };
 
 /// A number of the user's model that an effect corrects; every model has such numbers slightly wrong.
-enum class ModelNumber : std::uint8_t { none, mass, stiffness, strength, damping, step, gain, delay, offset };
+enum class ModelNumber : std::uint8_t {
+  none,
+  mass,
+  stiffness,
+  strength,
+  damping,
+  step,
+  gain,
+  delay,
+  bandwidth,
+  offset
+};
 
 /// What of an effect shows in the digits of a recording, where no prediction follows it sample by sample.
 enum class DigitTrace : std::uint8_t { none, rounding, lateness, loss };

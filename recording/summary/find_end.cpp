@@ -21,6 +21,7 @@ Codes causes_of(StopReason reason) {
     case StopReason::model_failed: return {EventCode::model_failed};
     case StopReason::deadlines_missed: return {EventCode::deadlines_missed};
     case StopReason::network_too_slow: return {EventCode::network_too_slow};
+    case StopReason::resume_refused: return {EventCode::imposed_differently, EventCode::answer_forgotten};
     case StopReason::not_assembled:
       return {EventCode::participant_missing, EventCode::opensees_refused, EventCode::opensees_missing};
     case StopReason::refused:
@@ -60,7 +61,7 @@ bool is_emergency_stop(const RecordedEvent& recorded) {
 
 /// Whether the end of a process may explain a test that ended for this reason. What the coordinator and the sites
 /// decided themselves stays.
-bool may_explain(const ProcessEnd& process, StopReason reason) {
+bool may_explain(const ProcessEnd& process, StopReason reason, std::string_view who) {
   // The coordinator exits with an error code of its own after any test that did not complete with all data.
   const bool exited_in_order = process.participant == kCoordinatorId && process.signal == 0;
   if (exited_in_order && (reason != StopReason::none || !process.before_start)) return false;
@@ -68,9 +69,12 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::none:
     case StopReason::participant_failed: return true;
     case StopReason::interrupted:
+      // Where the connection ends, the participant is told to stop. It then says that it was interrupted.
+      if (process.has_lost_connection()) return who == process.participant || process.before_start;
+      [[fallthrough]];
     case StopReason::not_assembled: return process.signal != 0 || process.before_start;
     case StopReason::participant_lost:
-    case StopReason::coordinator_lost: return process.signal != 0;
+    case StopReason::coordinator_lost: return process.signal != 0 || process.has_lost_connection();
     case StopReason::completed:
     case StopReason::interlock:
     case StopReason::not_finite:
@@ -80,6 +84,7 @@ bool may_explain(const ProcessEnd& process, StopReason reason) {
     case StopReason::model_failed:
     case StopReason::deadlines_missed:
     case StopReason::network_too_slow:
+    case StopReason::resume_refused:
     case StopReason::refused:
     case StopReason::recording_failed:
     case StopReason::emergency_stop: return false;
@@ -136,7 +141,7 @@ void find_end(RunSummary& summary, const std::vector<ProcessEnd>& processes, con
   }
   // A process that was killed, or that failed before the start, tells more than the events that followed.
   const auto failed = std::ranges::find_if(processes, [&](const ProcessEnd& process) {
-    return process.is_cause() && may_explain(process, summary.stop_reason);
+    return process.is_cause() && may_explain(process, summary.stop_reason, end.who);
   });
   if (failed != processes.end()) blame(*failed, summary);
   if (summary.stop_reason == StopReason::none && summary.completed_steps == 0 && !processes.empty()) {

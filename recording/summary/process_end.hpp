@@ -16,6 +16,13 @@ struct ProcessEnd {
   std::string words;          // the last line of its log
   bool was_asked = false;     // it had been asked to stop, or another process had ended before it
   bool before_start = false;  // of the first step
+  std::string host{};         // on which it ran, reached over ssh; empty: on this one
+
+  /// Takes an exit code that ssh handed on: a shell over there tells a signal as 128 + signal.
+  void take_code_of_ssh(int code) noexcept;
+  /// The connection to the host ended before the process did. What became of the process is not known here; it was told
+  /// to stop.
+  [[nodiscard]] bool has_lost_connection() const noexcept;
 
   /// Whether this process failed before anyone asked it to stop. One that left the test in order, completed or ended
   /// early, did not fail.

@@ -11,6 +11,7 @@
 #include "core/faults.hpp"
 #include "core/ground_motion_facts.hpp"
 #include "core/messages.hpp"
+#include "recording/summary/clock_relation.hpp"
 #include "recording/summary/percentiles.hpp"
 #include "recording/summary/process_end.hpp"
 #include "recording/summary/reference_comparison.hpp"
@@ -69,6 +70,7 @@ struct SubstructureSummary {
   std::vector<TrackingError> tracking;  // of a site
   std::optional<EnergyError> energy_error;
   std::optional<LoopTimingSummary> loop_timing;
+  std::vector<ClockRelation> clock;  // against the coordinator's, one per part of the test
 };
 
 struct InterlockSummary {

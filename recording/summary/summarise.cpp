@@ -337,10 +337,14 @@ void Summariser::summarise_substructures() {
   if (coordinator_ != nullptr) {
     exchanges = exchanges_of(*coordinator_, ids.size(), static_cast<double>(summary_.completed_steps));
   }
+  std::vector<ParticipantClock> clocks;
+  if (coordinator_ != nullptr) clocks = participant_clocks(*coordinator_);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     SubstructureSummary substructure;
     substructure.id = ids[i];
     substructure.exchange = exchanges[i];
+    const auto clock = std::ranges::find(clocks, ids[i], &ParticipantClock::participant);
+    if (clock != clocks.end()) substructure.clock = std::move(clock->parts);
     if (const RunFileReader* file = file_of(ids[i])) {
       SiteFigures figures = site_figures(*file);
       substructure.peak_force_n = std::move(figures.peak_force_n);
@@ -367,7 +371,8 @@ void Summariser::summarise_events() {
     if (event.code == EventCode::interlock_tripped) {
       if (!seen.insert(interlock_key(event)).second) continue;
       summary_.interlocks.push_back(interlock_of(event));
-    } else if (event.code == EventCode::real_time_refused) {
+    } else if (event.code == EventCode::real_time_refused || event.code == EventCode::test_continued ||
+               event.code == EventCode::coordinator_succeeded) {
       const std::string text = event.source.text() + ": " + recorded.text;
       if (told.insert(text).second) summary_.remarks.push_back(text);
     } else if (event.severity == Severity::fault) {

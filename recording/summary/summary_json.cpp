@@ -78,6 +78,22 @@ Json json(const LoopTimingSummary& timing) {
           {"cpu", optional(timing.cpu)}};
 }
 
+Json json(const std::vector<ClockRelation>& parts) {
+  Json list = Json::array();
+  for (const ClockRelation& part : parts) {
+    list.push_back({{"begin_s", number(part.begin_s)},
+                    {"end_s", number(part.end_s)},
+                    {"at_s", number(part.at_s)},
+                    {"offset_s", number(part.offset_s)},
+                    {"offset_uncertainty_s", number(part.offset_uncertainty_s)},
+                    {"drift", number(part.drift)},
+                    {"drift_uncertainty", number(part.drift_uncertainty)},
+                    {"latency_there_s", number(part.latency_there_s)},
+                    {"latency_back_s", number(part.latency_back_s)}});
+  }
+  return list;
+}
+
 Json json(const SubstructureSummary& substructure) {
   Json tracking = Json::array();
   for (const TrackingError& error : substructure.tracking) tracking.push_back(json(error));
@@ -91,7 +107,8 @@ Json json(const SubstructureSummary& substructure) {
           {"exchange", substructure.exchange ? json(*substructure.exchange) : Json(nullptr)},
           {"tracking", tracking},
           {"energy_error", energy},
-          {"loop_timing", substructure.loop_timing ? json(*substructure.loop_timing) : Json(nullptr)}};
+          {"loop_timing", substructure.loop_timing ? json(*substructure.loop_timing) : Json(nullptr)},
+          {"clock", json(substructure.clock)}};
 }
 
 Json json(const SpectrumPoint& point) {

@@ -162,6 +162,19 @@ void print_exchanges(const RunSummary& summary, std::ostream& stream) {
   bridges.print(stream);
 }
 
+/// The last part of the test stands for all.
+void print_clocks(const RunSummary& summary, std::ostream& stream) {
+  TextTable clocks{{"clock less coordinator's", "s", "+- us", "drift ppm", "+-", "command ms", "answer ms"}};
+  for (const SubstructureSummary& substructure : summary.substructures) {
+    if (substructure.clock.empty()) continue;
+    const ClockRelation& clock = substructure.clock.back();
+    clocks.add({substructure.id, fixed(clock.offset_s, 6), fixed(clock.offset_uncertainty_s * 1e6, 1),
+                fixed(clock.drift * 1e6, 1), fixed(clock.drift_uncertainty * 1e6, 1),
+                fixed(clock.latency_there_s * kMilliseconds, 3), fixed(clock.latency_back_s * kMilliseconds, 3)});
+  }
+  clocks.print(stream);
+}
+
 void print_sites(const RunSummary& summary, std::ostream& stream) {
   TextTable tracking{{"tracking error", "RMS mm", "RMS %", "peak mm", "delay ms", "amplitude"}};
   TextTable energy{{"energy error", "peak J", "final J"}};
@@ -228,6 +241,7 @@ void print_summary(const RunSummary& summary, std::ostream& stream) {
   print_peaks(summary, stream);
   print_comparisons(summary.references, stream);
   print_exchanges(summary, stream);
+  print_clocks(summary, stream);
   print_sites(summary, stream);
   print_list("remarks", summary.remarks, stream);
 }

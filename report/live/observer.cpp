@@ -29,20 +29,20 @@ struct Observer::Observed {
     Instant begun{};
   };
   struct Ports {
-    explicit Ports(std::unique_ptr<Transport> made)
+    Ports(std::unique_ptr<Transport> made, bool may_control)
         : transport{std::move(made)},
           announcements{transport->announcement_inbox()},
           statuses{transport->status_inbox()},
           events{transport->event_inbox()},
           signals{transport->signal_inbox()},
-          control{transport->control_outbox()} {}
+          control{may_control ? transport->control_outbox() : nullptr} {}
 
     std::unique_ptr<Transport> transport;
     std::unique_ptr<Inbox<TestAnnouncement>> announcements;
     std::unique_ptr<Inbox<ParticipantStatus>> statuses;
     std::unique_ptr<Inbox<Event>> events;
     std::unique_ptr<Inbox<SignalBlock>> signals;
-    std::unique_ptr<Outbox<TestControl>> control;
+    std::unique_ptr<Outbox<TestControl>> control;  // none for those who only look
     std::map<std::string, Heard> heard;
     std::vector<Request> requests;
   };
@@ -73,10 +73,11 @@ struct Observer::Observed {
 
   void send(Ports& port, Instant now) const {
     std::erase_if(port.requests, [&](const Request& one) {
-      return now - one.begun > kRequestPatience || (!one.request.found().empty() && one.request.is_obeyed());
+      return now - one.begun > kRequestPatience || one.request.is_refused() ||
+             (!one.request.found().empty() && one.request.is_obeyed());
     });
     for (Request& one : port.requests) {
-      if (const auto message = one.request.due(now)) port.control->send(*message);
+      if (const auto message = one.request.due(now); message && port.control) port.control->send(*message);
     }
   }
 
@@ -85,8 +86,11 @@ struct Observer::Observed {
 };
 
 Observer::Observer(const NetworkOptions& network, const std::optional<std::string>& only_test,
-                   std::uint64_t first_cursor, std::function<std::string()> time_utc)
-    : first_cursor_{first_cursor}, incarnation_{draw_incarnation()}, time_utc_{std::move(time_utc)} {
+                   std::uint64_t first_cursor, bool may_control, std::function<std::string()> time_utc)
+    : first_cursor_{first_cursor},
+      may_control_{may_control},
+      incarnation_{draw_incarnation()},
+      time_utc_{std::move(time_utc)} {
   for (const fast_dds::FastDdsSettings& settings : network.observer_paths()) {
     Path path{fast_dds::make_test_search(settings), nullptr};
     if (!only_test) path.announcements = path.search->announcements();
@@ -101,7 +105,7 @@ void Observer::observe(const std::string& test, Instant now) {
   if (observed_.contains(test) || !make_room(now)) return;
   auto observed = std::make_unique<Observed>(test, first_cursor_);
   for (const Path& path : paths_) {
-    observed->ports.push_back(std::make_unique<Observed::Ports>(path.search->join(test)));
+    observed->ports.push_back(std::make_unique<Observed::Ports>(path.search->join(test), may_control_));
   }
   observed_.emplace(test, std::move(observed));
 }

@@ -24,9 +24,10 @@ class Observer final : public Node, public LiveSource {
   /// @param only_test      observed from now on, and no other; without it, every test that is announced, at most
   ///                       sixteen at a time.
   /// @param first_cursor   see TestView.
+  /// @param may_control    requests may be made; credentials that only permit to look do without.
   /// @param time_utc       the time of the wall clock, for the log of events.
   Observer(const NetworkOptions& network, const std::optional<std::string>& only_test, std::uint64_t first_cursor,
-           std::function<std::string()> time_utc);
+           bool may_control, std::function<std::string()> time_utc);
   ~Observer() override;
 
   [[nodiscard]] Instant advance(Instant now) noexcept override;
@@ -55,6 +56,7 @@ class Observer final : public Node, public LiveSource {
   std::vector<Path> paths_;
   std::map<std::string, std::unique_ptr<Observed>, std::less<>> observed_;
   std::uint64_t first_cursor_;
+  bool may_control_;
   Incarnation incarnation_;
   std::function<std::string()> time_utc_;
 };

@@ -21,6 +21,7 @@ constexpr std::size_t kFormer = 16;
 /// A repeat on the other path comes within this number of events.
 constexpr std::size_t kRepeats = 64;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kLinkAwaited = "not heard by the coordinator, which waits for its link";
 
 /// Statuses come four times per lease; the lease itself is not announced.
 constexpr Duration kSilence = std::chrono::seconds{2};
@@ -92,7 +93,10 @@ void TestView::begin_anew(Incarnation coordinator) {
     return status.role == Role::coordinator ? status.incarnation != coordinator
                                             : entry.second.is_lost || has_left(status.state);
   });
-  for (auto& [id, participant] : participants_) participant.held_by.clear();
+  for (auto& [id, participant] : participants_) {
+    participant.held_by.clear();
+    participant.silent.clear();
+  }
   events_.clear();
   streams_.clear();
   signal_count_ = 0;
@@ -160,6 +164,7 @@ void TestView::learn(const ParticipantStatus& status, std::size_t path, Instant 
   if (is_new || participant->heard == Instant{}) participant->heard = now;
   participant->status = status;
   if (status.state != LifecycleState::running) participant->held_by.clear();
+  if (has_left(status.state)) participant->silent.clear();
   if (status.role == Role::coordinator) note_step(static_cast<double>(status.last_step), now);
 }
 
@@ -193,6 +198,11 @@ void TestView::apply(const Event& event, Instant now) {
   }
   if (event.code == EventCode::interlock_cleared) source.held_by.clear();
   if (source.status.role != Role::coordinator) return;
+  const auto subject = participants_.find(event.subject.view());
+  if (subject != participants_.end()) {
+    if (event.code == EventCode::link_silent) subject->second.silent = describe(event);
+    if (event.code == EventCode::link_back || event.code == EventCode::participant_lost) subject->second.silent.clear();
+  }
   if (event.code == EventCode::test_paused) {
     is_paused_ = true;
     paused_at_ = now;
@@ -268,7 +278,30 @@ bool TestView::is_lost(const Participant& participant, Instant now) const {
   return participant.is_lost || now - participant.heard > std::max(kSilence, participant.longest_gap * kMissedStatuses);
 }
 
+bool TestView::is_awaited(const Participant& participant, Instant now) const {
+  const Participant* one = coordinator();
+  const bool is_waiting = one != nullptr && one->status.state == LifecycleState::running && !is_lost(*one, now);
+  return is_waiting && stop_reason_ == StopReason::none && !participant.silent.empty();
+}
+
+std::vector<std::string> TestView::held(Instant now) const {
+  std::vector<std::string> ids;
+  for (const auto& [id, participant] : participants_) {
+    if (!participant.held_by.empty() && !is_lost(participant, now)) ids.push_back(id);
+  }
+  return ids;
+}
+
+std::vector<std::string> TestView::awaiting_coordinator(Instant now) const {
+  std::vector<std::string> ids;
+  for (const auto& [id, participant] : participants_) {
+    if (participant.status.state == LifecycleState::waiting && !is_lost(participant, now)) ids.push_back(id);
+  }
+  return ids;
+}
+
 bool TestView::is_over(Instant now) const {
+  if (!awaiting_coordinator(now).empty()) return false;
   if (const Participant* one = coordinator()) return has_left(one->status.state) || is_lost(*one, now);
   return std::ranges::all_of(participants_, [&](const auto& entry) {
     return has_left(entry.second.status.state) || is_lost(entry.second, now);
@@ -289,8 +322,8 @@ TestView::Phase TestView::phase(Instant now) const {
   // The event of the end comes before the status.
   if (stop_reason_ != StopReason::none) return Phase::stopping;
   if (is_paused_) return Phase::paused;
-  const bool is_held =
-      std::ranges::any_of(participants_, [](const auto& entry) { return !entry.second.held_by.empty(); });
+  const bool is_held = std::ranges::any_of(
+      participants_, [&](const auto& entry) { return !entry.second.held_by.empty() || is_awaited(entry.second, now); });
   return is_held ? Phase::held : Phase::running;
 }
 
@@ -312,8 +345,8 @@ std::string_view TestView::text(Phase phase) noexcept {
 std::vector<std::string> TestView::missing() const {
   std::vector<std::string> missing;
   if (!announcement_) return missing;
-  for (std::size_t i = 0; i < announcement_->substructure_count; ++i) {
-    const std::string id = announcement_->substructures[i].id.text();
+  for (const SubstructureAnnouncement& announced : announcement_->substructures) {
+    const std::string id = announced.id.text();
     if (!participants_.contains(id)) missing.push_back(id);
   }
   return missing;
@@ -323,6 +356,10 @@ std::string TestView::why(Phase phase, Instant now) const {
   switch (phase) {
     case Phase::paused: return "paused by the operator";
     case Phase::held:
+      // The interlocks of the others follow from it.
+      for (const auto& [id, participant] : participants_) {
+        if (is_awaited(participant, now)) return participant.silent;
+      }
       for (const auto& [id, participant] : participants_) {
         if (!participant.held_by.empty()) return id + ": " + participant.held_by;
       }
@@ -356,7 +393,14 @@ std::string TestView::verdict(Phase phase, Instant now) const {
     case Phase::held: return "Held: " + reason + ".";
     case Phase::stopping: return reason.empty() ? "Stopping." : "Stopping: " + reason + ".";
     case Phase::stopped: return reason.empty() ? "Over; its end was not heard." : capital(reason) + ".";
-    case Phase::lost: return capital(reason) + ". Look at its process and its network.";
+    case Phase::lost: {
+      const std::vector<std::string> ids = awaiting_coordinator(now);
+      const std::vector<std::string> holding = held(now);
+      const std::string held_text = holding.empty() ? "" : " Holding: " + listed(holding) + ".";
+      if (ids.empty()) return capital(reason) + "." + held_text + " Look at its process and its network.";
+      return capital(reason) + ". Holding and waiting for it: " + listed(ids) +
+             ". To go on, type `hybridtest run --resume RUN`.";
+    }
   }
   return {};
 }
@@ -381,7 +425,9 @@ nlohmann::json TestView::test_json(Instant now) const {
     test[unknown] = nullptr;
   }
   if (step_ >= 0.0) test["step"] = static_cast<std::int64_t>(step_);
-  const bool moves = at == Phase::running || at == Phase::held;
+  const bool stands_still =
+      std::ranges::any_of(participants_, [&](const auto& entry) { return is_awaited(entry.second, now); });
+  const bool moves = at == Phase::running || (at == Phase::held && !stands_still);
   const double rate = moves ? steps_per_second() : kNone;
   test["steps_per_second"] = rate;  // NaN becomes null
   if (!announcement_) return test;
@@ -413,17 +459,19 @@ nlohmann::json TestView::participants_json(Instant now) const {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& [id, participant] : participants_) {
     const ParticipantStatus& status = participant.status;
+    const std::string_view state = is_awaited(participant, now) ? kLinkAwaited
+                                   : is_lost(participant, now)  ? "lost"
+                                                                : hybridtest::name(status.state);
     all.push_back({{"id", id},
                    {"role", hybridtest::name(status.role)},
-                   {"state", is_lost(participant, now) ? "lost" : hybridtest::name(status.state)},
+                   {"state", state},
                    {"heard_s_ago", to_seconds(now - participant.heard)},
                    {"last_step", status.last_step == kNoStep ? nlohmann::json{} : nlohmann::json(status.last_step)},
                    {"faults", in_words(status.faults)},
                    {"exchange", exchange_json(id)}});
   }
   if (!announcement_) return all;
-  for (std::size_t i = 0; i < announcement_->substructure_count; ++i) {
-    const SubstructureAnnouncement& announced = announcement_->substructures[i];
+  for (const SubstructureAnnouncement& announced : announcement_->substructures) {
     if (participants_.contains(announced.id.view())) continue;
     all.push_back({{"id", announced.id.text()},
                    {"role", hybridtest::name(announced.role)},

@@ -53,6 +53,7 @@ class TestView {
     Instant heard{};
     Duration longest_gap{};  // between two of its statuses
     std::string held_by;     // interlock that it holds for, in words
+    std::string silent;      // that the coordinator does not hear it and waits for its link, in words
   };
   struct Logged {
     std::uint64_t cursor = 0;
@@ -86,6 +87,12 @@ class TestView {
   [[nodiscard]] std::string why(Phase phase, Instant now) const;
   [[nodiscard]] std::string verdict(Phase phase, Instant now) const;
   [[nodiscard]] std::vector<std::string> missing() const;
+  /// The coordinator waits for its link.
+  [[nodiscard]] bool is_awaited(const Participant& participant, Instant now) const;
+  /// Those that hold and wait for a coordinator.
+  [[nodiscard]] std::vector<std::string> awaiting_coordinator(Instant now) const;
+  /// Those that an interlock holds.
+  [[nodiscard]] std::vector<std::string> held(Instant now) const;
   /// Over the last two seconds; NaN when it is not known.
   [[nodiscard]] double steps_per_second() const;
   [[nodiscard]] nlohmann::json test_json(Instant now) const;

@@ -17,7 +17,7 @@ struct NextStep {
   std::string_view what_to_do;
 };
 
-constexpr std::array<NextStep, 17> kNextSteps{{
+constexpr std::array<NextStep, 18> kNextSteps{{
     {StopReason::none,
      "No file and no process tells how the test ended. Copy the files of all participants into the run directory, then "
      "run `hybridtest summary` and `hybridtest report` again."},
@@ -54,6 +54,9 @@ constexpr std::array<NextStep, 17> kNextSteps{{
     {StopReason::network_too_slow,
      "Nothing moved. Lengthen `step_s`, shorten `bridging.deadline_s`, or use the mode `paced`; see "
      "docs/real_time.md."},
+    {StopReason::resume_refused,
+     "The recording of the coordinator and the site disagree about a step that was imposed. Start a new test; see "
+     "docs/resume.md."},
     {StopReason::model_failed, "Look at the log of the numerical substructure: its model failed, not its specimen."},
 }};
 

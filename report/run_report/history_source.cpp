@@ -8,16 +8,14 @@
 #include <utility>
 
 #include "core/config_error.hpp"
-#include "recording/read_rows.hpp"
 
 namespace hybridtest::run_report {
 
-TableHistory::TableHistory(const RunFileReader& file, std::string table, std::span<const std::string> wanted)
-    : file_{file}, table_{std::move(table)} {
-  const auto layout = std::ranges::find(file.tables(), table_, &TableLayout::name);
+TableHistory::TableHistory(const RunFileReader& file, std::string_view table, std::span<const std::string> wanted)
+    : rows_{file, table} {
+  const auto layout = std::ranges::find(file.tables(), table, &TableLayout::name);
   if (layout == file.tables().end()) return;
-  width_ = layout->columns.size();
-  for (std::size_t i = 0; i < width_; ++i) {
+  for (std::size_t i = 0; i < layout->columns.size(); ++i) {
     const std::string& name = layout->columns[i].name;
     if (name == "model_time_s") time_ = i;
     const bool is_wanted =
@@ -29,14 +27,8 @@ TableHistory::TableHistory(const RunFileReader& file, std::string table, std::sp
 
 bool TableHistory::next() {
   if (!time_) return false;
-  if (at_ >= block_.size()) {
-    block_ = file_.rows(table_, first_, kRowsInMemory);
-    first_ += kRowsInMemory;
-    at_ = 0;
-    if (block_.empty()) return false;
-  }
-  const std::span row = std::span{block_}.subspan(at_, width_);
-  at_ += width_;
+  const std::span<const double> row = rows_.next();
+  if (row.empty()) return false;
   time_s_ = row[*time_];
   for (std::size_t i = 0; i < columns_.size(); ++i) values_[i] = row[columns_[i].position];
   return true;

@@ -5,8 +5,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "recording/read_rows.hpp"
 #include "recording/run_file_reader.hpp"
 
 namespace hybridtest::run_report {
@@ -39,17 +41,12 @@ class HistorySource {
 class TableHistory final : public HistorySource {
  public:
   /// @param file   must outlive it.
-  TableHistory(const RunFileReader& file, std::string table, std::span<const std::string> wanted);
+  TableHistory(const RunFileReader& file, std::string_view table, std::span<const std::string> wanted);
   bool next() override;
 
  private:
-  const RunFileReader& file_;
-  std::string table_;
+  RowCursor rows_;
   std::optional<std::size_t> time_;
-  std::size_t width_ = 0;
-  std::size_t first_ = 0;
-  std::size_t at_ = 0;
-  std::vector<double> block_;
 };
 
 /// A CSV file with a head, whose column `time_s` is the time and whose other columns are histories.

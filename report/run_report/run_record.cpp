@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "recording/error.hpp"
+#include "recording/summary/clock_relation.hpp"
 #include "report/run_report/tuning.hpp"
 
 namespace hybridtest::run_report {
@@ -171,24 +172,84 @@ void read_substructure(const RunFileReader& file, const SubstructureScenario* sc
   read_lateness(file, record.lateness);
 }
 
+/// By the index that the coordinator's tables use; nullptr for one that is not there.
+std::vector<SubstructureRecord*> in_order_of(const RunFileReader& file,
+                                             std::vector<SubstructureRecord>& substructures) {
+  std::vector<SubstructureRecord*> by_index;
+  for (const std::string& id : file.header().substructure_ids) {
+    const auto found = std::ranges::find(substructures, id, &SubstructureRecord::id);
+    by_index.push_back(found == substructures.end() ? nullptr : &*found);
+  }
+  return by_index;
+}
+
 void read_exchanges(const RunFileReader& file, std::vector<SubstructureRecord>& substructures) {
   const TableLayout* table = table_of(file, "exchanges");
   if (table == nullptr) return;
   const auto who = table->position("substructure");
   const auto time = table->position("round_trip_us");
   if (!who || !time) return;
-  const std::vector<std::string>& ids = file.header().substructure_ids;
-  std::vector<SubstructureRecord*> by_index;
-  for (const std::string& id : ids) {
-    const auto found = std::ranges::find(substructures, id, &SubstructureRecord::id);
-    by_index.push_back(found == substructures.end() ? nullptr : &*found);
-  }
+  const std::vector<SubstructureRecord*> by_index = in_order_of(file, substructures);
   read_rows(file, table->name, [&](std::span<const double> row) {
     const double index = row[*who];
     if (!(index >= 0.0) || index >= static_cast<double>(by_index.size())) return true;
     if (SubstructureRecord* record = by_index[static_cast<std::size_t>(index)]) record->round_trip.add(row[*time]);
     return true;
   });
+}
+
+/// Sums of what happens now and then, as stairs.
+class StairBuilder {
+ public:
+  explicit StairBuilder(double end_s) : thinner_{0.0, end_s, kHistoryColumns}, end_s_{end_s} {}
+
+  void add(double time_s, double more) {
+    if (!has_any_) thinner_.add(0.0, 0.0);
+    has_any_ = true;
+    // A column keeps the lowest and the highest value in it, which may not be the last: the next one begins with that.
+    const double next_s = last_s_ + end_s_ / static_cast<double>(kHistoryColumns);
+    if (next_s < time_s) thinner_.add(next_s, sum_);
+    thinner_.add(time_s, sum_);
+    sum_ += more;
+    thinner_.add(time_s, sum_);
+    last_s_ = time_s;
+  }
+  [[nodiscard]] plot::Points take() {
+    if (has_any_) thinner_.add(end_s_, sum_);
+    return thinner_.take();
+  }
+
+ private:
+  plot::HistoryThinner thinner_;
+  double end_s_;
+  double last_s_ = 0.0;
+  double sum_ = 0.0;
+  bool has_any_ = false;
+};
+
+void read_bridges(const RunFileReader& file, double end_s, std::vector<SubstructureRecord>& substructures) {
+  const TableLayout* table = table_of(file, "bridges");
+  if (table == nullptr) return;
+  const auto step = table->position("step");
+  const auto who = table->position("substructure");
+  const auto energy_j = table->position("energy_added_j");
+  const double step_s = file.header().model_time_step_s;
+  if (!step || !who || !energy_j || !(step_s > 0.0)) return;
+  const std::vector<SubstructureRecord*> by_index = in_order_of(file, substructures);
+  std::vector<std::pair<StairBuilder, StairBuilder>> sums(by_index.size(), {StairBuilder{end_s}, StairBuilder{end_s}});
+  read_rows(file, table->name, [&](std::span<const double> row) {
+    const double index = row[*who];
+    if (!(index >= 0.0) || index >= static_cast<double>(sums.size())) return true;
+    auto& [bridges, energy] = sums[static_cast<std::size_t>(index)];
+    bridges.add(row[*step] * step_s, 1.0);
+    if (std::isfinite(row[*energy_j])) energy.add(row[*step] * step_s, row[*energy_j]);
+    return true;
+  });
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (by_index[i] == nullptr) continue;
+    by_index[i]->bridges = sums[i].first.take();
+    by_index[i]->bridged_energy_j = sums[i].second.take();
+  }
 }
 
 void read_scenario_of(RunRecord& run) {
@@ -224,11 +285,17 @@ std::vector<RunFileReader> open_files(RunRecord& run) {
   return files;
 }
 
-/// In the order of model time, each once: participants record what they hear from each other.
-void put_in_order(std::vector<RecordedEvent>& events) {
-  std::ranges::stable_sort(events, {}, [](const RecordedEvent& recorded) {
+/// In the order of model time, then by the coordinator's clock, each once: participants record what they hear from each
+/// other.
+void put_in_order(std::vector<RecordedEvent>& events, const std::vector<ParticipantClock>& clocks) {
+  const auto time_s = [&](const Event& event) {
+    const auto clock = std::ranges::find(clocks, event.source.view(), &ParticipantClock::participant);
+    const double own_s = to_seconds(event.clock);
+    return clock == clocks.end() ? own_s : clock->at(own_s).to_coordinator_s(own_s);
+  };
+  std::ranges::stable_sort(events, {}, [&](const RecordedEvent& recorded) {
     const Event& event = recorded.event;
-    return std::tuple{event.model_time_s, event.clock, event.source.view(), event.code};
+    return std::tuple{event.model_time_s, time_s(event), event.source.view(), event.code};
   });
   const auto is_same = [](const RecordedEvent& a, const RecordedEvent& b) { return a.event == b.event; };
   events.erase(std::unique(events.begin(), events.end(), is_same), events.end());
@@ -248,6 +315,7 @@ RunRecord read_run_record(const std::filesystem::path& directory) {
   for (const RunFileReader& file : files) {
     for (const std::string& id : file.header().substructure_ids) add_substructure(id);
   }
+  std::vector<ParticipantClock> clocks;
   for (const RunFileReader& file : files) {
     try {
       for (RecordedEvent& event : file.events()) run.events.push_back(std::move(event));
@@ -259,6 +327,8 @@ RunRecord read_run_record(const std::filesystem::path& directory) {
                      run.structure);
         }
         read_exchanges(file, run.substructures);
+        read_bridges(file, run.end_s, run.substructures);
+        clocks = participant_clocks(file);
         continue;
       }
       const std::string& id = file.header().participant;
@@ -270,7 +340,7 @@ RunRecord read_run_record(const std::filesystem::path& directory) {
       run.unread.emplace_back(error.what());
     }
   }
-  put_in_order(run.events);
+  put_in_order(run.events, clocks);
   return run;
 }
 

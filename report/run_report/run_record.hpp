@@ -32,6 +32,9 @@ struct SubstructureRecord {
   std::vector<SiteDof> dofs;
   TimeHistogram round_trip;
   TimeHistogram lateness;  // of control periods
+  // Of a test in real time, from the first bridge on: sums over model time [s].
+  plot::Points bridges;           // bridged steps
+  plot::Points bridged_energy_j;  // that the bridges added to the structure, where it is known
 };
 
 /// A run directory, read in pieces and thinned: the memory does not grow with the length of the test.

@@ -247,6 +247,44 @@ std::string milliseconds(const std::optional<Percentiles>& percentiles, double P
 
 }  // namespace
 
+namespace {
+
+/// What a test in real time went on without, and what that may have done to it.
+std::string bridge_figure(const ReportFacts& facts) {
+  std::vector<Line> counts;
+  std::vector<Line> energies;
+  for (const SubstructureRecord& substructure : facts.run.substructures) {
+    if (is_drawable(substructure.bridges)) {
+      counts.push_back({.name = substructure.id, .x = substructure.bridges.x, .y = substructure.bridges.y});
+    }
+    if (is_drawable(substructure.bridged_energy_j)) {
+      energies.push_back(
+          {.name = substructure.id, .x = substructure.bridged_energy_j.x, .y = substructure.bridged_energy_j.y});
+    }
+  }
+  return figure_of(
+      {time_panel(facts, "bridged steps so far", "[-]", std::move(counts)),
+       time_panel(facts, "energy that bridges added to the structure so far", "[J]", std::move(energies))});
+}
+
+/// The last part of the test stands for all.
+std::string clock_table(const ReportFacts& facts) {
+  std::vector<std::vector<std::string>> rows;
+  for (const SubstructureSummary& substructure : facts.summary.substructures) {
+    if (substructure.clock.empty()) continue;
+    const ClockRelation& clock = substructure.clock.back();
+    rows.push_back({substructure.id, number_text(clock.offset_s, 6), number_text(1e6 * clock.offset_uncertainty_s, 1),
+                    number_text(1e6 * clock.drift, 1), number_text(1e6 * clock.drift_uncertainty, 1),
+                    number_text(1e3 * clock.latency_there_s), number_text(1e3 * clock.latency_back_s)});
+  }
+  if (rows.empty()) return "";
+  return plot::scrolling(plot::number_table({"clock less the coordinator's", "offset [s]", "± [µs]", "drift [ppm]",
+                                             "± [ppm]", "latency of commands [ms]", "of answers [ms]"},
+                                            rows));
+}
+
+}  // namespace
+
 std::string timing_part(const ReportFacts& facts) {
   Panel latency{.title = "round trip of the exchanges",
                 .x = {.label = "[µs]", .is_logarithmic = true},
@@ -280,6 +318,7 @@ std::string timing_part(const ReportFacts& facts) {
                                                 "resent", "bridged", "lost", "late", "held"},
                                                rows));
   }
+  html += bridge_figure(facts) + clock_table(facts);
   rows.clear();
   for (const SubstructureSummary& substructure : facts.summary.substructures) {
     if (!substructure.loop_timing) continue;

@@ -38,6 +38,7 @@ void read_transfer_systems(Section& section, SimulatedSiteReading& site) {
   for (std::size_t i = 0; i < std::min(readings.size(), dofs); ++i) {
     site.dofs[i].make_transfer_system = readings[i].make;
     site.dofs[i].removable_delay_s = readings[i].pure_delay_s;
+    site.dofs[i].has_bandwidth = readings[i].has_bandwidth;
     site.transfer_delay_s[i] = readings[i].delay_s;
     site.rating.displacement_m = std::min(site.rating.displacement_m, readings[i].rating.displacement_m);
     site.rating.velocity_m_per_s = std::min(site.rating.velocity_m_per_s, readings[i].rating.velocity_m_per_s);
@@ -105,7 +106,7 @@ using TransferSystems = std::vector<std::unique_ptr<TransferSystem>>;
 
 TransferSystems make_transfer_systems(const SimulatedSiteReading& site, double period_s) {
   TransferSystems made;
-  for (const SiteModel& dof : site.dofs) made.push_back(dof.make_transfer_system(period_s, delay_change_s(dof)));
+  for (const SiteModel& dof : site.dofs) made.push_back(transfer_system_of(dof, period_s));
   return made;
 }
 

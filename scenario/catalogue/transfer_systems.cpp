@@ -37,7 +37,8 @@ TransferSystemReading read_first_order(Section& section) {
   return {.make = [time_constant_s](
                       double period_s,
                       double) { return std::make_unique<FirstOrder>(time_constant_s, from_seconds(period_s)); },
-          .delay_s = time_constant_s};
+          .delay_s = time_constant_s,
+          .has_bandwidth = true};
 }
 
 TransferSystemReading read_second_order(Section& section) {
@@ -50,7 +51,8 @@ TransferSystemReading read_second_order(Section& section) {
                 return std::make_unique<SecondOrder>(changed, from_seconds(period_s));
               },
           .delay_s = parameters.damping_ratio / (std::numbers::pi * parameters.natural_frequency_hz) + delay_s,
-          .pure_delay_s = delay_s};
+          .pure_delay_s = delay_s,
+          .has_bandwidth = true};
 }
 
 TransferSystemReading read_servo_hydraulic(Section& section) {

@@ -51,6 +51,28 @@ TEST(Tuning, HoldsEveryChosenNumberOfTheDiagnosis) {
   EXPECT_THAT(chosen_numbers_outside(files), IsEmpty()) << "move it to diagnosis/tuning.hpp, with a sentence";
 }
 
+/// Names of the constants that a file defines.
+std::vector<std::string> constants_in(const std::string& text) {
+  static const std::regex constant{R"(inline\s+constexpr\s+[^=;{]*?\b(k\w+)\s*[={])"};
+  const std::string code = code_alone(text);
+  std::vector<std::string> names;
+  for (std::sregex_iterator at{code.begin(), code.end(), constant}, end; at != end; ++at) names.push_back((*at)[1]);
+  return names;
+}
+
+// There are too many of them: 25 are wanted. This number may fall, and must not rise.
+TEST(Tuning, HoldsNoMoreChosenNumbersThanBefore) {
+  constexpr std::size_t kAtMost = 187;
+  const std::vector<SourceFile> files = read_sources(HYBRIDTEST_SOURCE_DIR);
+  const auto tuning = std::ranges::find(files, std::string{"diagnosis/tuning.hpp"}, &SourceFile::path);
+  ASSERT_NE(tuning, files.end()) << "not read";
+  EXPECT_LE(constants_in(tuning->text).size(), kAtMost)
+      << "derive it, take the criterion that stands, or let it replace another one";
+  EXPECT_THAT(constants_in("inline constexpr double kOne = 1.0;\n// inline constexpr int kNone = 0;\n"
+                           "inline constexpr std::array<int, 2> kTwo{1, 2};\n"),
+              ElementsAre("kOne", "kTwo"));
+}
+
 TEST(Tuning, FindsChosenNumbersElsewhere) {  // control
   const std::string text =
       "constexpr double kReach = 4.0;\n"

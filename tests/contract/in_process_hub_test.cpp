@@ -81,14 +81,14 @@ TEST(InProcessHub, PortsRemainValidAfterTransportAndHubAreDestroyed) {
 TEST(InProcessHub, ThreadsSendWhileParticipantsJoinAndLeave) {
   Hub hub;
   const auto receiver = hub.join("test");
-  const auto inbox = receiver->measurement_inbox();
+  const auto inbox = receiver->measurement_inbox(4);
   constexpr int kSenders = 4;
   constexpr Step kMessages = 2000;
   std::vector<std::thread> threads;
   for (SubstructureIndex sender = 0; sender < kSenders; ++sender) {
     threads.emplace_back([&hub, sender] {
       const auto self = hub.join("test");
-      const auto outbox = self->measurement_outbox();
+      const auto outbox = self->measurement_outbox(sender);
       const auto status = self->status_outbox();
       for (Step step = 0; step < kMessages; ++step) {
         while (!outbox->send(sample_measurement(sender, step))) std::this_thread::yield();

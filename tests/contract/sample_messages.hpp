@@ -28,10 +28,9 @@ inline TestAnnouncement sample_announcement() {
                            .mode = CouplingMode::paced,
                            .step_s = 0.001,
                            .duration_s = 31.0,
-                           .time_scale = 20.0,
-                           .substructure_count = 2};
-  message.substructures[0] = {.id = "storey_1", .role = Role::experimental_site, .interface_dofs = 1};
-  message.substructures[1] = {.id = "storey_2", .role = Role::numerical_substructure, .interface_dofs = 12};
+                           .time_scale = 20.0};
+  message.substructures.push_back({.id = "storey_1", .role = Role::experimental_site, .interface_dofs = 1});
+  message.substructures.push_back({.id = "storey_2", .role = Role::numerical_substructure, .interface_dofs = 12});
   return message;
 }
 

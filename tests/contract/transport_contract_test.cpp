@@ -61,11 +61,11 @@ struct Coupled {
   Coupled(const std::function<std::unique_ptr<Transport>()>& join)
       : coordinator{join()}, site{join()}, numerical{join()} {
     commands = coordinator->command_outbox(2);
-    measurements = coordinator->measurement_inbox();
+    measurements = coordinator->measurement_inbox(2);
     site_commands = site->command_inbox(0);
-    site_measurements = site->measurement_outbox();
+    site_measurements = site->measurement_outbox(0);
     numerical_commands = numerical->command_inbox(1);
-    numerical_measurements = numerical->measurement_outbox();
+    numerical_measurements = numerical->measurement_outbox(1);
     // Each direction is known to work once something came through; what was repeated on the way
     // is taken out again.
     DisplacementCommand command;
@@ -119,7 +119,7 @@ TYPED_TEST(TransportContract, EveryMessageArrivesUnchanged) {
   check(sender->announcement_outbox(), receiver->announcement_inbox(), sample_announcement());
   check(sender->status_outbox(), receiver->status_inbox(), sample_status("site"));
   check(sender->command_outbox(32), receiver->command_inbox(31), sample_command(31, 5));
-  check(sender->measurement_outbox(), receiver->measurement_inbox(), sample_measurement(31, 6));
+  check(sender->measurement_outbox(31), receiver->measurement_inbox(32), sample_measurement(31, 6));
   check(sender->control_outbox(), receiver->control_inbox(), sample_control());
   check(sender->event_outbox(), receiver->event_inbox(), sample_event());
   check(sender->signal_outbox(), receiver->signal_inbox(), sample_signals());
@@ -128,8 +128,8 @@ TYPED_TEST(TransportContract, EveryMessageArrivesUnchanged) {
 TYPED_TEST(TransportContract, NonFiniteForceArrivesUnchanged) {
   const auto sender = this->join();
   const auto receiver = this->join();
-  const auto outbox = sender->measurement_outbox();
-  const auto inbox = receiver->measurement_inbox();
+  const auto outbox = sender->measurement_outbox(0);
+  const auto inbox = receiver->measurement_inbox(1);
   ForceMeasurement message = sample_measurement(0, 1);
   message.force_n[0] = std::numeric_limits<double>::quiet_NaN();
   message.force_n[1] = -std::numeric_limits<double>::infinity();
@@ -230,8 +230,8 @@ TYPED_TEST(TransportContract, TestsOfDifferentNamesAreIsolated) {
   const auto statuses = here->status_inbox();
   const auto announcements = here->announcement_inbox();
   const auto commands = here->command_inbox(0);
-  const auto measurements = here->measurement_outbox();
-  const auto foreign_measurements = elsewhere->measurement_inbox();
+  const auto measurements = here->measurement_outbox(0);
+  const auto foreign_measurements = elsewhere->measurement_inbox(1);
   const auto status = here_too->status_outbox();
 
   // Waits for someone of this test, who joined after the foreigner.
@@ -377,20 +377,39 @@ TYPED_TEST(TransportContract, ReachableFollowsTheOtherEnd) {
   const auto coordinator = this->join();
   auto site = this->join();
   const auto commands = coordinator->command_outbox(2);
-  const auto measurements = coordinator->measurement_inbox();
+  const auto measurements = coordinator->measurement_inbox(2);
   // Ports of the same participant at the other end do not count.
   const auto own_commands = coordinator->command_inbox(0);
-  const auto own_measurements = coordinator->measurement_outbox();
+  const auto own_measurements = coordinator->measurement_outbox(0);
   commands->send(sample_command(0, 0));
   EXPECT_FALSE(coordinator->reachable(0));
   auto site_commands = site->command_inbox(0);
-  auto site_measurements = site->measurement_outbox();
+  auto site_measurements = site->measurement_outbox(0);
   EXPECT_TRUE(eventually(*coordinator, [&] { return coordinator->reachable(0); }));
   EXPECT_FALSE(coordinator->reachable(1));
+  EXPECT_TRUE(eventually(*site, [&] { return site->reachable(0); }));
+  EXPECT_FALSE(site->reachable(1));
   site_commands.reset();
   site_measurements.reset();
   site.reset();
   EXPECT_TRUE(eventually(*coordinator, [&] { return !coordinator->reachable(0); }));
+}
+
+TYPED_TEST(TransportContract, SubstructureIsReachedByOneWhoHasBothPorts) {
+  const auto site = this->join();
+  const auto site_commands = site->command_inbox(0);
+  const auto site_measurements = site->measurement_outbox(0);
+  auto sender = this->join();
+  const auto receiver = this->join();
+  auto commands = sender->command_outbox(1);
+  const auto measurements = receiver->measurement_inbox(1);
+  DisplacementCommand command;
+  ASSERT_TRUE(passes(*site, *commands, *site_commands, sample_command(0, 1), command));
+  EXPECT_FALSE(site->reachable(0)) << "the one who commands does not hear the answers";
+  const auto senders_measurements = sender->measurement_inbox(1);
+  EXPECT_TRUE(eventually(*site, [&] { return site->reachable(0); }));
+  commands.reset();
+  EXPECT_TRUE(eventually(*site, [&] { return !site->reachable(0); }));
 }
 
 TYPED_TEST(TransportContract, ArrivalSignalsWaker) {

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <thread>
 
+#include "tests/support/signals_in_turn.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -35,26 +37,10 @@ TEST(Waker, SignalFromAnotherThreadEndsWait) {
   other.join();
 }
 
-// A lost signal would make both threads wait for ever.
 TEST(Waker, LosesNoSignalBetweenTwoThreads) {
-  constexpr int kRounds = 20000;
   Waker ping;
   Waker pong;
-  int number = 0;  // written by one thread at a time: the signals must also order memory
-  std::thread other{[&] {
-    for (int i = 0; i < kRounds; ++i) {
-      EXPECT_TRUE(ping.wait_until(kEndless));
-      ++number;
-      pong.signal();
-    }
-  }};
-  for (int i = 0; i < kRounds; ++i) {
-    ++number;
-    ping.signal();
-    ASSERT_TRUE(pong.wait_until(kEndless));
-    ASSERT_EQ(number, 2 * (i + 1));
-  }
-  other.join();
+  expect_signals_in_turn(ping, pong, 20000, [](Waker& waker) { return waker.wait_until(kEndless); });
 }
 
 // The last of several signals must be seen by a wait that begins after it was taken note of.

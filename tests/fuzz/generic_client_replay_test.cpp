@@ -1,35 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/random.hpp"
 #include "tests/fuzz/generic_client_fuzz.hpp"
+#include "tests/fuzz/replay.hpp"
 
 namespace hybridtest {
 namespace {
-
-/// Files of the corpus by name, sorted, so that a seed means the same everywhere.
-std::map<std::string, std::string> corpus() {
-  std::map<std::string, std::string> files;
-  const std::filesystem::path folder =
-      std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "tests/fuzz/corpus/generic_client";
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    std::ifstream stream{entry.path(), std::ios::binary};
-    files[entry.path().filename().string()] =
-        std::string{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
-  }
-  return files;
-}
-
-GenericClientOutcome run(std::string_view bytes) {
-  return fuzz_generic_client(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-}
 
 /// One change as a network or a program makes it: a byte or a bit, a range cut, repeated or moved.
 void change(std::string& bytes, Random& random) {
@@ -49,26 +28,13 @@ TEST(GenericClientFuzzReplay, CorpusFilesBehaveAsNamed) {
                                                                 {"refused", GenericClientOutcome::refused},
                                                                 {"accepted", GenericClientOutcome::accepted},
                                                                 {"lost", GenericClientOutcome::lost}};
-  const auto files = corpus();
-  ASSERT_GE(files.size(), 10U);
-  for (const auto& [name, bytes] : files) {
-    const auto outcome = expected.find(name.substr(0, name.find('_')));
-    ASSERT_NE(outcome, expected.end()) << name;
-    EXPECT_EQ(run(bytes), outcome->second) << name;
-  }
+  test::expect_outcomes_as_named("generic_client", fuzz_generic_client, expected);
 }
 
 TEST(GenericClientFuzzReplay, SurvivesMutationsOfTheCorpus) {
-  const auto files = corpus();
-  std::vector<std::string> texts;
-  for (const auto& [name, bytes] : files) texts.push_back(bytes);
-  std::map<GenericClientOutcome, int> outcomes;
-  for (std::uint64_t number = 0; number < 5000; ++number) {
-    Random random{1, number};
-    std::string bytes = texts[static_cast<std::size_t>(random.below(texts.size()))];
-    for (std::uint64_t changes = random.below(3) + 1; changes > 0; --changes) change(bytes, random);
-    ++outcomes[run(bytes)];
-  }
+  const auto texts = test::to_mutate("generic_client");
+  auto outcomes = test::outcomes_of_mutations(5000, fuzz_generic_client,
+                                              [&](Random& random) { return test::changed(texts, 3, change, random); });
   // Mutations that all end the same way would test nothing.
   for (const auto& [name, outcome] :
        {std::pair{"refused", GenericClientOutcome::refused}, std::pair{"accepted", GenericClientOutcome::accepted},

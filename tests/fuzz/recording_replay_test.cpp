@@ -1,35 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/random.hpp"
 #include "tests/fuzz/recording_fuzz.hpp"
+#include "tests/fuzz/replay.hpp"
 
 namespace hybridtest {
 namespace {
-
-/// Files of the corpus by name, sorted, so that a seed means the same everywhere.
-std::map<std::string, std::string> corpus() {
-  std::map<std::string, std::string> files;
-  const std::filesystem::path folder = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "tests/fuzz/corpus/recording";
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    std::ifstream stream{entry.path(), std::ios::binary};
-    files[entry.path().filename().string()] =
-        std::string{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
-  }
-  return files;
-}
-
-bool run(std::string_view text) {
-  return fuzz_recording(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-}
 
 /// One change as a fuzzer makes it: a byte, a piece of a header or number, a range cut or repeated.
 void change(std::string& text, Random& random) {
@@ -48,36 +29,17 @@ void change(std::string& text, Random& random) {
 }
 
 TEST(RecordingFuzzReplay, CorpusFilesBehaveAsNamed) {
-  const auto files = corpus();
-  ASSERT_GE(files.size(), 10U);
-  for (const auto& [name, text] : files) {
-    const bool is_expected = name.starts_with("accepted_");
-    ASSERT_TRUE(is_expected || name.starts_with("refused_")) << name;
-    EXPECT_EQ(run(text), is_expected) << name;
-  }
+  test::expect_outcomes_as_named("recording", fuzz_recording,
+                                 std::map<std::string, bool>{{"accepted", true}, {"refused", false}});
 }
 
 TEST(RecordingFuzzReplay, SurvivesMutationsOfTheCorpus) {
-  constexpr std::uint64_t kSeed = 1;
-  constexpr std::uint64_t kMutations = 4000;
-  std::vector<std::string> texts;
-  for (const auto& [name, text] : corpus()) texts.insert(texts.end(), name.starts_with("accepted_") ? 4 : 1, text);
-  int accepted = 0;
-  int refused = 0;
-  for (std::uint64_t number = 0; number < kMutations; ++number) {
-    Random random{kSeed, number};
-    std::string text = texts[static_cast<std::size_t>(random.below(texts.size()))];
-    const std::uint64_t changes = 1 + random.below(3);
-    for (std::uint64_t i = 0; i < changes; ++i) change(text, random);
-    try {
-      ++(run(text) ? accepted : refused);
-    } catch (const std::exception& error) {
-      FAIL() << "mutation " << number << " of seed " << kSeed << ": " << error.what() << '\n' << text;
-    }
-  }
+  const auto texts = test::to_mutate("recording", 4);
+  auto outcomes = test::outcomes_of_mutations(4000, fuzz_recording,
+                                              [&](Random& random) { return test::changed(texts, 3, change, random); });
   // Mutations that all end the same way would test nothing.
-  EXPECT_GT(accepted, 150);
-  EXPECT_GT(refused, 400);
+  EXPECT_GT(outcomes[true], 150);
+  EXPECT_GT(outcomes[false], 400);
 }
 
 }  // namespace

@@ -197,6 +197,7 @@ void expect_explained(const KeptSimulation& run, const KeptSimulation& reference
     case StopReason::model_failed:
     case StopReason::deadlines_missed:
     case StopReason::network_too_slow:
+    case StopReason::resume_refused:
     case StopReason::refused:
     case StopReason::emergency_stop:
     case StopReason::participant_failed:

@@ -66,8 +66,9 @@ Transport& NodeBench::add_outsider() {
 void NodeBench::run_next(Instant next) {
   now_ = std::max(now_, next);
   network_.advance_to(now_);
+  network_.take_arrivals(arrived_);
   for (Seat& seat : seats_) {
-    const bool has_arrival = network_.take_arrival(seat.number);
+    const bool has_arrival = std::ranges::find(arrived_, seat.number) != arrived_.end();
     if (seat.participant->is_done() || now_ < Instant{seat.start} || (!has_arrival && seat.wake > now_)) continue;
     const Instant wake = seat.participant->node().advance(now_ - seat.start);
     seat.wake = wake == kNever ? kNever : std::max(wake + seat.start, now_ + Duration{1});

@@ -61,6 +61,7 @@ class NodeBench {
   std::deque<Seat> seats_;
   std::vector<std::unique_ptr<Transport>> outsiders_;
   std::vector<Event> events_;
+  std::vector<std::size_t> arrived_;  // seats for whom something came
   Instant now_{};
 };
 

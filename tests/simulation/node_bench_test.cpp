@@ -137,7 +137,7 @@ TEST_F(NodeBenchTest, RefusesOtherScenarioBeforeMotion) {
 TEST_F(NodeBenchTest, MeasurementsOfUnknownSendersAreIgnored) {
   add_all();
   Transport& impostor = bench_.add_outsider();
-  const auto outbox = impostor.measurement_outbox();
+  const auto outbox = impostor.measurement_outbox(1);
   for (Duration time = milliseconds{300}; time < milliseconds{400}; time += milliseconds{1}) {
     bench_.run_until(time);
     for (SubstructureIndex index = 0; index < 4; ++index) {
@@ -200,7 +200,7 @@ TEST_F(NodeBenchTest, WrongForceVectorSizeEndsTest) {
   forged.sender = model_->incarnation();
   forged.force_n = InterfaceVector::Zero(2);
   // This answer has to arrive before the true one.
-  const auto outbox = impostor.measurement_outbox();
+  const auto outbox = impostor.measurement_outbox(1);
   while (coordinator_->reason() == StopReason::none && bench_.now() < seconds{10}) {
     forged.step = completed();
     outbox->send(forged);

@@ -1,8 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
+#include "recording/run_file_reader.hpp"
+#include "recording/summary/clock_relation.hpp"
 #include "tests/support/recording_checks.hpp"
 #include "tests/support/system_fixture.hpp"
 
@@ -44,6 +48,20 @@ TEST_F(ByHand, ThreeProgramsStartedInAnyOrderCompleteATest) {
   EXPECT_EQ(values["completed_steps"], 2000);
   EXPECT_EQ(values["participants"].size(), 3U);
   EXPECT_EQ(values["data_valid"], true) << values["data_faults"];
+
+  // The clocks of the processes start with them; on one host the wall clock tells how far apart.
+  const RunFileReader control{recorded("at_control").file("coordinator")};
+  const std::vector<ParticipantClock> clocks = participant_clocks(control);
+  ASSERT_EQ(clocks.size(), 2U);
+  for (const ParticipantClock& clock : clocks) {
+    const RunFileReader file{recorded("at_control").file(clock.participant)};
+    ASSERT_FALSE(clock.parts.empty());
+    const ClockRelation& relation = clock.parts.front();
+    const double truth_s = control.header().t0_unix_s - file.header().t0_unix_s;
+    constexpr double kWallClock_s = 20e-6;  // read beside the other clock, and a double holds it to 0.2 us
+    EXPECT_LE(std::abs(relation.offset_s - truth_s), relation.offset_uncertainty_s + kWallClock_s) << clock.participant;
+    EXPECT_LT(relation.offset_uncertainty_s, 0.01) << clock.participant;
+  }
 
   StartedProgram simulated = start_simulate(scenario, "simulated", arguments);
   ASSERT_THAT(simulated.wait(), Optional(kExitCompleted)) << simulated.standard_error();

@@ -69,7 +69,7 @@ TEST_F(Export, CsvReadsBackToTheRecordedValues) {
     }
     EXPECT_TRUE(std::filesystem::exists(directory() / "run" / "csv" / (std::string{participant} + ".events.csv")));
   }
-  EXPECT_EQ(tables, 8U);  // steps, exchanges, test, ground_motions, response_spectra; steps, control; steps
+  EXPECT_EQ(tables, 9U);  // steps, exchanges, clocks, test, ground_motions, response_spectra; steps, control; steps
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,41 @@ TEST_F(Sweep, WrongValueIsToldBeforeTheFirstCase) {
   StartedProgram wrong = start_hybridtest(arguments("wrong", {"--vary", "time.step=0.001"}), "wrong");
   EXPECT_THAT(wrong.wait(), Optional(kExitConfiguration));
   EXPECT_THAT(wrong.standard_error(), HasSubstr("time.step"));
+  EXPECT_FALSE(std::filesystem::exists(directory() / "wrong"));
+}
+
+/// In real time a substructure whose round trip does not fit into a step is too far away.
+TEST_F(Sweep, LatencyOfOneSubstructureIsVaried) {
+  const Arguments sweep{"sweep",   shipped_scenario("two_storey_one_site").string(),
+                        "--set",   "time={mode: real_time, step_s: 0.01, duration_s: 0.5}",
+                        "--vary",  "site_latency_us[storey_2]=100,50000",
+                        "--vary",  "latency_spread=0,0.3",
+                        "--seeds", "1..2",
+                        "--out",   (directory() / "far").string()};
+  expect_exit(start_hybridtest(sweep, "far"), kExitCompleted);
+  const std::string far = table("far");
+  EXPECT_THAT(far, HasSubstr("site_latency_us[storey_2],latency_spread"));
+  std::istringstream lines{far};
+  int near_ones = 0;
+  int far_ones = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(",100,") != std::string::npos) {
+      ++near_ones;
+      EXPECT_THAT(line, HasSubstr(",completed,"));
+    }
+    if (line.find(",50000,") != std::string::npos) {
+      ++far_ones;
+      EXPECT_THAT(line, HasSubstr(",network_too_slow,"));
+    }
+  }
+  EXPECT_EQ(near_ones, 4) << far;
+  EXPECT_EQ(far_ones, 4) << far;
+}
+
+TEST_F(Sweep, LatencyOfAnUnknownSubstructureIsRefused) {
+  StartedProgram wrong = start_hybridtest(arguments("wrong", {"--vary", "site_latency_us[storey_9]=1,2"}), "wrong");
+  EXPECT_THAT(wrong.wait(), Optional(kExitConfiguration));
+  EXPECT_THAT(wrong.standard_error(), HasSubstr("the scenario has no substructure 'storey_9'"));
   EXPECT_FALSE(std::filesystem::exists(directory() / "wrong"));
 }
 

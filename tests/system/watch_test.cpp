@@ -182,6 +182,29 @@ TEST_F(Watch, ControlsDoWhatTheySayAndNeedTheToken) {
   }
 }
 
+TEST_F(Watch, TestThatWaitsForALinkIsShownAsHeld) {
+  Arguments more = kWatchedLong;
+  more.insert(more.end(), {"--set", "timeouts={liveliness_lease_s: 1, link_s: 60}"});
+  StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", more);
+  StartedProgram watch = start_watch("watch", {test_name()});
+  Page page{address_of(watch), test_name()};
+  ASSERT_TRUE(page.reaches_step(500)) << run.standard_error();
+  const pid_t site = participant_of(run, "storey_1");
+  ASSERT_NE(site, 0);
+  ASSERT_EQ(::kill(site, SIGSTOP), 0);  // it is there and nobody hears it, as behind a link that is down
+  ASSERT_TRUE(page.reaches("held")) << run.standard_error();
+  EXPECT_EQ(page.state("storey_1"), "not heard by the coordinator, which waits for its link");
+  const json held = page.ask();
+  EXPECT_THAT(held["test"]["verdict"].get<std::string>(), HasSubstr("Held: nothing from 'storey_1' for"));
+  EXPECT_THAT(held["test"]["verdict"].get<std::string>(), HasSubstr("waiting up to 60 s for its link"));
+  ASSERT_EQ(::kill(site, SIGCONT), 0);
+  ASSERT_TRUE(page.reaches("running")) << run.standard_error();
+  EXPECT_EQ(page.state("storey_1"), "running");
+  EXPECT_TRUE(page.reaches_step(held["test"]["step"].get<int>() + 100));
+  run.signal(SIGINT);
+  EXPECT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
+}
+
 TEST_F(Watch, KilledSiteIsSeenWithinTheLease) {
   constexpr auto kLease = 2s;
   StartedProgram run = start_run(shipped_scenario("two_storey_one_site"), "run", kWatchedLong);

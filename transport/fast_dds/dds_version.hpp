@@ -14,10 +14,12 @@
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/TCPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/attributes/LibrarySettingsAttributes.h>
 #include <fastrtps/types/TypesBase.h>
+#include <fastrtps/utils/IPFinder.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
@@ -36,6 +38,7 @@ namespace rtps = eprosima::fastdds::rtps;
 
 using Locator = eprosima::fastrtps::rtps::Locator_t;
 using PortParameters = eprosima::fastrtps::rtps::PortParameters;
+using IpFinder = eprosima::fastrtps::rtps::IPFinder;
 using IpLocator = eprosima::fastrtps::rtps::IPLocator;
 using DdsDuration = eprosima::fastrtps::Duration_t;
 using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;

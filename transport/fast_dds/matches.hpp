@@ -26,6 +26,11 @@ class Matches {
     participants_.clear();
   }
 
+  [[nodiscard]] bool has(const GuidPrefix& participant) const noexcept {
+    const std::lock_guard lock{mutex_};
+    return std::find(participants_.begin(), participants_.end(), participant) != participants_.end();
+  }
+
   /// Whether some participant is at the other end of both ports.
   [[nodiscard]] bool share_participant(const Matches& other) const noexcept {
     const std::scoped_lock lock{mutex_, other.mutex_};

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/config_error.hpp"
 #include "transport/fast_dds/live_type.hpp"
 #include "transport/fast_dds/participant_qos.hpp"
 
@@ -16,9 +17,27 @@ Entity* created(Entity* entity, const char* what) {
   return entity;
 }
 
+/// With credentials, Fast DDS makes no endpoint that they do not permit.
+template <class Entity>
+Entity* permitted(Entity* entity, const FastDdsSettings& settings, const char* verb, dds::Topic& topic,
+                  const Partitions& partitions) {
+  if (entity == nullptr && settings.credentials) {
+    throw ConfigError{{ConfigIssue{.file = settings.credentials->string(),
+                                   .what = std::string{"these credentials do not permit to "} + verb + " '" +
+                                           topic.get_name() + "' in '" + partitions.names.front() +
+                                           "'; use the folder of this participant and this test"}}};
+  }
+  return created(entity, "endpoint");
+}
+
 std::shared_ptr<PolledSocket> socket_for(const FastDdsSettings& settings) {
-  const bool reads_itself = settings.receives_in_waiting_thread && !settings.profile_file;
+  const bool reads_itself = settings.receives_in_waiting_thread && !settings.profile_file && !settings.tcp;
   return reads_itself ? std::make_shared<PolledSocket>(settings.busy_poll, settings.when_woken) : nullptr;
+}
+
+template <class Qos>
+void add(const Partitions& partitions, Qos& qos) {
+  for (const std::string& name : partitions.names) qos.partition().push_back(name.c_str());
 }
 
 }  // namespace
@@ -26,10 +45,12 @@ std::shared_ptr<PolledSocket> socket_for(const FastDdsSettings& settings) {
 Participant::Participant(const FastDdsSettings& settings) : socket_{socket_for(settings)}, settings_{settings} {
   turn_off_intraprocess_delivery();
   describe_live_type();
-  const dds::DomainParticipantQos qos = participant_qos(settings_, socket_);
+  const dds::DomainParticipantQos qos = participant_qos(settings_, socket_, refused_);
   participant_ = created(dds::DomainParticipantFactory::get_instance()->create_participant(settings_.domain, qos, this,
                                                                                            dds::StatusMask::none()),
-                         "participant; all UDP ports of the domain may be in use: choose another --domain");
+                         settings_.credentials
+                             ? "participant; it may have refused the credentials, see above"
+                             : "participant; all UDP ports of the domain may be in use: choose another --domain");
 }
 
 Participant::~Participant() {
@@ -49,40 +70,40 @@ dds::Topic* Participant::topic(const char* name, const std::function<dds::TypeSu
   return topic;
 }
 
-dds::DataWriter* Participant::create_writer(dds::Topic* topic, const std::string& partition,
+dds::DataWriter* Participant::create_writer(dds::Topic* topic, const Partitions& partitions,
                                             const dds::DataWriterQos& qos, dds::DataWriterListener* listener) {
   const std::lock_guard lock{mutex_};
-  dds::Publisher*& publisher = publishers_[partition];
+  dds::Publisher*& publisher = publishers_[partitions];
   if (publisher == nullptr) {
     dds::PublisherQos publisher_qos;
-    publisher_qos.partition().push_back(partition.c_str());
+    add(partitions, publisher_qos);
     publisher = created(participant_->create_publisher(publisher_qos), "publisher");
   }
-  return created(publisher->create_datawriter(topic, qos, listener), "writer");
+  return permitted(publisher->create_datawriter(topic, qos, listener), settings_, "write", *topic, partitions);
 }
 
 void Participant::remove(dds::DataWriter* writer) noexcept {
   const std::lock_guard lock{mutex_};
-  for (const auto& [partition, publisher] : publishers_) {
+  for (const auto& [partitions, publisher] : publishers_) {
     if (publisher->delete_datawriter(writer) == kReturnOk) return;
   }
 }
 
-dds::DataReader* Participant::create_reader(dds::Topic* topic, const std::string& partition,
+dds::DataReader* Participant::create_reader(dds::Topic* topic, const Partitions& partitions,
                                             const dds::DataReaderQos& qos, dds::DataReaderListener* listener) {
   const std::lock_guard lock{mutex_};
-  dds::Subscriber*& subscriber = subscribers_[partition];
+  dds::Subscriber*& subscriber = subscribers_[partitions];
   if (subscriber == nullptr) {
     dds::SubscriberQos subscriber_qos;
-    subscriber_qos.partition().push_back(partition.c_str());
+    add(partitions, subscriber_qos);
     subscriber = created(participant_->create_subscriber(subscriber_qos), "subscriber");
   }
-  return created(subscriber->create_datareader(topic, qos, listener), "reader");
+  return permitted(subscriber->create_datareader(topic, qos, listener), settings_, "read", *topic, partitions);
 }
 
 void Participant::remove(dds::DataReader* reader) noexcept {
   const std::lock_guard lock{mutex_};
-  for (const auto& [partition, subscriber] : subscribers_) {
+  for (const auto& [partitions, subscriber] : subscribers_) {
     if (subscriber->delete_datareader(reader) == kReturnOk) return;
   }
 }

@@ -17,13 +17,25 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/packet_filter.hpp"
 #include "transport/fast_dds/polled_socket.hpp"
 #include "transport/fast_dds/topics.hpp"
 #include "transport/waker.hpp"
 
 namespace hybridtest::fast_dds {
+
+/// The partitions of an endpoint: it is matched with the endpoints that share one of them.
+struct Partitions {
+  Partitions(std::string name) : names{std::move(name)} {}
+  Partitions(std::vector<std::string> all) : names{std::move(all)} {}
+  friend auto operator<=>(const Partitions&, const Partitions&) = default;
+
+  std::vector<std::string> names;
+};
 
 /// The DDS entities that the ports of one participant share. Throws std::runtime_error wherever
 /// Fast DDS returns nothing.
@@ -35,14 +47,14 @@ class Participant final : private dds::DomainParticipantListener {
   Participant& operator=(const Participant&) = delete;
 
   template <class Message>
-  [[nodiscard]] dds::DataWriter* create_writer(const std::string& partition, dds::DataWriterListener* listener) {
-    return create_writer(topic<Message>(), partition, writer_qos(Topic<Message>::kDelivery, settings_), listener);
+  [[nodiscard]] dds::DataWriter* create_writer(const Partitions& partitions, dds::DataWriterListener* listener) {
+    return create_writer(topic<Message>(), partitions, writer_qos(Topic<Message>::kDelivery, settings_), listener);
   }
   void remove(dds::DataWriter* writer) noexcept;
 
   template <class Message>
-  [[nodiscard]] dds::DataReader* create_reader(const std::string& partition, dds::DataReaderListener* listener) {
-    return create_reader(topic<Message>(), partition, reader_qos(Topic<Message>::kDelivery, settings_), listener);
+  [[nodiscard]] dds::DataReader* create_reader(const Partitions& partitions, dds::DataReaderListener* listener) {
+    return create_reader(topic<Message>(), partitions, reader_qos(Topic<Message>::kDelivery, settings_), listener);
   }
   void remove(dds::DataReader* reader) noexcept;
 
@@ -55,9 +67,12 @@ class Participant final : private dds::DomainParticipantListener {
 
  private:
   const std::shared_ptr<PolledSocket> socket_;  // null where a thread of Fast DDS receives
+  const std::shared_ptr<RefusedPackets> refused_ = std::make_shared<RefusedPackets>();
 
  public:
   Waker waker{socket_.get()};
+  /// By the packet filter.
+  [[nodiscard]] const RefusedPackets& refused() const noexcept { return *refused_; }
   std::atomic<std::uint64_t> overflowed{0};
   std::atomic<std::uint64_t> malformed{0};
   std::atomic<std::uint64_t> unsent{0};
@@ -73,9 +88,9 @@ class Participant final : private dds::DomainParticipantListener {
   }
 
   dds::Topic* topic(const char* name, const std::function<dds::TypeSupport()>& make_type);
-  dds::DataWriter* create_writer(dds::Topic* topic, const std::string& partition, const dds::DataWriterQos& qos,
+  dds::DataWriter* create_writer(dds::Topic* topic, const Partitions& partitions, const dds::DataWriterQos& qos,
                                  dds::DataWriterListener* listener);
-  dds::DataReader* create_reader(dds::Topic* topic, const std::string& partition, const dds::DataReaderQos& qos,
+  dds::DataReader* create_reader(dds::Topic* topic, const Partitions& partitions, const dds::DataReaderQos& qos,
                                  dds::DataReaderListener* listener);
   void on_participant_discovery(dds::DomainParticipant* participant, DiscoveryInfo&& info) override;
 
@@ -83,8 +98,8 @@ class Participant final : private dds::DomainParticipantListener {
   dds::DomainParticipant* participant_ = nullptr;
   std::mutex mutex_;  // guards what follows
   std::map<std::string, dds::Topic*> topics_;
-  std::map<std::string, dds::Publisher*> publishers_;    // by partition
-  std::map<std::string, dds::Subscriber*> subscribers_;  // by partition
+  std::map<Partitions, dds::Publisher*> publishers_;
+  std::map<Partitions, dds::Subscriber*> subscribers_;
   std::mutex departure_mutex_;
   std::map<std::size_t, std::function<void(const GuidPrefix&)>> departure_actions_;
   std::size_t departure_count_ = 0;

@@ -1,18 +1,19 @@
 #include "transport/fast_dds/participant_qos.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "core/config_error.hpp"
 #include "core/input_file.hpp"
+#include "transport/fast_dds/addresses.hpp"
 #include "transport/fast_dds/dds_version.hpp"
 #include "transport/fast_dds/polled_transport.hpp"
+#include "transport/fast_dds/security_qos.hpp"
+#include "transport/fast_dds/tcp_qos.hpp"
 #include "transport/fast_dds/topics.hpp"
 
 namespace hybridtest::fast_dds {
@@ -20,10 +21,11 @@ namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr Duration kAnnouncementPeriodMax = std::chrono::milliseconds{500};
+// Fast DDS looks once in this many leases whether a participant is still there. When that falls into the removal of
+// another one, 2.9 locks up, or aborts on an assertion (eProsima/Fast-DDS issue 6502); with 32 that leave together it
+// did in every sixth run. What has been lost is found sooner, by the statuses that stop.
+constexpr int kLeasesOfParticipant = 20;
 constexpr const char* kProfileName = "hybridtest";
-// GUID prefix of a discovery server started with `fastdds discovery -i 0`.
-constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
-constexpr std::uint16_t kServerPort = 11811;
 
 void check(const FastDdsSettings& settings) {
   if (settings.domain > 232) throw ConfigError{"the DDS domain must be 0 to 232"};
@@ -33,37 +35,12 @@ void check(const FastDdsSettings& settings) {
   if (settings.lease < std::chrono::milliseconds{100} || settings.heartbeat_deadline < std::chrono::milliseconds{100}) {
     throw ConfigError{"the lease and the heartbeat deadline must be 0.1 s or longer"};
   }
+  if (settings.repair_period < std::chrono::milliseconds{1} || settings.repair_period > std::chrono::seconds{1}) {
+    throw ConfigError{"the repair period must be 1 ms to 1 s"};
+  }
   if (settings.busy_poll < Duration{0} || settings.busy_poll > std::chrono::seconds{1}) {
     throw ConfigError{"the busy poll must be 0 to 1 s"};
   }
-}
-
-// `host` or `host:port`; a port of 0 leaves the choice to Fast DDS. `what` names the address in messages.
-Locator to_locator(std::string_view what, std::string_view address, std::uint16_t default_port) {
-  const auto refuse = [&](const char* why) {
-    throw ConfigError{std::string{what} + " '" + std::string{address} + "': " + why};
-  };
-  const std::string_view host = address.substr(0, address.find(':'));
-  if (host.empty()) refuse("expected host or host:port");
-  std::uint16_t port = default_port;
-  if (host.size() < address.size()) {
-    const std::string_view digits = address.substr(host.size() + 1);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-    if (error != std::errc{} || end != digits.data() + digits.size() || port == 0) {
-      refuse("expected host or host:port, port 1 to 65535");
-    }
-  }
-  Locator locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  locator.port = port;
-  std::string numeric{host};
-  if (!IpLocator::isIPv4(numeric)) {
-    const auto addresses = IpLocator::resolveNameDNS(numeric);
-    if (addresses.first.empty()) refuse("this host has no IPv4 address; check its name");
-    numeric = *addresses.first.begin();
-  }
-  IpLocator::setIPv4(locator, numeric);
-  return locator;
 }
 
 // Fast DDS maps its segments completely, and SIGBUS kills the process if the file system is smaller.
@@ -74,16 +51,26 @@ bool has_room_for_shared_memory() {
   return !error && space.available >= kRoom;
 }
 
+Admission admission_of(const FastDdsSettings& settings) {
+  if (!settings.credentials) return Admission::plain;
+  return settings.discovery_server ? Admission::secured_by_server : Admission::secured;
+}
+
 void add_transports(const FastDdsSettings& settings, const std::shared_ptr<PolledSocket>& socket,
-                    dds::DomainParticipantQos& qos) {
+                    const std::shared_ptr<RefusedPackets>& refused, dds::DomainParticipantQos& qos) {
   const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
   // A full socket buffer loses a packet, and the protocol sends it again. A blocked step cannot be repaired.
   udp->non_blocking_send = true;
   udp->maxInitialPeersRange = settings.loopback_participants;
-  if (settings.loopback_only) udp->interfaceWhiteList.emplace_back(kLoopback);
+  if (settings.loopback_only) {
+    udp->interfaceWhiteList.emplace_back(kLoopback);
+  } else if (settings.interface_address) {
+    udp->interfaceWhiteList.push_back(own_address("interface", *settings.interface_address));
+  }
   qos.transport().use_builtin_transports = false;
   if (socket) {
-    qos.transport().user_transports.push_back(polled_transport(udp, socket, settings.domain, settings.loopback_only));
+    qos.transport().user_transports.push_back(
+        polled_transport(udp, socket, settings.domain, settings.loopback_only, admission_of(settings), refused));
   } else {
     qos.transport().user_transports.push_back(udp);
   }
@@ -98,7 +85,7 @@ void add_discovery(const FastDdsSettings& settings, dds::DomainParticipantQos& q
     RemoteServer server;
     server.ReadguidPrefix(kServerPrefix);
     server.metatrafficUnicastLocatorList.push_back(
-        to_locator("discovery server", *settings.discovery_server, kServerPort));
+        to_locator("discovery server", *settings.discovery_server, kDiscoveryServerPort));
     builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::CLIENT;
     builtin.discovery_config.m_DiscoveryServers.push_back(server);
     return;
@@ -110,7 +97,7 @@ void add_discovery(const FastDdsSettings& settings, dds::DomainParticipantQos& q
   }
   for (const std::string& peer : settings.initial_peers)
     builtin.initialPeersList.push_back(to_locator("peer", peer, 0));
-  if (!settings.loopback_only && !settings.initial_peers.empty()) {
+  if (settings.looks_by_multicast && !settings.loopback_only && !settings.initial_peers.empty()) {
     // A list of peers replaces multicast discovery unless multicast is one of them.
     builtin.initialPeersList.push_back(to_locator("peer", "239.255.0.1", 0));
   }
@@ -136,27 +123,32 @@ dds::DomainParticipantQos profile_qos(const std::filesystem::path& file) {
 
 void require_usable(const FastDdsSettings& settings) { static_cast<void>(participant_qos(settings)); }
 
-dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings,
-                                          const std::shared_ptr<PolledSocket>& socket) {
+dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings, const std::shared_ptr<PolledSocket>& socket,
+                                          const std::shared_ptr<RefusedPackets>& refused) {
   check(settings);
   dds::DomainParticipantQos qos;
   if (settings.profile_file) {
     qos = profile_qos(*settings.profile_file);
+  } else if (settings.tcp) {
+    add_tcp(settings, qos);
   } else {
-    add_transports(settings, socket, qos);
+    add_transports(settings, socket, refused, qos);
     add_discovery(settings, qos);
   }
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  discovery.leaseDuration = to_dds(settings.lease);
+  discovery.leaseDuration = to_dds(kLeasesOfParticipant * settings.lease);
   // An announcement can be lost. Whoever joins later, such as the tool of an emergency stop, waits for the next one.
   discovery.leaseDuration_announcementperiod = to_dds(std::min(settings.lease / 4, kAnnouncementPeriodMax));
   // Existing participants answer the first announcement at once. The repeats are for participants
   // that open their socket a little later.
   discovery.initial_announcements.count = 10;
   discovery.initial_announcements.period = to_dds(std::chrono::milliseconds{50});
-  // Tells other programs how the types of our messages are made, when they ask.
-  qos.wire_protocol().builtin.typelookup_config.use_server = true;
+  // Tells other programs how the types of our messages are made, when they ask. Fast DDS 2.9 asks each participant in
+  // turn whether it has a question, 14 times a second and for ever: one answers for the test, not all of it to all of
+  // it.
+  qos.wire_protocol().builtin.typelookup_config.use_server = settings.substructure_id.empty();
   qos.name("hybridtest");
+  if (settings.credentials) add_security(*settings.credentials, qos);
   return qos;
 }
 

@@ -10,7 +10,8 @@ bool took_leave(LifecycleState state) noexcept {
 }
 
 bool can_move(LifecycleState state) noexcept {
-  return state == LifecycleState::armed || state == LifecycleState::running || state == LifecycleState::stopping;
+  return state == LifecycleState::armed || state == LifecycleState::running || state == LifecycleState::stopping ||
+         state == LifecycleState::waiting;
 }
 
 }  // namespace
@@ -41,11 +42,19 @@ std::optional<ParticipantStatus> Peers::gone(const GuidPrefix& prefix) {
 
 std::optional<ParticipantStatus> Peers::silent(const InstanceHandle& instance) {
   const std::lock_guard lock{mutex_};
-  const auto known = std::find_if(peers_.begin(), peers_.end(), [&](const Peer& peer) {
-    return peer.instance == instance && can_move(peer.last.state) && !peer.reported;
-  });
+  const auto known = std::find_if(peers_.begin(), peers_.end(),
+                                  [&](const Peer& peer) { return peer.instance == instance && is_missed(peer); });
   return known == peers_.end() ? std::nullopt : report(*known);
 }
+
+std::optional<ParticipantStatus> Peers::silent(const GuidPrefix& prefix) {
+  const std::lock_guard lock{mutex_};
+  const auto known = std::find_if(peers_.begin(), peers_.end(),
+                                  [&](const Peer& peer) { return peer.prefix == prefix && is_missed(peer); });
+  return known == peers_.end() ? std::nullopt : report(*known);
+}
+
+bool Peers::is_missed(const Peer& peer) noexcept { return can_move(peer.last.state) && !peer.reported; }
 
 std::optional<ParticipantStatus> Peers::report(Peer& peer) {
   if (peer.reported || took_leave(peer.last.state)) return std::nullopt;

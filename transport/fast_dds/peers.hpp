@@ -26,6 +26,8 @@ class Peers {
   /// No status arrived in the instance within the deadline. While nothing can move (a rig that takes
   /// long to connect), statuses may pause; then it is not a loss.
   [[nodiscard]] std::optional<ParticipantStatus> silent(const InstanceHandle& instance);
+  /// The same for the statuses of one participant.
+  [[nodiscard]] std::optional<ParticipantStatus> silent(const GuidPrefix& prefix);
 
  private:
   struct Peer {
@@ -36,6 +38,7 @@ class Peers {
   };
 
   static std::optional<ParticipantStatus> report(Peer& peer);
+  static bool is_missed(const Peer& peer) noexcept;
 
   std::mutex mutex_;
   std::vector<Peer> peers_;

@@ -1,6 +1,8 @@
 #include "transport/fast_dds/polled_transport.hpp"
 
+#include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <utility>
 
 namespace hybridtest::fast_dds {
@@ -8,23 +10,28 @@ namespace {
 
 struct PolledDescriptor final : rtps::ChainingTransportDescriptor {
   PolledDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> its_socket,
-                   std::uint32_t its_domain, bool is_loopback_only)
+                   std::uint32_t its_domain, bool is_loopback_only, Admission its_admission,
+                   std::shared_ptr<RefusedPackets> its_refused)
       : ChainingTransportDescriptor{std::move(udp)},
         socket{std::move(its_socket)},
         domain{its_domain},
-        loopback_only{is_loopback_only} {}
+        loopback_only{is_loopback_only},
+        admission{its_admission},
+        refused{std::move(its_refused)} {}
 
   [[nodiscard]] rtps::TransportInterface* create_transport() const override;  // the caller owns it
 
   std::shared_ptr<PolledSocket> socket;
   std::uint32_t domain;
   bool loopback_only;
+  Admission admission;
+  std::shared_ptr<RefusedPackets> refused;
 };
 
 class PolledTransport final : public rtps::ChainingTransport {
  public:
   explicit PolledTransport(const PolledDescriptor& descriptor)
-      : ChainingTransport{descriptor}, descriptor_{descriptor} {}
+      : ChainingTransport{descriptor}, descriptor_{descriptor}, filter_{descriptor.admission, descriptor.refused} {}
 
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
@@ -35,10 +42,11 @@ class PolledTransport final : public rtps::ChainingTransport {
 
   bool OpenInputChannel(const Locator& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t bytes_max) override {
-    if (!is_for_messages(locator)) return low_level_transport_->OpenInputChannel(locator, receiver, bytes_max);
-    const auto pass_on = [receiver, locator, from = sender_locator()](const std::uint8_t* bytes, std::uint32_t count,
-                                                                      std::uint32_t address,
-                                                                      std::uint16_t port) mutable {
+    if (!is_for_messages(locator)) return ChainingTransport::OpenInputChannel(locator, receiver, bytes_max);
+    const auto pass_on = [this, receiver, locator, from = sender_locator()](const std::uint8_t* bytes,
+                                                                            std::uint32_t count, std::uint32_t address,
+                                                                            std::uint16_t port) mutable {
+      if (!filter_.admits_message({bytes, count})) return;
       IpLocator::setIPv4(from, static_cast<eprosima::fastrtps::rtps::octet>(address >> 24U),
                          static_cast<eprosima::fastrtps::rtps::octet>(address >> 16U),
                          static_cast<eprosima::fastrtps::rtps::octet>(address >> 8U),
@@ -77,17 +85,26 @@ class PolledTransport final : public rtps::ChainingTransport {
     return port >= first && (port - first) % ports.participantIDGain == 0;
   }
 
-  // Of Fast DDS, as if it had two: these carry the messages themselves and are never called, because senders and
-  // receivers are those of UDP.
+  /// Packets of discovery, which arrive by multicast and unicast in a thread each. Fast DDS 2.9 takes in two
+  /// announcements of one participant at the same time, and one thread then reads the addresses that the other has
+  /// deleted (its pull request 4268).
+  void receive(rtps::TransportReceiverInterface* receiver, const eprosima::fastrtps::rtps::octet* bytes,
+               std::uint32_t count, const Locator& local, const Locator& from) override {
+    const std::lock_guard lock{discovery_mutex_};
+    if (!filter_.admits_discovery({bytes, count}, std::chrono::steady_clock::now())) return;
+    receiver->OnDataReceived(bytes, count, local, from);
+  }
+
+  /// Never called: senders are those of UDP.
   bool send(eprosima::fastrtps::rtps::SenderResource*, const eprosima::fastrtps::rtps::octet*, std::uint32_t,
             eprosima::fastrtps::rtps::LocatorsIterator*, eprosima::fastrtps::rtps::LocatorsIterator*,
             const std::chrono::steady_clock::time_point&) override {
     return false;
   }
-  void receive(rtps::TransportReceiverInterface*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
-               const Locator&) override {}
 
   PolledDescriptor descriptor_;
+  PacketFilter filter_;
+  std::mutex discovery_mutex_;  // held while a packet of discovery is looked at and taken in
 };
 
 rtps::TransportInterface* PolledDescriptor::create_transport() const { return new PolledTransport{*this}; }
@@ -96,8 +113,9 @@ rtps::TransportInterface* PolledDescriptor::create_transport() const { return ne
 
 std::shared_ptr<rtps::TransportDescriptorInterface> polled_transport(
     std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> socket, std::uint32_t domain,
-    bool loopback_only) {
-  return std::make_shared<PolledDescriptor>(std::move(udp), std::move(socket), domain, loopback_only);
+    bool loopback_only, Admission admission, std::shared_ptr<RefusedPackets> refused) {
+  return std::make_shared<PolledDescriptor>(std::move(udp), std::move(socket), domain, loopback_only, admission,
+                                            std::move(refused));
 }
 
 }  // namespace hybridtest::fast_dds

@@ -22,9 +22,9 @@ template <class Message>
 class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener {
  public:
   /// @param matches   receives the listening participants; may be null.
-  DdsOutbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
+  DdsOutbox(Participant& participant, const Partitions& partitions, std::shared_ptr<Matches> matches = nullptr)
       : participant_{participant}, matches_{std::move(matches)} {
-    writer_ = participant_.create_writer<Message>(partition, this);
+    writer_ = participant_.create_writer<Message>(partitions, this);
   }
   ~DdsOutbox() override {
     participant_.remove(writer_);
@@ -65,11 +65,22 @@ class DdsOutbox final : public Outbox<Message>, private dds::DataWriterListener 
 template <class Message>
 class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
  public:
+  /// Several readers can fill one queue, each with the messages of one substructure only.
+  struct Intake {
+    std::shared_ptr<BoundedQueue<Message>> queue;
+    SubstructureIndex substructure = 0;
+  };
+
   /// @param matches   receives the sending participants; may be null.
-  DdsInbox(Participant& participant, const std::string& partition, std::shared_ptr<Matches> matches = nullptr)
-      : participant_{participant}, own_prefix_{participant.prefix()}, matches_{std::move(matches)} {
+  DdsInbox(Participant& participant, const Partitions& partitions, std::shared_ptr<Matches> matches = nullptr,
+           std::optional<Intake> intake = std::nullopt)
+      : participant_{participant},
+        own_prefix_{participant.prefix()},
+        matches_{std::move(matches)},
+        queue_{intake ? intake->queue : std::make_shared<BoundedQueue<Message>>(kInboxCapacity<Message>)} {
+    if (intake) only_ = intake->substructure;
     if constexpr (kWatchesPeers) departures_ = participant_.on_departure([this](const auto& who) { lose(who); });
-    reader_ = participant_.create_reader<Message>(partition, this);
+    reader_ = participant_.create_reader<Message>(partitions, this);
   }
   ~DdsInbox() override {
     participant_.remove(reader_);
@@ -79,7 +90,7 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   DdsInbox(const DdsInbox&) = delete;
   DdsInbox& operator=(const DdsInbox&) = delete;
 
-  [[nodiscard]] bool take(Message& message) noexcept override { return queue_.pop(message); }
+  [[nodiscard]] bool take(Message& message) noexcept override { return queue_->pop(message); }
 
  private:
   static constexpr bool kWatchesPeers = std::is_same_v<Message, ParticipantStatus>;
@@ -95,6 +106,12 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
     }
   }
 
+  /// Who may write to a partition is for the permissions to say; what is written there must belong there.
+  [[nodiscard]] bool is_expected() const noexcept {
+    if constexpr (std::is_same_v<Message, ForceMeasurement>) return !only_ || message_.substructure == *only_;
+    return true;
+  }
+
   void on_data_available(dds::DataReader* reader) override {
     dds::SampleInfo info;
     bool any = false;
@@ -102,12 +119,12 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
       const std::lock_guard lock{received_mutex_};
       while (next(*reader, info)) {
         if (!info.valid_data || prefix_of(info.publication_handle) == own_prefix_) continue;
-        if (!decode(sample_, message_)) {
+        if (!decode(sample_, message_) || !is_expected()) {
           participant_.malformed.fetch_add(1, std::memory_order_relaxed);
           continue;
         }
         if constexpr (kWatchesPeers) peers_.heard(prefix_of(info.publication_handle), info.instance_handle, message_);
-        if (!queue_.push(message_)) participant_.overflowed.fetch_add(1, std::memory_order_relaxed);
+        if (!queue_->push(message_)) participant_.overflowed.fetch_add(1, std::memory_order_relaxed);
         any = true;
       }
     }
@@ -126,17 +143,21 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
 
   void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override {
     if constexpr (kWatchesPeers) {
-      if (status.not_alive_count_change > 0) lose(prefix_of(status.last_publication_handle));
+      if (status.not_alive_count_change > 0) miss(peers_.silent(prefix_of(status.last_publication_handle)));
     }
   }
 
   void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus& status) override {
     if constexpr (kWatchesPeers) {
-      const std::optional<ParticipantStatus> loss = peers_.silent(status.last_instance_handle);
-      if (!loss) return;
-      participant_.deadlines_missed.fetch_add(1, std::memory_order_relaxed);
-      report(*loss);
+      miss(peers_.silent(status.last_instance_handle));
     }
+  }
+
+  /// A participant whose statuses have stopped.
+  void miss(const std::optional<ParticipantStatus>& loss) {
+    if (!loss) return;
+    participant_.deadlines_missed.fetch_add(1, std::memory_order_relaxed);
+    report(*loss);
   }
 
   void lose(const GuidPrefix& who) {
@@ -147,7 +168,7 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
 
   void report(const ParticipantStatus& loss) {
     if constexpr (kWatchesPeers) {
-      queue_.push_displacing(loss);
+      queue_->push_displacing(loss);
       participant_.waker.signal();
     }
   }
@@ -155,7 +176,8 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
   Participant& participant_;
   const GuidPrefix own_prefix_;
   std::shared_ptr<Matches> matches_;
-  BoundedQueue<Message> queue_{kInboxCapacity<Message>};
+  const std::shared_ptr<BoundedQueue<Message>> queue_;
+  std::optional<SubstructureIndex> only_;
   std::mutex received_mutex_;  // several threads of Fast DDS may receive
   typename Topic<Message>::Sample sample_;
   Message message_;

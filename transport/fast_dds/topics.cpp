@@ -5,8 +5,6 @@
 namespace hybridtest::fast_dds {
 namespace {
 
-constexpr Duration kRepairPeriod = std::chrono::milliseconds{20};
-
 // Settings common to writers and readers.
 template <class Qos>
 void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSettings& settings, Qos& qos) {
@@ -24,7 +22,9 @@ void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSet
   // Data sharing uses files shared by processes; files of a killed process block the others.
   qos.data_sharing().off();
   if (delivery.heartbeat) {
-    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+    // Each sample says that its writer is alive, to those who hear it. Otherwise Fast DDS says so in addition, for each
+    // participant to each other one.
+    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
     qos.liveliness().lease_duration = to_dds(settings.lease);
     qos.deadline().period = to_dds(settings.heartbeat_deadline);
   }
@@ -40,18 +40,17 @@ DdsDuration to_dds(Duration duration) {
 dds::DataWriterQos writer_qos(const Delivery& delivery, const FastDdsSettings& settings) {
   dds::DataWriterQos qos;
   set_delivery(delivery, delivery.depth, settings, qos);
-  if (delivery.heartbeat) qos.liveliness().announcement_period = to_dds(settings.lease / 4);
   // The calling thread sends: no queue and no thread switch delays a command.
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = to_dds(std::chrono::milliseconds{10});
-  qos.reliable_writer_qos().times.heartbeatPeriod = to_dds(kRepairPeriod);
+  qos.reliable_writer_qos().times.heartbeatPeriod = to_dds(settings.repair_period);
   qos.reliable_writer_qos().times.nackResponseDelay = to_dds(Duration{0});
   // Otherwise each message asks for a receipt, for which timers are set and threads wake at both ends. A lost message
   // takes that question with it: only the repeated one above finds out.
   qos.reliable_writer_qos().disable_heartbeat_piggyback = delivery.is_coupling;
   // For this time after a message was sent, a request to repeat it is older than the message. With no time at all Fast
   // DDS wakes a thread after each write.
-  if (delivery.is_coupling) qos.reliable_writer_qos().times.nackSupressionDuration = to_dds(kRepairPeriod / 2);
+  if (delivery.is_coupling) qos.reliable_writer_qos().times.nackSupressionDuration = to_dds(settings.repair_period / 2);
   return qos;
 }
 

@@ -60,6 +60,7 @@ struct Topic<ForceMeasurement> {
   using Sample = wire::ForceMeasurement;
   using Type = wire::ForceMeasurementPubSubType;
   static constexpr const char* kName = "hybridtest/4/force_measurement";
+  // More than the one that belongs to a partition: another one there must not take its place.
   static constexpr Delivery kDelivery{.instances = kMaxSubstructures, .has_many_sizes = true, .is_coupling = true};
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -27,6 +28,12 @@ using Values = std::vector<double>;
 // --- checks
 
 bool is_time(double model_time_s) noexcept { return std::isfinite(model_time_s) && model_time_s >= 0.0; }
+
+/// Of readings of a clock that starts with its process: a century, so that no difference of two leaves the range.
+bool are_readings(std::initializer_list<Duration> readings) noexcept {
+  constexpr Duration kLongest = std::chrono::hours{24 * 36'525};
+  return std::ranges::all_of(readings, [&](Duration one) { return one >= -kLongest && one <= kLongest; });
+}
 
 bool is_step(Step step) noexcept { return step >= kNoStep; }
 
@@ -128,14 +135,17 @@ bool decode_point(const wire::CommandPoint& sample, CommandPoint& point) {
 void encode(const TestAnnouncement& message, wire::TestAnnouncement& sample) {
   encode_text(message.test_name, sample.test_name());
   sample.coordinator(message.coordinator);
+  sample.succeeds(message.succeeds);
   sample.scenario_digest() = message.scenario_digest;
   sample.mode(static_cast<std::uint8_t>(message.mode));
   sample.step_s(message.step_s);
   sample.duration_s(message.duration_s);
   sample.time_scale(message.time_scale);
-  sample.substructure_count(message.substructure_count);
-  for (std::size_t i = 0; i < message.substructures.size(); ++i) {
-    const SubstructureAnnouncement& from = message.substructures[i];
+  // A test with more is refused before it announces itself.
+  const std::size_t count = std::min(message.substructures.size(), sample.substructures().size());
+  sample.substructure_count(static_cast<std::uint16_t>(count));
+  for (std::size_t i = 0; i < sample.substructures().size(); ++i) {
+    const SubstructureAnnouncement from = i < count ? message.substructures[i] : SubstructureAnnouncement{};
     wire::SubstructureAnnouncement& to = sample.substructures()[i];
     encode_text(from.id, to.id());
     to.role(static_cast<std::uint8_t>(from.role));
@@ -146,14 +156,15 @@ void encode(const TestAnnouncement& message, wire::TestAnnouncement& sample) {
 bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noexcept {
   message.test_name = decode_text(sample.test_name());
   message.coordinator = sample.coordinator();
+  message.succeeds = sample.succeeds();
   message.scenario_digest = sample.scenario_digest();
   message.step_s = sample.step_s();
   message.duration_s = sample.duration_s();
   message.time_scale = sample.time_scale();
-  message.substructure_count = sample.substructure_count();
   if (!to_enum(sample.mode(), CouplingMode::real_time, message.mode)) return false;
   if (!is_time(message.step_s) || !is_time(message.duration_s) || !is_time(message.time_scale)) return false;
-  if (message.substructure_count > kMaxSubstructures) return false;
+  if (sample.substructure_count() > kMaxSubstructures) return false;
+  message.substructures.resize(sample.substructures().size());
   for (std::size_t i = 0; i < message.substructures.size(); ++i) {
     const wire::SubstructureAnnouncement& from = sample.substructures()[i];
     SubstructureAnnouncement& to = message.substructures[i];
@@ -161,6 +172,7 @@ bool decode(const wire::TestAnnouncement& sample, TestAnnouncement& message) noe
     to.interface_dofs = from.interface_dofs();
     if (!to_enum(from.role(), Role::operator_tool, to.role) || to.interface_dofs > kMaxInterfaceDofs) return false;
   }
+  message.substructures.resize(sample.substructure_count());
   return true;
 }
 
@@ -184,8 +196,8 @@ bool decode(const wire::ParticipantStatus& sample, ParticipantStatus& message) n
   message.last_step = sample.last_step();
   message.clock = Duration{sample.clock_ns()};
   return to_enum(sample.role(), Role::operator_tool, message.role) &&
-         to_enum(sample.state(), LifecycleState::refused, message.state) && is_step(message.last_step) &&
-         to_faults(sample.faults(), message.faults);
+         to_enum(sample.state(), LifecycleState::waiting, message.state) && is_step(message.last_step) &&
+         are_readings({message.clock}) && to_faults(sample.faults(), message.faults);
 }
 
 // --- displacement_command
@@ -214,7 +226,7 @@ bool decode(const wire::DisplacementCommand& sample, DisplacementCommand& messag
   message.is_rehearsal = sample.purpose() == kRehearsal;
   message.coordinator = sample.coordinator();
   message.send_time = Duration{sample.send_time_ns()};
-  if (!is_substructure(message.substructure)) return false;
+  if (!is_substructure(message.substructure) || !are_readings({message.send_time})) return false;
   message.point_count = sample.point_count();
   if (message.point_count < 1 || message.point_count > kCommandPoints) return false;
   for (std::size_t i = 0; i < message.points.size(); ++i) {
@@ -249,7 +261,8 @@ bool decode(const wire::ForceMeasurement& sample, ForceMeasurement& message) {
   message.receive_time = Duration{sample.receive_time_ns()};
   message.send_time = Duration{sample.send_time_ns()};
   message.command_send_time = Duration{sample.command_send_time_ns()};
-  return is_substructure(message.substructure) && is_step(message.step) && is_time(message.model_time_s) &&
+  return are_readings({message.receive_time, message.send_time, message.command_send_time}) &&
+         is_substructure(message.substructure) && is_step(message.step) && is_time(message.model_time_s) &&
          to_flags(sample.flags(), message.flags) &&
          decode_values(sample.imposed_displacement_m(), message.imposed_displacement_m) &&
          decode_values(sample.measured_displacement_m(), message.measured_displacement_m) &&
@@ -295,7 +308,7 @@ bool decode(const wire::Event& sample, Event& message) noexcept {
   message.values = sample.values();
   message.clock = Duration{sample.clock_ns()};
   return to_enum(sample.severity(), Severity::fault, message.severity) && to_code(sample.code(), message.code) &&
-         is_step(message.step) && is_time(message.model_time_s);
+         is_step(message.step) && is_time(message.model_time_s) && are_readings({message.clock});
 }
 
 // --- signal_block

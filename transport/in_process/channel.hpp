@@ -129,6 +129,18 @@ class Channel {
     }
   }
 
+  /// Those who send to the inboxes of this receiver that take messages of this substructure only.
+  template <class Visitor>
+  void for_each_reaching(const ParticipantState& receiver, SubstructureIndex only, Visitor visit) const noexcept {
+    const std::lock_guard lock{mutex_};
+    for (const SubscriptionPtr& subscription : subscriptions_) {
+      if (subscription->participant.get() != &receiver || subscription->only != only) continue;
+      for (const auto& sender : senders_) {
+        if (reaches(*sender, *subscription)) visit(*sender);
+      }
+    }
+  }
+
  private:
   struct Kept {
     std::shared_ptr<ParticipantState> sender;

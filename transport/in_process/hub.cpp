@@ -136,10 +136,10 @@ std::unique_ptr<Outbox<DisplacementCommand>> InProcessTransport::command_outbox(
 std::unique_ptr<Inbox<DisplacementCommand>> InProcessTransport::command_inbox(SubstructureIndex substructure) {
   return std::make_unique<ChannelInbox<DisplacementCommand>>(hub_, hub_->commands, participant_, substructure);
 }
-std::unique_ptr<Outbox<ForceMeasurement>> InProcessTransport::measurement_outbox() {
+std::unique_ptr<Outbox<ForceMeasurement>> InProcessTransport::measurement_outbox(SubstructureIndex) {
   return make_outbox(hub_, hub_->measurements, participant_);
 }
-std::unique_ptr<Inbox<ForceMeasurement>> InProcessTransport::measurement_inbox() {
+std::unique_ptr<Inbox<ForceMeasurement>> InProcessTransport::measurement_inbox(std::uint16_t) {
   return make_inbox(hub_, hub_->measurements, participant_);
 }
 std::unique_ptr<Outbox<TestControl>> InProcessTransport::control_outbox() {
@@ -160,11 +160,17 @@ std::unique_ptr<Inbox<SignalBlock>> InProcessTransport::signal_inbox() {
 }
 
 bool InProcessTransport::reachable(SubstructureIndex substructure) const noexcept {
-  if (!hub_->commands.has_sender(*participant_) || !hub_->measurements.has_receiver(*participant_)) return false;
   bool found = false;
-  hub_->commands.for_each_reached_by(*participant_, [&](const auto& inbox) {
-    found = found || (inbox->only == substructure && hub_->measurements.has_sender(*inbox->participant));
-  });
+  if (hub_->commands.has_sender(*participant_) && hub_->measurements.has_receiver(*participant_)) {
+    hub_->commands.for_each_reached_by(*participant_, [&](const auto& inbox) {
+      found = found || (inbox->only == substructure && hub_->measurements.has_sender(*inbox->participant));
+    });
+  }
+  if (!found && hub_->measurements.has_sender(*participant_)) {
+    hub_->commands.for_each_reaching(*participant_, substructure, [&](const ParticipantState& sender) {
+      found = found || hub_->measurements.has_receiver(sender);
+    });
+  }
   return found;
 }
 

@@ -30,8 +30,8 @@ class InProcessTransport final : public Transport {
   [[nodiscard]] std::unique_ptr<Inbox<ParticipantStatus>> status_inbox() override;
   [[nodiscard]] std::unique_ptr<Outbox<DisplacementCommand>> command_outbox(std::uint16_t substructure_count) override;
   [[nodiscard]] std::unique_ptr<Inbox<DisplacementCommand>> command_inbox(SubstructureIndex substructure) override;
-  [[nodiscard]] std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox() override;
-  [[nodiscard]] std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox() override;
+  [[nodiscard]] std::unique_ptr<Outbox<ForceMeasurement>> measurement_outbox(SubstructureIndex substructure) override;
+  [[nodiscard]] std::unique_ptr<Inbox<ForceMeasurement>> measurement_inbox(std::uint16_t substructure_count) override;
   [[nodiscard]] std::unique_ptr<Outbox<TestControl>> control_outbox() override;
   [[nodiscard]] std::unique_ptr<Inbox<TestControl>> control_inbox() override;
   [[nodiscard]] std::unique_ptr<Outbox<Event>> event_outbox() override;

@@ -36,10 +36,17 @@ Parameters of_bandwidth(const PlantEffect& effect) {
     // A second pole, eight times as fast.
     return {{"time_constant_s", 1.125 / (kTwoPi * effect.of("bandwidth_hz"))}, {"second_order_ratio", 8.0 / 81.0}};
   }
-  if (!effect.parameters.contains("damping_ratio")) return {};  // a wrong number of the model itself
   const double damping = effect.of("damping_ratio");
   return {{"time_constant_s", 2.0 * damping / (kTwoPi * effect.of("natural_frequency_hz"))},
           {"second_order_ratio", 1.0 / (4.0 * damping * damping)}};
+}
+
+/// Of a number of the user's own model.
+Parameters of_bandwidth_error(const TransferModel& users, const PlantEffect& effect) {
+  const double ratio = effect.parameters.contains("true_bandwidth_hz")
+                           ? effect.of("true_bandwidth_hz") / users.bandwidth_hz
+                           : effect.of("true_natural_frequency_hz") / users.natural_frequency_hz;
+  return {{"bandwidth_error_ratio", ratio - 1.0}};
 }
 
 Parameters of_friction(const PlantEffect& effect) {
@@ -56,11 +63,9 @@ Parameters of_friction(const PlantEffect& effect) {
   return terms;
 }
 
-/// The library has the part that yields by itself; the plant the whole with its hardening.
+/// A diagnosis tells the whole specimen, in place of the user's spring, as the plant does.
 Parameters of_yielding(const Site& site, const PlantEffect& effect) {
-  const double yielding_share = 1.0 - effect.of("hardening_ratio");
-  return {{"yield_force_n", yielding_share * effect.of("yield_force_n")},
-          {"stiffness_n_per_m", yielding_share * site.specimen.stiffness_n_per_m}};
+  return {{"yield_force_n", effect.of("yield_force_n")}, {"stiffness_n_per_m", site.specimen.stiffness_n_per_m}};
 }
 
 }  // namespace
@@ -69,6 +74,7 @@ Parameters in_library_terms(const Site& site, const PlantEffect& effect) {
   const std::string& name = effect.name;
   if (name == "gain") return {{"gain_error", effect.of("gain") - 1.0}};
   if (name == "bandwidth") return of_bandwidth(effect);
+  if (name == "bandwidth_error") return of_bandwidth_error(site.transfer_system, effect);
   if (name == "coulomb_friction" || name == "stribeck_friction") return of_friction(effect);
   if (name == "yielding") return of_yielding(site, effect);
   if (name == "setting_mismatch") return {{"delay_error_s", effect.of("delay_s") - site.compensator.delay_s}};

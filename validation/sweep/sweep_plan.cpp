@@ -17,7 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 5> kNetwork{"latency_us", "jitter_us", "loss", "duplication", "reordering"};
+constexpr std::array<std::string_view, 6> kNetwork{"latency_us", "latency_spread", "jitter_us",
+                                                   "loss",       "duplication",    "reordering"};
+constexpr std::string_view kSiteLatency = "site_latency_us[";
 constexpr std::size_t kCasesMax = 1'000'000;
 
 [[noreturn]] void refuse(std::string_view option, std::string_view text, std::string_view what) {
@@ -86,6 +88,11 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
+std::optional<std::string> site_of_latency(std::string_view key) {
+  if (!key.starts_with(kSiteLatency) || !key.ends_with(']')) return {};
+  return std::string{key.substr(kSiteLatency.size(), key.size() - kSiteLatency.size() - 1)};
+}
+
 Varied read_varied(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size()) {
@@ -146,6 +153,8 @@ std::vector<std::string> SweepPlan::arguments(const SweepCase& one, const std::f
       std::string option = "--" + varied[i].key;
       std::ranges::replace(option, '_', '-');
       arguments.insert(arguments.end(), {option, one.values[i]});
+    } else if (const auto site = site_of_latency(varied[i].key)) {
+      arguments.insert(arguments.end(), {"--site-latency", *site + ":" + one.values[i]});
     } else {
       arguments.insert(arguments.end(), {"--set", varied[i].key + "=" + one.values[i]});
     }

@@ -23,9 +23,13 @@ inline constexpr std::string_view kSeedValue = "@seed";
 /// A finite decimal number; nothing for any other text.
 [[nodiscard]] std::optional<double> number_of(std::string_view text);
 
+/// The substructure whose latency a key `site_latency_us[ID]` varies; nothing for any other key.
+[[nodiscard]] std::optional<std::string> site_of_latency(std::string_view key);
+
 /// Reads `key=a,b,c`, `key=low..high/count` (evenly spaced) or `key=low..high/count/log` (evenly spaced logarithms).
 /// Commas inside brackets, braces and quotes do not separate values. Keys without a dot among `latency_us`,
-/// `jitter_us`, `loss`, `duplication` and `reordering` are conditions of the simulated network.
+/// `latency_spread`, `jitter_us`, `loss`, `duplication` and `reordering` are conditions of the simulated network, and
+/// so is `site_latency_us[ID]`.
 /// @throws ConfigError for a text of another form.
 [[nodiscard]] Varied read_varied(std::string_view text);
 

@@ -16,6 +16,7 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -130,6 +131,42 @@ TEST(FastDdsTransport, SilentParticipantIsNotLostBeforeMotionIsPossible) {
   EXPECT_FALSE(slow_lost);
 }
 
+TEST(FastDdsTransport, SubstructureHearsCoordinatorAndItsOwnIdAlone) {
+  const auto join_as = [](const std::string& id) {
+    fast_dds::FastDdsSettings settings = test_settings();
+    settings.substructure_id = id;
+    return fast_dds::make_fast_dds_transport(settings, unique_test_name());
+  };
+  const auto site = join_as("site");
+  const auto statuses = site->status_inbox();
+  const auto observer = join_as("");
+  const auto all = observer->status_inbox();
+  const auto other = join_as("other");
+  const auto other_status = other->status_outbox();
+  const auto same = join_as("site");
+  const auto same_status = same->status_outbox();
+  const auto coordinator = join_as("");
+  const auto coordinator_status = coordinator->status_outbox();
+  other_status->send(sample_status("other"));
+
+  // Once the observer has heard the other one, so would the site have.
+  ParticipantStatus received;
+  ASSERT_TRUE(eventually(*observer, [&] { return all->take(received) && received.id == ParticipantId{"other"}; }));
+  same_status->send(sample_status("site"));
+  coordinator_status->send(sample_status("coordinator"));
+  std::set<std::string> heard;
+  const auto take_all = [&] {
+    while (statuses->take(received)) heard.insert(received.id.text());
+  };
+  ASSERT_TRUE(eventually(*site, [&] { return take_all(), heard.size() >= 2; }));
+  EXPECT_EQ(heard, (std::set<std::string>{"coordinator", "site"}));
+  std::set<std::string> heard_by_all{"other"};
+  EXPECT_TRUE(eventually(*observer, [&] {
+    while (all->take(received)) heard_by_all.insert(received.id.text());
+    return heard_by_all.size() == 3;
+  }));
+}
+
 /// Writes any bytes under the name of a valid type.
 class ForgedType final : public fast_dds::dds::TopicDataType {
  public:
@@ -172,7 +209,12 @@ TEST(FastDdsTransport, ForeignProgramReadsLiveSignalsByTheirPublishedType) {
   StartedProgram listener{CONTRACT_FOREIGN_LISTENER,
                           {std::to_string(kTestDomain), unique_test_name(), "hybridtest/4/signal_block"},
                           folder / "listener"};
-  const auto sender = FastDdsUdpNetwork::join(unique_test_name());
+  // A substructure sends, and the coordinator describes the type.
+  const auto coordinator = FastDdsUdpNetwork::join(unique_test_name());
+  const auto coordinator_signals = coordinator->signal_outbox();
+  fast_dds::FastDdsSettings settings = test_settings();
+  settings.substructure_id = "storey_1";
+  const auto sender = fast_dds::make_fast_dds_transport(settings, unique_test_name());
   const auto outbox = sender->signal_outbox();
   SignalBlock block = sample_signals();
   block.signals[5].last[3] = -0.12345678901234567;
@@ -245,6 +287,7 @@ TEST(FastDdsSettings, RejectsValuesOutOfRange) {
   refused([](auto& s) { s.loopback_participants = 0; });
   refused([](auto& s) { s.loopback_participants = 201; });
   refused([](auto& s) { s.lease = Duration{1}; });
+  refused([](auto& s) { s.repair_period = Duration{1}; });
   refused([](auto& s) { s.heartbeat_deadline = Duration{1}; });
   refused([](auto& s) { s.initial_peers = {"127.0.0.1:"}; });
   refused([](auto& s) { s.initial_peers = {"127.0.0.1:70000"}; });
@@ -312,7 +355,7 @@ TEST_F(ProfileFile, ReplacesTransportsAndPeersButNotTheLease) {
 </profiles>)"));
   EXPECT_EQ(qos.wire_protocol().participant_id, 17);
   EXPECT_TRUE(qos.transport().user_transports.empty());
-  EXPECT_EQ(qos.wire_protocol().builtin.discovery_config.leaseDuration, fast_dds::to_dds(kTestLease));
+  EXPECT_EQ(qos.wire_protocol().builtin.discovery_config.leaseDuration, fast_dds::to_dds(20 * kTestLease));
 }
 
 }  // namespace

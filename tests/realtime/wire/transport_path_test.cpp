@@ -32,7 +32,7 @@ class Answerer {
   explicit Answerer(std::unique_ptr<Transport> transport)
       : transport_{std::move(transport)},
         commands_{transport_->command_inbox(0)},
-        measurements_{transport_->measurement_outbox()},
+        measurements_{transport_->measurement_outbox(0)},
         thread_{[this] { answer(); }} {}
   ~Answerer() {
     ends_ = true;
@@ -74,7 +74,7 @@ template <class Network, class Work>
 Allocations allocations_of_coupling(const Work& in_each_step) {
   const std::unique_ptr<Transport> transport = Network::join(unique_test_name());
   const auto commands = transport->command_outbox(1);
-  const auto measurements = transport->measurement_inbox();
+  const auto measurements = transport->measurement_inbox(1);
   Answerer substructure{Network::join(unique_test_name())};
   EXPECT_TRUE(eventually(*transport, [&] { return transport->reachable(0); }));
   DisplacementCommand command = sample_command(0, 0);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
+#include "core/event_text.hpp"
 #include "core/ring_port.hpp"
 #include "tests/support/kept_rows.hpp"
 
@@ -107,10 +109,11 @@ class CoordinatorTest : public testing::Test {
     settings.stop_on_recording_failure = stop_on_recording_failure;
     auto source = std::make_unique<CountingSource>(1);
     source_ = source.get();
-    coordinator_ = std::make_unique<Coordinator>(
-        settings, std::move(source), presence_,
-        CoordinatorPorts{announcements_, control_in_, control_out_, measurements_, commands_},
-        CoordinatorRecord{steps_, exchanges_});
+    coordinator_ =
+        std::make_unique<Coordinator>(settings, std::move(source), presence_,
+                                      CoordinatorPorts{announcements_, control_in_, control_out_, measurements_,
+                                                       commands_, [this](SubstructureIndex i) { return linked_[i]; }},
+                                      CoordinatorRecord{steps_, exchanges_});
     for (std::size_t i = 0; i < 2; ++i) {
       substructures_[i].status.id = i == 0 ? "a" : "b";
       substructures_[i].status.incarnation = 10 + i;
@@ -207,6 +210,7 @@ class CoordinatorTest : public testing::Test {
   Presence presence_{Identity{"coordinator", Role::coordinator, kOwn, {}}, seconds{2}, statuses_, own_statuses_,
                      events_};
   std::array<Substructure, 2> substructures_;
+  std::array<bool, 2> linked_{true, true};
   CountingSource* source_ = nullptr;
   std::unique_ptr<Coordinator> coordinator_;
   Instant now_{};
@@ -222,7 +226,7 @@ TEST_F(CoordinatorTest, AnnouncesTestAfterListeningForOlderCoordinator) {
   advance(milliseconds{1});
   ASSERT_TRUE(announcements_.take(announcement));
   EXPECT_EQ(announcement.coordinator, kOwn);
-  ASSERT_EQ(announcement.substructure_count, 2);
+  ASSERT_EQ(announcement.substructures.size(), 2U);
   EXPECT_EQ(announcement.substructures[1].id, "b");
   EXPECT_EQ(announcement.substructures[1].interface_dofs, 1);
   EXPECT_EQ(announcement.step_s, kStep_s);
@@ -329,6 +333,41 @@ TEST_F(CoordinatorTest, NamesSubstructureThatDidNotAppear) {
   EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"b"}));
 }
 
+TEST_F(CoordinatorTest, DoesNotArmBeforeCommandsAndMeasurementsConnect) {
+  make();
+  linked_[1] = false;
+  advance();
+  advance(milliseconds{300});
+  for (int i = 0; i < 5; ++i) {
+    say_both(LifecycleState::ready);
+    advance(seconds{1});
+  }
+  EXPECT_TRUE(take_control().empty());
+  linked_[1] = true;
+  advance();
+  const auto control = take_control();
+  ASSERT_EQ(control.size(), 1U);
+  EXPECT_EQ(control[0].verb, ControlVerb::arm);
+}
+
+TEST_F(CoordinatorTest, NamesSubstructureThatDidNotConnect) {
+  make();
+  linked_[1] = false;
+  advance();
+  advance(milliseconds{300});
+  for (int i = 0; i < 31; ++i) {
+    say_both(LifecycleState::ready);
+    advance(seconds{1});
+  }
+  EXPECT_EQ(reason(), StopReason::not_assembled);
+  EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"b"}));
+  const auto event = std::ranges::find(told_, EventCode::participant_missing, &Event::code);
+  ASSERT_NE(event, told_.end());
+  EXPECT_NE(describe(*event).find("'b' is ready, but the connection for its commands and measurements"),
+            std::string::npos)
+      << describe(*event);
+}
+
 TEST_F(CoordinatorTest, NamesSubstructureThatDidNotArm) {
   make();
   advance();
@@ -344,10 +383,21 @@ TEST_F(CoordinatorTest, NamesSubstructureThatDidNotArm) {
   EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"a"}));
 }
 
+TEST_F(CoordinatorTest, TellsWhoGaveUpBeforeTheStart) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  say(1, LifecycleState::refused);
+  advance();
+  EXPECT_EQ(reason(), StopReason::not_assembled);
+  EXPECT_EQ(subjects(EventCode::participant_missing), (std::multiset<std::string>{"b"}));
+}
+
 TEST_F(CoordinatorTest, EndsWhenASubstructureRefuses) {
   make();
   advance();
   advance(milliseconds{300});
+  substructures_[1].status.scenario_digest.fill(1);
   say(1, LifecycleState::refused);
   advance();
   EXPECT_EQ(reason(), StopReason::refused);
@@ -650,6 +700,28 @@ TEST_F(CoordinatorTest, LosesSubstructureWhenLeaseExpires) {
   EXPECT_EQ(reason(), StopReason::participant_lost);
   EXPECT_EQ(subjects(EventCode::participant_lost), (std::multiset<std::string>{"b"}));
   EXPECT_EQ(exchanges_.size(), 2U) << "the unanswered exchange is on record";
+}
+
+TEST_F(CoordinatorTest, WaitsForALinkAndSaysSo) {
+  presence_.wait_for_links(seconds{30});
+  make();
+  start();
+  for (int i = 0; i < 6; ++i) {
+    say(0, LifecycleState::running);
+    advance(milliseconds{500});
+  }
+  EXPECT_EQ(reason(), StopReason::none);
+  EXPECT_EQ(subjects(EventCode::link_silent), (std::multiset<std::string>{"b"}));
+  EXPECT_TRUE(subjects(EventCode::link_back).empty());
+  say_both(LifecycleState::running);
+  advance(milliseconds{500});
+  EXPECT_EQ(subjects(EventCode::link_back), (std::multiset<std::string>{"b"}));
+  const auto back = std::ranges::find(told_, EventCode::link_back, &Event::code);
+  EXPECT_NEAR(back->values[0], 3.5, 0.51);
+  answer(0, 0);
+  answer(1, 0);
+  advance();
+  EXPECT_EQ(completed(), 1);
 }
 
 TEST_F(CoordinatorTest, NamesAllLostSubstructures) {

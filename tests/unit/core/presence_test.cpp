@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 #include "core/ring_port.hpp"
 
 namespace hybridtest {
@@ -53,6 +56,56 @@ TEST_F(PresenceTest, LosesPeerSilentForTheLeaseAndNotBefore) {
   static_cast<void>(presence_.advance(at(seconds{3})));
   EXPECT_FALSE(presence_.is_alive(9));
   EXPECT_EQ(presence_.find("coordinator")->status.state, LifecycleState::lost);
+}
+
+TEST_F(PresenceTest, WaitsForTheLinkOfASilentPeer) {
+  presence_.wait_for_links(seconds{10});
+  inbox_.send(status_of("coordinator", 9, LifecycleState::running));
+  static_cast<void>(presence_.advance(at(seconds{1})));
+  const Peer* peer = presence_.find("coordinator");
+  EXPECT_FALSE(presence_.is_silent(*peer, at(milliseconds{2999})));
+  EXPECT_TRUE(presence_.is_silent(*peer, at(seconds{3})));
+  static_cast<void>(presence_.advance(at(milliseconds{10'999})));
+  EXPECT_TRUE(presence_.is_alive(9));
+  static_cast<void>(presence_.advance(at(seconds{11})));
+  EXPECT_FALSE(presence_.is_alive(9));
+  EXPECT_FALSE(presence_.is_silent(*peer, at(seconds{11})));
+}
+
+TEST_F(PresenceTest, CountsAChangeForEachThatAWatcherMustSee) {
+  std::uint64_t seen = presence_.changes();
+  const auto has_changed = [&] { return std::exchange(seen, presence_.changes()) != presence_.changes(); };
+  inbox_.send(status_of("coordinator", 9, LifecycleState::running));
+  static_cast<void>(presence_.advance(at(seconds{1})));
+  EXPECT_TRUE(has_changed()) << "a status";
+  inbox_.send(status_of("coordinator", 9, LifecycleState::running, milliseconds{1}));
+  static_cast<void>(presence_.advance(at(seconds{1})));
+  EXPECT_FALSE(has_changed()) << "a heartbeat that says the same";
+  static_cast<void>(presence_.advance(at(milliseconds{2999})));
+  EXPECT_FALSE(has_changed()) << "nothing heard, nobody lost";
+  static_cast<void>(presence_.advance(at(seconds{3})));
+  EXPECT_TRUE(has_changed()) << "a lease that ran out";
+  presence_.raise(FaultFlags::records_dropped);
+  EXPECT_TRUE(has_changed()) << "an own fault";
+  presence_.raise(FaultFlags::records_dropped);
+  EXPECT_FALSE(has_changed()) << "the same fault again";
+}
+
+TEST_F(PresenceTest, KnowsAsManyPeersAsItHasRoomFor) {
+  constexpr int kPeers = 1000;
+  Presence presence{Identity{"coordinator", Role::coordinator, 5, {}}, seconds{2}, inbox_, outbox_, events_, kPeers};
+  const auto id = [](int i) { return "storey_" + std::to_string(i); };
+  for (int i = 0; i <= kPeers; ++i) {
+    inbox_.send(status_of(id(i).c_str(), static_cast<Incarnation>(i) + 10, LifecycleState::ready));
+    static_cast<void>(presence.advance(at(seconds{0})));
+  }
+  ASSERT_EQ(presence.peers().size(), static_cast<std::size_t>(kPeers));
+  for (int i = 0; i < kPeers; ++i) {
+    const Peer* peer = presence.find(id(i));
+    ASSERT_NE(peer, nullptr) << i;
+    ASSERT_EQ(peer->status.incarnation, static_cast<Incarnation>(10 + i)) << i;
+  }
+  EXPECT_EQ(presence.find(id(kPeers)), nullptr) << "no room for one more";
 }
 
 TEST_F(PresenceTest, IgnoresOvertakenStatus) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "compensation/polynomial_displacement.hpp"
@@ -198,6 +200,53 @@ TEST(PartProgress, SharesOfPartsLieInTheWhole) {
   EXPECT_DOUBLE_EQ(share, 0.6);
   PartProgress{}.round(0, 2).report("fits", 1, 1);  // to nobody
   EXPECT_DOUBLE_EQ(share, 0.6);
+}
+
+TEST(PartProgress, RepeatsReportAfterASecondOfSilence) {
+  Instant now{};
+  std::vector<ProgressReport> reports;
+  const PartProgress whole{[&](const ProgressReport& report) { reports.push_back(report); }, [&] { return now; }};
+  whole.alive();  // nothing to repeat yet
+  now += std::chrono::seconds{5};
+  whole.alive();
+  EXPECT_TRUE(reports.empty());
+  const PartProgress part = whole.part(0.5, 1.0);
+  part.report("fits", 1, 2);
+  for (int i = 0; i < 100; ++i) {  // ten seconds of predictions
+    now += std::chrono::milliseconds{100};
+    part.alive();
+  }
+  ASSERT_EQ(reports.size(), 11U);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].stage, "fits");
+    EXPECT_EQ(reports[i].share, 0.75);
+    EXPECT_EQ(reports[i].predictions, 2 + 10 * i);
+  }
+}
+
+/// With a clock that goes on by a tenth of a second with every prediction, whatever a fit does in between.
+TEST(Diagnose, IsNeverSilentForTwoSeconds) {
+  const Recording recording = made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); });
+  std::atomic<int> reads = 0;
+  const auto now = [&] { return Instant{} + std::chrono::milliseconds{100 * ++reads}; };
+  Instant last{};
+  Duration longest{};
+  bool is_repeated = false;
+  DiagnoseSettings settings;
+  settings.progress = PartProgress{[&, shown = ProgressReport{}](const ProgressReport& report) mutable {
+                                     const Instant at = Instant{} + std::chrono::milliseconds{100 * reads};
+                                     longest = std::max(longest, Duration{at - last});
+                                     last = at;
+                                     is_repeated =
+                                         is_repeated || (report.stage == shown.stage && report.done == shown.done &&
+                                                         report.predictions > shown.predictions);
+                                     shown = report;
+                                   },
+                                   now};
+  EXPECT_FALSE(diagnose(made_model(), {&recording, 1}, settings).causes.empty());
+  EXPECT_GT(reads, 1000);
+  EXPECT_TRUE(is_repeated);
+  EXPECT_LE(longest, std::chrono::seconds{2});
 }
 
 TEST(Diagnose, ResultIsIndependentOfThreadCount) {

@@ -109,6 +109,24 @@ TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
 }
 
+TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate lag = fit_of(transfer_system, "bandwidth", {0.004, 2.0});
+  lag.fit.parameters[0][1].at_bound = true;  // a resonance, as sharp as is searched
+  EXPECT_TRUE(is_cut_off(problem, lag.fit, 0));
+  EXPECT_THAT(refutation(problem, lag), IsEmpty());  // alone it may be larger than the library expects
+  Candidate further = lag;
+  further.fit.effects.push_back({find_effect(transfer_system, "gain"), {0.02}});
+  further.fit.parameters.push_back({{.value = 0.02, .standard_error = 1e-9}});
+  EXPECT_THAT(refutation(problem, further), HasSubstr("at the limit of its search range"));
+
+  lag.fit.effects[0].values[1] = lag.fit.parameters[0][1].value = 0.0;  // one pole: no limit that was chosen
+  EXPECT_FALSE(is_cut_off(problem, lag.fit, 0));
+  Candidate friction = fit_of(specimen, "coulomb_friction", {100.0, 0.0, 1e-6});
+  friction.fit.parameters[0][2].at_bound = true;  // as sharp as is searched
+  EXPECT_FALSE(is_cut_off(problem, friction.fit, 0));
+}
+
 TEST(Refutation, ColumnShorterThanTenDrifts) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   EXPECT_THAT(refutation(problem, fit_of(specimen, "geometric_stiffness", {1e4, 0.059})),

@@ -44,5 +44,19 @@ TEST(CarryingOver, KeepsCauseOfOneChannelDespiteOtherChannel) {
   EXPECT_EQ(verdict_carried_over(Verdict::named, {}), Verdict::named);
 }
 
+TEST(CarryingOver, WhatStaysWellAboveTheFloorIsAPart) {
+  const auto leaving = [](double share, double floors) {
+    Shrink shrink = removing({0.9, 0.999});
+    shrink.unknown_share = share;
+    shrink.nrmse_after = floors * shrink.floor_nrmse;
+    return shrink;
+  };
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.04, 1.9)), Verdict::named) << "at the floor";
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.04, 2.1)), Verdict::partial) << "more than 3 %";
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.02, 9.0)), Verdict::named);
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.02, 11.0)), Verdict::partial) << "well above the floor";
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.002, 11.0)), Verdict::named) << "next to nothing of the gap";
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "core/random.hpp"
 
 namespace hybridtest {
 namespace {
@@ -402,6 +406,82 @@ TEST(InterlocksTest, RuleWithoutActionDoesNotTrip) {
   story.rule(InterlockKind::velocity).action = SafetyAction::none;
   story.velocity = one(9.0);
   EXPECT_EQ(story.sample().trip_count, 0);
+}
+
+/// Mostly within the limit, sometimes above it, rarely not finite.
+double drawn(Random& random, double limit) {
+  if (random.below(40) == 0) return kNan;
+  return random.uniform(-1.0, 1.0) * limit * (random.below(10) == 0 ? 2.0 : 0.95);
+}
+
+SiteVector two(Random& random, double limit) {
+  const double first = drawn(random, limit);
+  return SiteVector{{first, drawn(random, limit)}};
+}
+
+/// judge() passes nearly all samples in one look at all values; level_of() has each interlock by itself.
+TEST(InterlocksTest, TripWhereTheirLevelIsAboveTheLimit) {
+  Random random{1, 0};
+  std::array<int, kInterlockCount> trips{};
+  constexpr int kSamples = 20'000;
+  int without_trip = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    Story story;
+    story.phase = random.below(2) == 0 ? SitePhase::running : SitePhase::resting;
+    story.expects_commands = random.below(2) == 0;
+    story.target = two(random, kLimits.displacement_m);
+    story.velocity = two(random, kLimits.velocity_m_per_s);
+    story.command = two(random, kLimits.displacement_m);
+    story.measured = story.target + two(random, *kLimits.tracking_error_m);
+    story.force = two(random, kLimits.force_n);
+    story.energy_ratio = drawn(random, *kLimits.energy_error_ratio);
+    story.lag_sine = drawn(random, *kLimits.tracking_indicator);
+    story.age_s = drawn(random, kLimits.command_age_s);
+    story.state.has_sample = true;
+    story.state.measured_displacement_m = story.measured + two(random, *kLimits.displacement_step_m);
+    story.state.measured_force_n = story.force + two(random, *kLimits.force_step_n);
+    const InterlockState before = story.state;
+    std::set<InterlockKind> tripped;
+    story.sample();
+    for (const InterlockTrip& trip : story.trips) tripped.insert(trip.kind);
+    without_trip += tripped.empty() ? 1 : 0;
+
+    const InterlockInput input{story.phase,
+                               story.target,
+                               story.velocity,
+                               story.command,
+                               story.measured,
+                               story.force,
+                               story.energy_ratio,
+                               story.lag_sine,
+                               story.age_s,
+                               story.expects_commands,
+                               false,
+                               false,
+                               true,
+                               kPeriod_s};
+    for (std::size_t k = 0; k < kInterlockCount; ++k) {
+      const auto kind = static_cast<InterlockKind>(k);
+      const std::optional<InterlockLevel> level =
+          level_of(kind, kLimits, input, before.measured_displacement_m, before.measured_force_n);
+      bool is_above = level && level->observed > level->limit;
+      if (kind == InterlockKind::not_finite) {
+        is_above = !story.target.allFinite() || !story.command.allFinite() || !story.measured.allFinite() ||
+                   !story.force.allFinite();
+      }
+      ASSERT_EQ(tripped.contains(kind), is_above) << name(kind) << " in sample " << i;
+      trips[k] += is_above ? 1 : 0;
+    }
+  }
+  EXPECT_GT(without_trip, kSamples / 50);
+  // The others do not follow from the values of one sample.
+  const std::set<InterlockKind> others{InterlockKind::rig_status, InterlockKind::stuck_sensor,
+                                       InterlockKind::emergency_stop};
+  for (std::size_t k = 0; k < kInterlockCount; ++k) {
+    const auto kind = static_cast<InterlockKind>(k);
+    if (others.contains(kind)) continue;
+    EXPECT_GT(trips[k], 100) << name(kind);
+  }
 }
 
 }  // namespace

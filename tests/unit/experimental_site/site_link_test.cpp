@@ -245,6 +245,36 @@ TEST_F(SiteLinkTest, AnswersRepeatedCommandFromMemory) {
   EXPECT_EQ(steps_.size(), 1U);
 }
 
+TEST_F(SiteLinkTest, CopiesMoveOnceAndAnswerTellsFirstTimes) {
+  start();
+  constexpr int kCopies = 6;
+  const auto copy_of = [](Step step, int number) {
+    DisplacementCommand copy = command(step);
+    copy.attempt = static_cast<std::uint16_t>(number);
+    copy.send_time += milliseconds{2 * number};
+    return copy;
+  };
+  for (Step step = 0; step < 3; ++step) {
+    // The first copy is lost; the others are out of order, and one comes twice, after a copy of the step before.
+    if (step > 0) commands_.send(copy_of(step - 1, 5));
+    for (const int number : {2, 1, 1, 3, 5, 4}) {
+      commands_.send(copy_of(step, number));
+      advance(milliseconds{1});
+    }
+    EXPECT_EQ(take_targets(), std::vector<Step>{step});
+    take_measurements();  // to the copy of the step before
+    loop_measured(step, 42.0 + static_cast<double>(step));
+    const Duration first_came = (now_ - milliseconds{kCopies - 1}).time_since_epoch();
+    advance(milliseconds{5});
+    const auto measurements = take_measurements();
+    ASSERT_EQ(measurements.size(), 1U);
+    EXPECT_EQ(measurements[0].step, step);
+    EXPECT_EQ(measurements[0].command_send_time, copy_of(step, 2).send_time);
+    EXPECT_EQ(measurements[0].receive_time, first_came);
+  }
+  EXPECT_EQ(steps_.size(), 3U);
+}
+
 TEST_F(SiteLinkTest, ReportsFaultOfTheLoop) {
   start();
   take_events();
@@ -397,6 +427,150 @@ TEST_F(SiteLinkTest, SendsChangedStateInSameRun) {
   const auto statuses = take_all(own_statuses_);
   ASSERT_FALSE(statuses.empty());
   EXPECT_EQ(statuses.back().state, LifecycleState::running);
+}
+
+/// A link that waits for a resumed coordinator; its own is lost after the steps 0 to `last`, which is not measured yet.
+class ResumedLinkTest : public SiteLinkTest {
+ protected:
+  static constexpr Incarnation kSuccessor = 78;
+
+  Instant run(Duration passed = {}) {
+    now_ += passed;
+    return patient_.advance(now_);
+  }
+  void lose_coordinator(Step last = 5) {
+    TestAnnouncement announcement;
+    announcement.coordinator = kCoordinator;
+    announcements_.send(announcement);
+    coordinator_is(LifecycleState::running);
+    run();
+    control(ControlVerb::arm);
+    run();
+    loop_says(loop_report::Armed{});
+    run();
+    for (Step step = 0; step <= last; ++step) {
+      commands_.send(command(step));
+      run();
+      if (step < last) loop_measured(step, 10.0 * static_cast<double>(step));
+      run();
+      take_requests();
+      take_measurements();
+    }
+    run(seconds{2});
+    ASSERT_EQ(presence_.state(), LifecycleState::waiting);
+  }
+  void be_succeeded() {
+    TestAnnouncement announcement;
+    announcement.coordinator = kSuccessor;
+    announcement.succeeds = kCoordinator;
+    announcements_.send(announcement);
+    ParticipantStatus status;
+    status.id = "coordinator";
+    status.role = Role::coordinator;
+    status.incarnation = kSuccessor;
+    statuses_.send(status);
+    run();
+    take_requests();
+    ASSERT_EQ(presence_.state(), LifecycleState::armed);
+    take_events();
+  }
+
+  SiteLink patient_{kIndex,
+                    1,
+                    CouplingMode::paced,
+                    presence_,
+                    MembershipPorts{announcements_, control_, seconds{30}, seconds{10}},
+                    SiteLinkPorts{commands_, measurements_, requests_, reports_},
+                    steps_,
+                    8};
+};
+
+TEST_F(ResumedLinkTest, PausesItsLoopWhileItWaits) {
+  lose_coordinator();
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<loop_request::Pause>(requests[0]));
+}
+
+TEST_F(ResumedLinkTest, AnswersRepeatedStepsWithoutMotion) {
+  lose_coordinator();
+  be_succeeded();
+  for (Step step = 2; step <= 4; ++step) {
+    commands_.send(command(step, kSuccessor));
+    run();
+    const auto measurements = take_measurements();
+    ASSERT_EQ(measurements.size(), 1U) << step;
+    EXPECT_EQ(measurements[0].step, step);
+    EXPECT_EQ(measurements[0].force_n[0], 10.0 * static_cast<double>(step));
+    EXPECT_EQ(measurements[0].imposed_displacement_m[0], 1.1 * static_cast<double>(step));
+    EXPECT_EQ(measurements[0].flags, MeasurementFlags::repeated);
+    EXPECT_EQ(measurements[0].command_send_time, milliseconds{1000 + step});
+  }
+  const auto requests = take_requests();
+  ASSERT_EQ(requests.size(), 1U) << "no target";
+  EXPECT_TRUE(std::holds_alternative<loop_request::Resume>(requests[0]));
+  EXPECT_EQ(presence_.state(), LifecycleState::running);
+}
+
+TEST_F(ResumedLinkTest, StepInProgressIsAnsweredWhenMeasured) {
+  lose_coordinator();
+  be_succeeded();
+  commands_.send(command(5, kSuccessor));
+  run();
+  EXPECT_TRUE(take_measurements().empty());
+  loop_measured(5, 50.0);
+  run();
+  ASSERT_EQ(take_measurements().size(), 1U);
+  take_requests();
+  commands_.send(command(6, kSuccessor));
+  run();
+  EXPECT_EQ(take_targets(), (std::vector<Step>{6}));
+}
+
+TEST_F(ResumedLinkTest, EndsTheTestForAnotherDisplacement) {
+  lose_coordinator();
+  be_succeeded();
+  DisplacementCommand other = command(4, kSuccessor);
+  other.points[0].displacement_m[0] = 4.0625;
+  other.points[0].model_time_s = 0.04;
+  commands_.send(other);
+  run();
+  EXPECT_TRUE(take_measurements().empty());
+  EXPECT_TRUE(any(presence_.faults() & FaultFlags::resume_refused));
+  EXPECT_EQ(patient_.stop_reason(), StopReason::resume_refused);
+  const auto events = take_events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, EventCode::imposed_differently);
+  EXPECT_EQ(events[0].values, (std::array{4.0, 4.0625}));
+  EXPECT_EQ(events[0].step, 4) << "the one that was asked for, not the newest";
+  EXPECT_EQ(events[0].model_time_s, 0.04);
+}
+
+TEST_F(ResumedLinkTest, EndsTheTestForAStepThatItForgot) {
+  lose_coordinator(20);
+  be_succeeded();
+  commands_.send(command(12, kSuccessor));  // of the steps to 20 it keeps 8
+  run();
+  EXPECT_TRUE(take_measurements().empty());
+  EXPECT_EQ(patient_.stop_reason(), StopReason::resume_refused);
+  const auto events = take_events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, EventCode::answer_forgotten);
+  EXPECT_EQ(events[0].values, (std::array{13.0, 12.0}));
+  EXPECT_EQ(events[0].step, 12);
+}
+
+TEST_F(ResumedLinkTest, NewStepAfterAnotherHistoryIsRefused) {
+  lose_coordinator();
+  be_succeeded();
+  DisplacementCommand other = command(6, kSuccessor);
+  other.points[1].displacement_m[0] = 5.5;  // of step 5, which is imposed as 5
+  commands_.send(other);
+  run();
+  EXPECT_TRUE(std::ranges::none_of(take_requests(), [](const LoopRequest& request) {
+    return std::holds_alternative<loop_request::Target>(request);
+  }));
+  EXPECT_EQ(patient_.stop_reason(), StopReason::resume_refused);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(TrajectoryTest, ReachesEachTargetExactlyAtItsTime) {
     trajectory.set_target(sine_target(step));
     for (int period = 0; period < 3; ++period) ASSERT_FALSE(trajectory.advance(kStep / 4, reached));
     ASSERT_TRUE(trajectory.advance(kStep / 4, reached));
-    EXPECT_EQ(reached.target.step, step);
+    EXPECT_EQ(reached.step, step);
     EXPECT_EQ(reached.fraction, 1.0);
     EXPECT_FALSE(any(reached.flags));
     EXPECT_EQ(trajectory.point().displacement_m[0], sine_target(step).displacement_m[0]) << "to the last bit";
@@ -281,7 +281,7 @@ TEST_F(TrajectoryInTime, StandsUntilTheFirstTargetComes) {
   EXPECT_EQ(position(), 0.0);
   trajectory_.set_target(sine_target(1));
   EXPECT_TRUE(end_step());
-  EXPECT_EQ(reached_.target.step, 1);
+  EXPECT_EQ(reached_.step, 1);
   EXPECT_FALSE(is_missed());
   EXPECT_EQ(position(), sine_target(1).displacement_m[0]);
 }
@@ -290,7 +290,7 @@ TEST_F(TrajectoryInTime, ReachesTargetsInTimeAsOtherModesDo) {
   for (Step step = 1; step <= 100; ++step) {
     trajectory_.set_target(sine_target(step));
     ASSERT_TRUE(end_step());
-    EXPECT_EQ(reached_.target.step, step);
+    EXPECT_EQ(reached_.step, step);
     EXPECT_FALSE(any(reached_.flags));
     EXPECT_EQ(position(), sine_target(step).displacement_m[0]) << "to the last bit";
   }
@@ -302,7 +302,7 @@ TEST_F(TrajectoryInTime, StepWithoutTargetEndsWhereTheMotionLeads) {
     ASSERT_TRUE(end_step());
   }
   ASSERT_TRUE(end_step());
-  EXPECT_EQ(reached_.target.step, 21);
+  EXPECT_EQ(reached_.step, 21);
   EXPECT_TRUE(is_missed());
   // Taylor's series of second order leaves h^3/6 max|x'''|.
   const double bound = std::pow(kStep, 3) / 6.0 * kAmplitude * std::pow(kOmega, 3);
@@ -335,7 +335,7 @@ TEST_F(TrajectoryInTime, EarlyTargetsWaitForTheirStep) {
   trajectory_.set_target(sine_target(3));
   for (Step step = 1; step <= 3; ++step) {
     ASSERT_TRUE(end_step());
-    EXPECT_EQ(reached_.target.step, step);
+    EXPECT_EQ(reached_.step, step);
     EXPECT_FALSE(is_missed());
     EXPECT_EQ(position(), sine_target(step).displacement_m[0]);
   }

@@ -321,5 +321,82 @@ TEST_F(NumericalNodeTest, LeavesOnRequestWithReason) {
   EXPECT_EQ(node_.stop_reason(), StopReason::interrupted);
 }
 
+/// A node of its own state, whose model of 100 N/m counts its calls.
+class RestoredNodeTest : public NumericalNodeTest {
+ protected:
+  static constexpr Incarnation kSuccessor = 78;
+
+  static CommandPoint point(Step step) { return command(step).points[0]; }
+  static InterfaceVector force(Step step) { return InterfaceVector::Constant(1, 100.0 * static_cast<double>(step)); }
+  void join_resumed() {
+    TestAnnouncement announcement;
+    announcement.coordinator = kSuccessor;
+    announcement.succeeds = kCoordinator;
+    announcements_.send(announcement);
+    run();
+    for (const ControlVerb verb : {ControlVerb::arm, ControlVerb::start}) {
+      TestControl message;
+      message.verb = verb;
+      message.sender = kSuccessor;
+      message.sender_role = Role::coordinator;
+      control_.send(message);
+      run();
+    }
+  }
+  void run() { static_cast<void>(restored_.advance(now_)); }
+
+  SubstructureCalls restored_calls_;
+  NumericalNode restored_{kIndex,
+                          CouplingMode::lockstep,
+                          std::make_unique<ScriptedSubstructure>(1, linear_spring(100.0), restored_calls_),
+                          presence_,
+                          MembershipPorts{announcements_, control_, seconds{30}, seconds{10}, true},
+                          commands_,
+                          measurements_,
+                          steps_,
+                          {0},
+                          8};
+};
+
+TEST_F(RestoredNodeTest, ProvesItsStateByTheRecordedForces) {
+  for (Step step = 0; step < 5; ++step) {
+    EXPECT_EQ(restored_.restore(point(step), 0, force(step)), NumericalNode::Restored::same);
+  }
+  EXPECT_EQ(restored_.restore(point(5), 0, InterfaceVector::Constant(1, 500.0000000001)),
+            NumericalNode::Restored::different);
+  EXPECT_EQ(restored_calls_.commits, 6);
+  EXPECT_EQ(steps_.size(), 6U) << "its recording has them too";
+}
+
+TEST_F(RestoredNodeTest, GoesOnFromItsRestoredState) {
+  for (Step step = 0; step < 5; ++step) static_cast<void>(restored_.restore(point(step), 0, force(step)));
+  join_resumed();
+  EXPECT_EQ(presence_.state(), LifecycleState::running);
+  EXPECT_EQ(restored_calls_.resets, 1) << "arming must not take the state away";
+  commands_.send(command(3, kSuccessor));  // the coordinator has lost it
+  commands_.send(command(5, kSuccessor));
+  run();
+  EXPECT_EQ(restored_calls_.commits, 6);
+  const auto measurements = take_measurements();
+  ASSERT_EQ(measurements.size(), 2U);
+  EXPECT_EQ(measurements[0].step, 3);
+  EXPECT_EQ(measurements[0].force_n[0], 300.0);
+  EXPECT_EQ(measurements[0].flags, MeasurementFlags::repeated);
+  EXPECT_EQ(measurements[1].step, 5);
+  EXPECT_EQ(measurements[1].force_n[0], 500.0);
+}
+
+TEST_F(RestoredNodeTest, RefusesAnotherDisplacementOfAStepItTook) {
+  for (Step step = 0; step < 5; ++step) static_cast<void>(restored_.restore(point(step), 0, force(step)));
+  join_resumed();
+  DisplacementCommand other = command(4, kSuccessor);
+  other.points[0].displacement_m[0] = 4.5;
+  commands_.send(other);
+  run();
+  EXPECT_TRUE(take_measurements().empty());
+  EXPECT_TRUE(any(presence_.faults() & FaultFlags::resume_refused));
+  EXPECT_EQ(restored_.stop_reason(), StopReason::resume_refused);
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <complex>
+#include <numbers>
+
 #include "compensation/polynomial_displacement.hpp"
 #include "core/config_error.hpp"
 #include "core/time.hpp"
@@ -9,6 +13,7 @@
 #include "mechanics/laws/elastic.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/delay.hpp"
+#include "plant/transfer_systems/second_order.hpp"
 
 namespace hybridtest {
 namespace {
@@ -38,6 +43,39 @@ TEST(SiteStages, NegativeDelayShortensTheModelDelay) {
   EXPECT_EQ(stage.step(command(0.5)), 0.0);
   EXPECT_EQ(stage.step(command(0.7)), 0.5);
   model.effects = {setting(EffectInterface::transfer_system, "delay", {-0.005})};
+  EXPECT_THROW((TransferStage{model, kPeriod_s}), ConfigError);
+}
+
+/// Of the textbook: w^2 / (s^2 + 2 z w s + w^2), late by a delay, at 3 Hz.
+TEST(SiteStages, WrongBandwidthMovesThePolesAndNotTheDelay) {
+  constexpr double kNatural_hz = 12.0;
+  constexpr double kDamping = 0.7;
+  constexpr double kDelay_s = 0.0055;
+  SiteModel model = delayed_spring();
+  model.removable_delay_s = kDelay_s;
+  model.has_bandwidth = true;
+  model.make_transfer_system = [](double period_s, double delay_change_s) {
+    return std::make_unique<SecondOrder>(SecondOrder::Parameters{.natural_frequency_hz = kNatural_hz,
+                                                                 .damping_ratio = kDamping,
+                                                                 .delay = from_seconds(kDelay_s + delay_change_s)},
+                                         from_seconds(period_s));
+  };
+  constexpr double kOmega = 2.0 * std::numbers::pi * 3.0;
+  using namespace std::complex_literals;
+  for (const double error : {-0.5, -0.1, 0.2, 1.0}) {
+    model.effects = {setting(EffectInterface::transfer_system, "bandwidth_error", {error})};
+    TransferStage stage{model, kPeriod_s};
+    const double ratio = kOmega / (2.0 * std::numbers::pi * kNatural_hz * (1.0 + error));
+    const std::complex<double> response =
+        std::exp(-1i * kOmega * kDelay_s) / (1.0 - ratio * ratio + 2i * kDamping * ratio);
+    for (int i = 0; i < 4000; ++i) {
+      const double time_s = kPeriod_s * i;
+      const double moved_m = stage.step(command(std::sin(kOmega * time_s)));
+      if (i < 3000) continue;
+      EXPECT_NEAR(moved_m, std::imag(response * std::exp(1i * kOmega * time_s)), 1e-4) << error;
+    }
+  }
+  model.has_bandwidth = false;
   EXPECT_THROW((TransferStage{model, kPeriod_s}), ConfigError);
 }
 

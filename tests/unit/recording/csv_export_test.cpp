@@ -27,8 +27,8 @@ TEST(CsvExport, WritesEveryTableWithUnitsInItsHeader) {
   run.write(directory.path());
   const auto out = directory / "csv";
   const auto written = export_csv(directory.path(), out);
-  ASSERT_EQ(written.size(), 12U) << "6 + 2 + 1 tables and the events of three files";
-  EXPECT_EQ(written.front(), out / "coordinator.events.csv");
+  ASSERT_EQ(written.size(), 13U) << "7 + 2 + 1 tables and the events of three files";
+  EXPECT_EQ(written.front(), out / "coordinator.bridges.csv");
 
   const auto control = lines_of(out / "storey_1.control.csv");
   ASSERT_EQ(control.size(), 10'001U);

@@ -51,7 +51,7 @@ TEST(TestEnds, HaveOneRowPerReason) {
     EXPECT_TRUE(reasons.insert(end.reason).second) << end.name;
     EXPECT_EQ(name(end.reason), end.name);
   }
-  EXPECT_TRUE(reasons.contains(StopReason::network_too_slow)) << "the last of the enum";
+  EXPECT_TRUE(reasons.contains(StopReason::resume_refused)) << "the last of the enum";
   EXPECT_EQ(name(static_cast<StopReason>(kTestEnds.size())), "unknown");
 }
 
@@ -135,6 +135,37 @@ TEST(EndOfRun, ProcessThatWasAskedToStopIsNoCause) {
   EXPECT_THAT(summary.end.why, IsEmpty());
 }
 
+/// The end of an ssh, as the run sees it.
+ProcessEnd over_ssh(int code) {
+  ProcessEnd end{.participant = "storey_1", .words = "Connection closed by remote host", .host = "lab"};
+  end.take_code_of_ssh(code);
+  return end;
+}
+
+TEST(EndOfRun, LostConnectionToItsHostIsTheCauseAndNoOperator) {
+  RunSummary summary = running(StopReason::interrupted);
+  find_end(summary, {over_ssh(255)}, {stopped(StopReason::interrupted, "storey_1")});
+  EXPECT_EQ(summary.stop_reason, StopReason::participant_lost);
+  EXPECT_EQ(summary.end.who, "storey_1");
+  EXPECT_THAT(summary.end.why, HasSubstr("the ssh connection to lab was lost"));
+}
+
+TEST(EndOfRun, OperatorWhoStoppedStaysWhenAConnectionIsLost) {
+  RunSummary summary = running(StopReason::interrupted);
+  find_end(summary, {over_ssh(255)}, {stopped(StopReason::interrupted, "operator")});
+  EXPECT_EQ(summary.stop_reason, StopReason::interrupted);
+  EXPECT_EQ(summary.end.who, "operator");
+}
+
+TEST(EndOfRun, ProcessKilledOnItsHostIsTheCause) {
+  // A shell tells a signal as 128 + signal (POSIX, 2.8.2), and ssh hands the code on.
+  RunSummary summary = running(StopReason::participant_lost);
+  find_end(summary, {over_ssh(137)}, {stopped(StopReason::participant_lost, "storey_1")});
+  EXPECT_EQ(summary.end.why, "killed by signal 9 (Killed)");
+  EXPECT_EQ(over_ssh(kExitEndedEarly).signal, 0);
+  EXPECT_FALSE(over_ssh(kExitEndedEarly).is_cause());
+}
+
 TEST(EndOfRun, ProcessThatLeftInOrderIsNoCause) {
   // Stopped through the network: nobody sent it a signal.
   ProcessEnd numerical{.participant = "storey_2", .exit_code = kExitEndedEarly, .signal = 0, .words = "ready"};
@@ -164,6 +195,7 @@ TEST(ProcessEnds, AreReadBackAsWritten) {
   const TemporaryDirectory directory;
   ProcessEnd site = killed("storey_1");
   site.words = "last \"words\"";
+  site.host = "lab";
   write_process_ends({site}, directory.path());
   const std::vector<ProcessEnd> read = read_process_ends(directory.path());
   ASSERT_EQ(read.size(), 1U);
@@ -171,6 +203,7 @@ TEST(ProcessEnds, AreReadBackAsWritten) {
   EXPECT_EQ(read[0].exit_code, 137);
   EXPECT_EQ(read[0].signal, 9);
   EXPECT_EQ(read[0].words, site.words);
+  EXPECT_EQ(read[0].host, "lab");
   EXPECT_TRUE(read[0].is_cause());
 }
 

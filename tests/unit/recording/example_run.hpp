@@ -35,6 +35,7 @@ struct ExampleRun {
   StopReason stop_reason = StopReason::completed;
   int exit_code = 0;
   std::vector<std::vector<double>> extra_exchanges;
+  std::vector<std::vector<double>> bridges;  // of a test in real time: step, substructure, in a row, energy [J], late
   std::vector<Event> site_events;
   std::vector<Event> coordinator_events;
 
@@ -58,46 +59,49 @@ struct ExampleRun {
   }
 
   void write_coordinator(const std::filesystem::path& path) const {
-    RunFileWriter writer{path,
-                         header("coordinator", Role::coordinator),
-                         {{"steps",
-                           {{"step", "-"},
-                            {"model_time_s", "s"},
-                            {"wall_time_s", "s"},
-                            {"displacement_floor_1_m", "m"},
-                            {"displacement_floor_2_m", "m"},
-                            {"velocity_floor_1_m_per_s", "m/s"},
-                            {"something_of_tomorrow", "-"}}},
-                          {"exchanges",
-                           {{"step", "-"},
-                            {"substructure", "-"},
-                            {"round_trip_us", "us"},
-                            {"attempts", "-"},
-                            {"flags", "-"},
-                            {"turnaround_us", "us"}}},
-                          {"test",
-                           {{"planned_steps", "-"},
-                            {"completed_steps", "-"},
-                            {"stop_reason", "-"},
-                            {"wall_time_s", "s"},
-                            {"exit_code", "-"},
-                            {"step_wall_time_s", "s"}}},
-                          {"table_of_tomorrow", {{"value", "-"}}},
-                          {"ground_motions",
-                           {{"record", "-"},
-                            {"peak_m_per_s2", "m/s2"},
-                            {"points", "-"},
-                            {"duration_s", "s"},
-                            {"factor", "-"},
-                            {"end_velocity_m_per_s", "m/s"},
-                            {"end_displacement_m", "m"}}},
-                          {"response_spectra",
-                           {{"record", "-"},
-                            {"mode", "-"},
-                            {"period_s", "s"},
-                            {"displacement_m", "m"},
-                            {"velocity_m_per_s", "m/s"},
-                            {"pseudo_acceleration_m_per_s2", "m/s2"}}}}};
+    RunFileWriter writer{
+        path,
+        header("coordinator", Role::coordinator),
+        {{"steps",
+          {{"step", "-"},
+           {"model_time_s", "s"},
+           {"wall_time_s", "s"},
+           {"displacement_floor_1_m", "m"},
+           {"displacement_floor_2_m", "m"},
+           {"velocity_floor_1_m_per_s", "m/s"},
+           {"something_of_tomorrow", "-"}}},
+         {"exchanges",
+          {{"step", "-"},
+           {"substructure", "-"},
+           {"round_trip_us", "us"},
+           {"attempts", "-"},
+           {"flags", "-"},
+           {"turnaround_us", "us"}}},
+         {"test",
+          {{"planned_steps", "-"},
+           {"completed_steps", "-"},
+           {"stop_reason", "-"},
+           {"wall_time_s", "s"},
+           {"exit_code", "-"},
+           {"step_wall_time_s", "s"}}},
+         {"table_of_tomorrow", {{"value", "-"}}},
+         {"ground_motions",
+          {{"record", "-"},
+           {"peak_m_per_s2", "m/s2"},
+           {"points", "-"},
+           {"duration_s", "s"},
+           {"factor", "-"},
+           {"end_velocity_m_per_s", "m/s"},
+           {"end_displacement_m", "m"}}},
+         {"response_spectra",
+          {{"record", "-"},
+           {"mode", "-"},
+           {"period_s", "s"},
+           {"displacement_m", "m"},
+           {"velocity_m_per_s", "m/s"},
+           {"pseudo_acceleration_m_per_s2", "m/s2"}}},
+         {"bridges",
+          {{"step", "-"}, {"substructure", "-"}, {"in_a_row", "-"}, {"energy_added_j", "J"}, {"came_late", "-"}}}}};
     std::vector<double> steps;
     std::vector<double> exchanges;
     for (int i = 0; i <= coordinator_steps; ++i) {
@@ -123,6 +127,7 @@ struct ExampleRun {
       writer.append(5, std::vector{1.0, 0.0, 0.5, 0.05, 0.6, 7.9});
       writer.append(5, std::vector{1.0, 1.0, 0.75, 0.11, 0.9, 7.7});
     }
+    for (const auto& row : bridges) writer.append(6, row);
     writer.append_events(coordinator_events, std::vector<std::string>(coordinator_events.size(), "it happened"));
     writer.close();
   }

@@ -66,6 +66,20 @@ TEST(OperatorRequest, PauseWaitsForTheCoordinatorToBeHeard) {
   EXPECT_TRUE(request.is_obeyed());
 }
 
+TEST(OperatorRequest, RefusedPauseIsNotSentAgain) {
+  OperatorRequest request{ControlVerb::pause, kSender};
+  request.learn(status_of("coordinator", LifecycleState::running), after_ms(0));
+  EXPECT_TRUE(request.due(after_ms(1000)));
+  EXPECT_FALSE(request.is_refused());
+  Event refused;
+  refused.source = "coordinator";
+  refused.code = EventCode::pause_refused;
+  request.learn(refused, after_ms(1100));
+  EXPECT_TRUE(request.is_refused());
+  EXPECT_FALSE(request.is_obeyed());
+  EXPECT_FALSE(request.due(after_ms(60'000)));
+}
+
 TEST(OperatorRequest, ParticipantsThatAreKnownAreNotWaitedFor) {  // as of an observer that was there before
   OperatorRequest request{ControlVerb::pause, kSender};
   request.learn(status_of("coordinator", LifecycleState::running), after_ms(0));
@@ -75,9 +89,7 @@ TEST(OperatorRequest, ParticipantsThatAreKnownAreNotWaitedFor) {  // as of an ob
 TEST(OperatorRequest, NamesAnnouncedParticipantsThatAreMissing) {
   OperatorRequest request{ControlVerb::stop, kSender};
   TestAnnouncement announcement;
-  announcement.substructure_count = 2;
-  announcement.substructures[0] = {"site", Role::experimental_site, 1};
-  announcement.substructures[1] = {"frame", Role::numerical_substructure, 1};
+  announcement.substructures = {{"site", Role::experimental_site, 1}, {"frame", Role::numerical_substructure, 1}};
   request.learn(announcement);
   request.learn(status_of("site", LifecycleState::running), after_ms(0));
   EXPECT_THAT(request.missing(), ElementsAre("coordinator", "frame"));

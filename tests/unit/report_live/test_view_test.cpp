@@ -28,8 +28,7 @@ class TestViewTest : public testing::Test {
     announcement.mode = CouplingMode::paced;
     announcement.step_s = 0.01;
     announcement.duration_s = 10.0;
-    announcement.substructure_count = 1;
-    announcement.substructures[0] = {"site", Role::experimental_site, 1};
+    announcement.substructures = {{"site", Role::experimental_site, 1}};
     view.learn(announcement);
   }
   void hear(const char* id, LifecycleState state, double now_s, Step step = kNoStep, std::size_t path = 0,
@@ -112,6 +111,72 @@ TEST_F(TestViewTest, PhaseFollowsTheLifeOfATest) {
   EXPECT_EQ(head(0.8)["test"]["stop_reason"], "interlock");
   EXPECT_EQ(head(0.8)["test"]["verdict"], "Ended by an interlock (site).");
   EXPECT_EQ(phase(100.0), "stopped");  // stays readable
+}
+
+TEST_F(TestViewTest, SiteThatWaitsForTheCoordinatorIsTold) {
+  run(0.0);
+  for (int i = 1; i <= 100; ++i) hear("site", LifecycleState::waiting, 0.5 * i, 0);
+  EXPECT_EQ(phase(50.0), "lost");
+  EXPECT_EQ(state("site", 50.0), "waiting for a resumed coordinator");
+  EXPECT_THAT(std::string{head(50.0)["test"]["verdict"]}, HasSubstr("Holding and waiting for it: site."));
+  EXPECT_FALSE(view.is_over(at(50.0)));
+  EXPECT_THAT(std::string{head(500.0)["test"]["verdict"]}, HasSubstr("Look at its process and its network."));
+  EXPECT_TRUE(view.is_over(at(500.0))) << "the site is not heard any more, either";
+}
+
+TEST_F(TestViewTest, SiteWhoseLinkIsAwaitedIsTold) {
+  run(0.0);
+  const auto go_on = [&](double until_s) {
+    for (double now_s = 0.5; now_s <= until_s; now_s += 0.5) {
+      hear("coordinator", LifecycleState::running, now_s, static_cast<Step>(10.0 * std::min(now_s, 2.0)));
+    }
+  };
+  go_on(4.0);
+  EXPECT_EQ(phase(4.0), "running");
+  EXPECT_EQ(state("site", 4.0), "lost") << "to this observer; nobody has said that the test waits";
+  hear(EventCode::link_silent, 4.0, "coordinator", Severity::warning, 2.0, "site");
+  go_on(20.0);
+  const json test = head(20.0)["test"];
+  EXPECT_EQ(test["phase"], "held");
+  EXPECT_EQ(test["verdict"], "Held: nothing from 'site' for 2 s: waiting up to 1 s for its link (timeouts.link_s).");
+  EXPECT_EQ(test["steps_per_second"].dump(), "null") << "it stands still";
+  EXPECT_EQ(state("site", 20.0), "not heard by the coordinator, which waits for its link");
+  EXPECT_FALSE(view.is_over(at(20.0)));
+
+  hear("site", LifecycleState::running, 20.2, 21);
+  EXPECT_EQ(phase(20.2), "held") << "this observer hears the site; the coordinator does not";
+  hear(EventCode::link_back, 20.3, "coordinator", Severity::information, 18.0, "site");
+  EXPECT_EQ(phase(20.3), "running");
+  EXPECT_EQ(state("site", 20.3), "running");
+}
+
+TEST_F(TestViewTest, LinkThatDoesNotComeBackEndsTheWaiting) {
+  run();
+  hear(EventCode::link_silent, 1.1, "coordinator", Severity::warning, 1.0, "site");
+  EXPECT_EQ(phase(1.1), "held");
+  hear(EventCode::participant_lost, 1.2, "coordinator", Severity::fault, 0.0, "site");
+  EXPECT_EQ(state("site", 1.2), "running") << "what it last said";
+  hear(EventCode::link_silent, 1.3, "coordinator", Severity::warning, 1.0, "site");
+  hear(EventCode::test_stopped, 1.4, "coordinator", Severity::warning,
+       static_cast<double>(StopReason::participant_lost), "site");
+  EXPECT_EQ(phase(1.4), "stopping");
+  EXPECT_EQ(state("site", 1.4), "running") << "nobody waits for it any more";
+}
+
+TEST_F(TestViewTest, OnlyTheCoordinatorSaysThatALinkIsAwaited) {
+  run();
+  hear(EventCode::link_silent, 1.1, "site", Severity::warning, 1.0, "site");
+  EXPECT_EQ(phase(1.1), "running");
+}
+
+/// Seen from the side of the site, when the link to the coordinator is down.
+TEST_F(TestViewTest, SiteThatHoldsWithoutTheCoordinatorIsTold) {
+  run(0.0);
+  hear(EventCode::command_overdue, 0.5, "site", Severity::fault, 0.5, "command_age");
+  for (int i = 1; i <= 20; ++i) hear("site", LifecycleState::running, 0.5 * i);
+  EXPECT_EQ(phase(10.0), "lost");
+  EXPECT_THAT(std::string{head(10.0)["test"]["verdict"]},
+              HasSubstr("Holding: site. Look at its process and its network."));
 }
 
 TEST_F(TestViewTest, TellsStepRateAndTimeLeft) {

@@ -105,6 +105,13 @@ TEST_F(ProgressTest, NamesWhoIsMissing) {
   EXPECT_THAT(progress_->line(120), HasSubstr("not found yet: site_1, site_2 +3; ready: coordinator"));
 }
 
+TEST_F(ProgressTest, ShowsTheStatesOfThoseWhoAreHeardAlone) {
+  scenario_ = with_sites(5);
+  progress_ = std::make_unique<Progress>(scenario_, out_.get(), std::vector<std::string>{"coordinator", "site_4"});
+  all_run(0.0);
+  EXPECT_THAT(progress_->line(120), HasSubstr("all 2 running"));
+}
+
 TEST_F(ProgressTest, WritesHugeNumbersShort) {
   make(1);
   all_run(1e300);

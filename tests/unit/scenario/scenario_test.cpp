@@ -1,9 +1,11 @@
 #include "scenario/scenario.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string_view>
 
 #include "tests/unit/scenario/scenario_file.hpp"
 
@@ -114,6 +116,41 @@ TEST_F(ScenarioTest, RejectsDuplicateSubstructureId) {
   EXPECT_THAT(file_.errors(with("id: storey_2", "id: coordinator")), ElementsAre(HasSubstr("'coordinator' is taken")));
 }
 
+/// One storey after the other, all numerical.
+std::string storeys(int count) {
+  std::string names;
+  std::string mass;
+  std::string parts;
+  for (int i = 1; i <= count; ++i) {
+    const std::string_view comma = i == 1 ? "" : ", ";
+    const std::string below = i == 1 ? "" : fmt::format(", relative_to: floor_{}", i - 1);
+    names += fmt::format("{}floor_{}", comma, i);
+    mass += fmt::format("{}floor_{}: 1.0", comma, i);
+    parts += fmt::format(
+        "  - {{id: storey_{0}, kind: numerical, interface: [{{dof: floor_{0}{1}}}], "
+        "model: {{type: elastic, stiffness_n_per_m: 1.0}}}}\n",
+        i, below);
+  }
+  return "schema: hybridtest/1\nname: storeys\ntime: {mode: lockstep, step_s: 0.001, duration_s: 0.1}\n"
+         "excitation: {ground_motion: motion.txt}\nstructure:\n  degrees_of_freedom: [" +
+         names + "]\n  mass_kg: {" + mass +
+         "}\n  damping: {type: none}\nintegrator: {type: central_difference}\nsubstructures:\n" + parts;
+}
+
+TEST_F(ScenarioTest, TakesUpTo1000Substructures) {
+  EXPECT_EQ(file_.read(storeys(1000)).substructures.size(), 1000U);
+  EXPECT_THAT(file_.errors(storeys(1001)),
+              ElementsAre(HasSubstr("1001 substructures; expected 1 to 32, or under simulated time alone up to 1000")));
+}
+
+TEST_F(ScenarioTest, RecordsInterfacesOfFewSubstructuresAlways) {
+  EXPECT_EQ(file_.read(storeys(32)).recorded_dofs.size(), 32U);
+  EXPECT_EQ(file_.read(storeys(32) + "output: {degrees_of_freedom: [floor_1]}\n").recorded_dofs.size(), 32U);
+  EXPECT_EQ(file_.read(storeys(33) + "output: {degrees_of_freedom: [floor_1]}\n").recorded_dofs.size(), 1U);
+  EXPECT_EQ(file_.read(storeys(120)).recorded_dofs.size(), 20U);
+  EXPECT_EQ(file_.read(storeys(120) + "output: {degrees_of_freedom: [interfaces]}\n").recorded_dofs.size(), 120U);
+}
+
 TEST_F(ScenarioTest, RejectsDuplicateAndSelfRelativeInterfaces) {
   EXPECT_THAT(file_.errors(with("[{dof: floor_2, relative_to: floor_1}]", "[{dof: floor_2}, {dof: floor_2}]")),
               Contains(HasSubstr("listed twice")));
@@ -186,6 +223,20 @@ TEST_F(ScenarioTest, EffectiveScenarioKeepsTheDigest) {
   const Scenario again = file_.read(first.effective);
   EXPECT_EQ(again.effective, first.effective);
   EXPECT_EQ(again.digest, first.digest);
+}
+
+TEST_F(ScenarioTest, SiteWaitsForALinkAsLongAsTheTest) {
+  const auto overdue = [&](const std::vector<std::string>& overrides) {
+    const Scenario scenario = file_.read(kScenarioText, overrides);
+    const LoopScenario& loop = scenario.find("storey_1")->site.loop;
+    return std::pair{loop.limits.command_age_s,
+                     loop.rules[static_cast<std::size_t>(InterlockKind::command_age)].clears};
+  };
+  EXPECT_EQ(overdue({"time.mode=paced"}), std::pair(1.0, ClearCondition::never));
+  EXPECT_EQ(overdue({"time.mode=paced", "timeouts={link_s: 60.0}"}), std::pair(1.0, ClearCondition::when_cleared));
+  EXPECT_EQ(overdue({"time.mode=lockstep", "timeouts={link_s: 60.0}"}), std::pair(60.0, ClearCondition::never));
+  EXPECT_THAT(file_.errors(kScenarioText, {"time.mode=real_time", "timeouts={link_s: 60.0}"}),
+              Contains(HasSubstr("in real time the test does not wait for a link")));
 }
 
 TEST_F(ScenarioTest, RefusesTrialsOfASpecimen) {
@@ -263,11 +314,27 @@ TEST_F(ScenarioTest, DigestChangesWithEveryValue) {
       "timeouts={arm_s: 11.0}",
       "timeouts={stop_s: 11.0}",
       "timeouts={liveliness_lease_s: 3.0}",
+      "timeouts={link_s: 60.0}",
+      "timeouts={resume_s: 5.0, liveliness_lease_s: 0.5}",
       "recording={on_failure: continue}",
   };
   for (const std::string& change : changes) {
     EXPECT_TRUE(digests.insert(file_.read(kScenarioText, {change}).digest).second) << change;
   }
+}
+
+TEST_F(ScenarioTest, SitesThatWaitNeedALongerCommandAge) {
+  const std::string waits = "timeouts={resume_s: 60.0}";
+  EXPECT_THAT(file_.errors(kScenarioText, {waits, "substructures[storey_1].limits.command_age_s=2.0"}),
+              Contains(HasSubstr("limits.command_age_s longer than timeouts.liveliness_lease_s")));
+  const Scenario scenario = file_.read(kScenarioText, {waits, "substructures[storey_1].limits.command_age_s=2.1"});
+  EXPECT_EQ(scenario.timeouts.resume, std::chrono::seconds{60});
+  EXPECT_EQ(file_.read().timeouts.resume, Duration::zero());
+}
+
+TEST_F(ScenarioTest, RealTimeTestCannotWaitForACoordinator) {
+  EXPECT_THAT(file_.errors(kScenarioText, {"timeouts={resume_s: 60.0}", "time.mode=real_time"}),
+              Contains(HasSubstr("a test in real time cannot wait for a coordinator")));
 }
 
 TEST_F(ScenarioTest, GroundMotionIsToldAsScaled) {

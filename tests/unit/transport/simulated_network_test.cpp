@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace hybridtest::simulated {
@@ -63,16 +65,21 @@ TEST(SimulatedNetwork, DeliversAfterLatencyAndNotBefore) {
   const auto b = network.join("b");
   const auto outbox = a->event_outbox();
   const auto inbox = b->event_inbox();
+  const auto arrived = [&] {
+    std::vector<std::size_t> members;
+    network.take_arrivals(members);
+    return members;
+  };
   Event event;
   network.advance_to(Instant{milliseconds{1}});
   outbox->send(numbered(7));
   EXPECT_EQ(network.next_delivery(), Instant{milliseconds{1} + microseconds{50}});
   network.advance_to(Instant{milliseconds{1} + microseconds{50} - Duration{1}});
   EXPECT_FALSE(inbox->take(event));
-  EXPECT_FALSE(network.take_arrival(1));
+  EXPECT_TRUE(arrived().empty());
   network.advance_to(Instant{milliseconds{1} + microseconds{50}});
-  EXPECT_TRUE(network.take_arrival(1));
-  EXPECT_FALSE(network.take_arrival(1)) << "told once";
+  EXPECT_EQ(arrived(), std::vector<std::size_t>{1});
+  EXPECT_TRUE(arrived().empty()) << "told once";
   ASSERT_TRUE(inbox->take(event));
   EXPECT_EQ(event.step, 7);
   EXPECT_EQ(network.next_delivery(), kNever);
@@ -252,6 +259,80 @@ TEST(SimulatedNetwork, CountsMessagesRejectedByFullInbox) {
   std::size_t taken = 0;
   while (inbox->take(control)) ++taken;
   EXPECT_EQ(taken, kInboxCapacity<TestControl>);
+}
+
+TEST(SimulatedNetwork, SubstructureHearsCoordinatorAndItsOwnId) {
+  SimulatedNetwork network{1, {}};
+  const auto coordinator = network.join("coordinator");
+  const auto site = network.join("site", "site");
+  const auto other = network.join("other", "other");
+  const auto second = network.join("second process", "site");
+  const auto heard_by_all = coordinator->status_inbox();
+  const auto heard_by_site = site->status_inbox();
+  const auto send = [&](Transport& from, std::string_view id, Role role) {
+    ParticipantStatus status;
+    status.id = id;
+    status.role = role;
+    from.status_outbox()->send(status);
+  };
+  send(*coordinator, "coordinator", Role::coordinator);
+  send(*other, "other", Role::experimental_site);
+  send(*second, "site", Role::numerical_substructure);
+  send(*network.join("tool"), "tool", Role::operator_tool);
+  network.advance_to(Instant{seconds{1}});
+  const auto ids = [](Inbox<ParticipantStatus>& inbox) {
+    std::vector<std::string> heard;
+    for (ParticipantStatus status; inbox.take(status);) heard.push_back(status.id.text());
+    return heard;
+  };
+  EXPECT_EQ(ids(*heard_by_site), (std::vector<std::string>{"coordinator", "site", "tool"}));
+  EXPECT_EQ(ids(*heard_by_all), (std::vector<std::string>{"other", "site", "tool"}));
+  const auto late = network.join("late", "other")->status_inbox();
+  network.advance_to(Instant{seconds{2}});
+  EXPECT_EQ(ids(*late), (std::vector<std::string>{"coordinator", "other", "tool"})) << "of what is kept";
+}
+
+TEST(SimulatedNetwork, LinkIsAsLongAsItsFartherEnd) {
+  NetworkConditions conditions;
+  conditions.latency = milliseconds{1};
+  conditions.site_latencies = {{"near", microseconds{200}}, {"far", milliseconds{7}}};
+  const auto latency = [&](const char* from, const char* to) {
+    SimulatedNetwork network{1, conditions};
+    const auto sender = network.join(from);
+    const auto receiver = network.join(to);
+    const auto inbox = receiver->event_inbox();
+    sender->event_outbox()->send({});
+    return network.next_delivery().time_since_epoch();
+  };
+  EXPECT_EQ(latency("a", "b"), milliseconds{1});
+  EXPECT_EQ(latency("a", "far"), milliseconds{7});
+  EXPECT_EQ(latency("near", "a"), microseconds{200});
+  EXPECT_EQ(latency("near", "far"), milliseconds{7});
+}
+
+TEST(SimulatedNetwork, InboxHasRoomForSomeOfEachMember) {
+  constexpr std::size_t kSenders = 300;  // 300 x 4 places are more than the usual 256
+  SimulatedNetwork network{1, {}};
+  const auto coordinator = network.join("coordinator");
+  const auto inbox = coordinator->status_inbox();
+  std::vector<std::unique_ptr<Transport>> senders;
+  for (std::size_t i = 0; i < kSenders; ++i) {
+    senders.push_back(network.join(std::to_string(i), std::to_string(i)));
+    ParticipantStatus status;
+    status.id = std::to_string(i);
+    for (std::size_t k = 0; k <= kInboxPerMember; ++k) senders.back()->status_outbox()->send(status);
+  }
+  network.advance_to(Instant{seconds{1}});
+  const std::size_t room = kInboxPerMember * (kSenders + 1);
+  ParticipantStatus status;
+  std::size_t taken = 0;
+  while (inbox->take(status)) {
+    ASSERT_EQ(status.id, std::to_string(taken / (kInboxPerMember + 1))) << "in the order of sending";
+    ++taken;
+  }
+  EXPECT_EQ(taken, room);
+  EXPECT_EQ(coordinator->counters().overflowed, kSenders * (kInboxPerMember + 1) - room);
+  EXPECT_EQ(network.counters().sent, kSenders * (kInboxPerMember + 1));
 }
 
 }  // namespace

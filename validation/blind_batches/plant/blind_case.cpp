@@ -106,10 +106,10 @@ PlantEffects draw_besides(const Site& site, const Scales& scales, RandomStream& 
   if (actuator.kind == TransferKind::delay) {
     besides.push_back({interface, "delay", {{"delay_s", actuator.delay_s * off()}}});
   } else if (actuator.kind == TransferKind::first_order) {
-    besides.push_back({interface, "bandwidth", {{"true_bandwidth_hz", actuator.bandwidth_hz * (1.0 + off())}}});
+    besides.push_back({interface, "bandwidth_error", {{"true_bandwidth_hz", actuator.bandwidth_hz * (1.0 + off())}}});
   } else if (actuator.kind == TransferKind::second_order) {
     const double real_hz = actuator.natural_frequency_hz * (1.0 + off());
-    besides.push_back({interface, "bandwidth", {{"true_natural_frequency_hz", real_hz}}});
+    besides.push_back({interface, "bandwidth_error", {{"true_natural_frequency_hz", real_hz}}});
   }
   besides.push_back({interface, "gain", {{"gain", 1.0 + off()}}});
   return besides;

@@ -96,7 +96,7 @@ const std::vector<CatalogueEntry>& wrong_numbers() {
          return Parameters{{"damping_n_s_per_m", m * force(s) / s.scales.velocity_m_per_s}};
        }},
       {"transfer_system", "delay", actuator_is_seen, wrong_delay},
-      {"transfer_system", "bandwidth", has_natural_frequency,
+      {"transfer_system", "bandwidth_error", has_natural_frequency,
        [](RandomStream& r, Setting s, double) {
          const double ratio = r.chance(0.6) ? r.uniform(0.4, 0.95) : r.uniform(1.05, 2.0);
          return Parameters{{"true_natural_frequency_hz", s.site.transfer_system.natural_frequency_hz * ratio}};

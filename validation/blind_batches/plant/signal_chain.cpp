@@ -234,11 +234,7 @@ Part frame(const PlantEffect& effect, double viscous_n_s_per_m, double period_s)
 
 Part part_of(const PlantEffect& effect, double period_s) {
   const std::string_view name = effect.name;
-  if (name == "bandwidth") {
-    const bool is_of_the_base =
-        effect.parameters.contains("true_natural_frequency_hz") || effect.parameters.contains("true_bandwidth_hz");
-    return is_of_the_base ? Part{} : bandwidth(effect, period_s);
-  }
+  if (name == "bandwidth") return bandwidth(effect, period_s);
   if (name == "gain") return [gain = effect.of("gain")](double x) { return gain * x; };
   if (name == "backlash") {
     return [slot = MovingSlot{effect.of("width_m"), 0.1}](double x) mutable { return slot.next(x); };

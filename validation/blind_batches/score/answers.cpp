@@ -186,20 +186,25 @@ std::vector<Cause> causes_in(const Json& json, const char* name) {
   return causes;
 }
 
+PlantEffect read_effect(const Json& json) {
+  return {json.at("interface").get<std::string>(), json.at("effect").get<std::string>(),
+          json.at("parameters").get<Parameters>(), json.value("plant_law", std::string{})};
+}
+
 KeyCase read_case(const Json& json) {
   KeyCase result;
   result.name = json.at("case").get<std::string>();
   result.truth = class_named(json.at("truth").get<std::string>());
   result.gap_to_floor = json.at("gap_to_floor").get<double>();
   for (const Json& effect : json.at("effects")) {
-    PlantEffect read{effect.at("interface").get<std::string>(), effect.at("effect").get<std::string>(),
-                     effect.at("parameters").get<Parameters>(), effect.value("plant_law", std::string{})};
+    PlantEffect read = read_effect(effect);
     std::vector<Cause> acceptable = causes_in(effect, "acceptable");
     if (!effect.contains("acceptable")) acceptable = {{read.interface, read.name}};
     result.effects.push_back(std::move(read));
     result.effect_acceptable.push_back(std::move(acceptable));
     result.effect_gaps_to_floor.push_back(effect.value("gap_to_floor", result.gap_to_floor));
   }
+  for (const Json& beside : json.value("besides", Json::array())) result.besides.push_back(read_effect(beside));
   result.acceptable = causes_in(json, "acceptable");
   result.acceptable_in_part = causes_in(json, "acceptable_in_part");
   result.tolerated = causes_in(json, "tolerated");
@@ -232,7 +237,7 @@ constexpr double kClearGapToFloor = 2.0;
 /// An effect below the noise floor is correctly not found.
 constexpr double kHiddenGapToFloor = 1.0;
 /// From here on an answer is sure.
-constexpr double kSure = 0.95;
+constexpr double kSure = 0.9;
 
 bool is_in(const std::vector<Cause>& causes, const AnsweredCause& answered) {
   return std::ranges::any_of(causes, [&](const Cause& cause) {
@@ -303,6 +308,19 @@ std::vector<ParameterError> errors_of(const PlantEffect& effect, const AnsweredC
       error.is_in_interval = interval->first <= truth && truth <= interval->second;
     }
     errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+/// Of the true ones that the answer has, as causes or as corrections.
+std::vector<ParameterError> errors_of(const PlantEffects& effects, const Answer& answer) {
+  std::vector<AnsweredCause> said = answer.corrections;
+  if (answer.names_a_cause()) said.insert(said.end(), answer.causes.begin(), answer.causes.end());
+  std::vector<ParameterError> errors;
+  for (const PlantEffect& effect : effects) {
+    for (const AnsweredCause& cause : said) {
+      if (is(effect, cause)) std::ranges::move(errors_of(effect, cause), std::back_inserter(errors));
+    }
   }
   return errors;
 }
@@ -394,12 +412,8 @@ MarkedCase mark(const KeyCase& key, const std::optional<Answer>& given) {
       std::ranges::all_of(key.effect_gaps_to_floor, [](double gap) { return gap >= kClearGapToFloor; })) {
     marked.are_both_found = finds_all(key, answer);
   }
-  for (const PlantEffect& effect : key.effects) {
-    for (const AnsweredCause& cause : answer.causes) {
-      if (!answer.names_a_cause() || !is(effect, cause)) continue;
-      std::ranges::move(errors_of(effect, cause), std::back_inserter(marked.parameter_errors));
-    }
-  }
+  marked.parameter_errors = errors_of(key.effects, marked.given);
+  marked.number_errors = errors_of(key.besides, marked.given);
   if (answer.names_a_cause() && !answer.causes.empty()) {
     marked.forecast = forecast_of(key, answer);
     marked.is_sure_and_wrong = answer.verdict != "partial" && marked.forecast->probability >= kSure && !is_right;

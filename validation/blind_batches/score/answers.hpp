@@ -80,6 +80,7 @@ struct KeyCase {
   std::string name;
   TruthClass truth = TruthClass::none;
   PlantEffects effects;
+  PlantEffects besides{};  // numbers of the model that are slightly wrong as well
   // One for each of `effects`.
   std::vector<double> effect_gaps_to_floor{};
   std::vector<std::vector<Cause>> effect_acceptable{};
@@ -114,21 +115,22 @@ struct ParameterError {
 /// An answer compared with the truth. Fields that do not apply to a case are empty.
 struct MarkedCase {
   KeyCase key;
-  Answer given;                                // as it was
-  Answer answer;                               // without what is tolerated
-  std::optional<bool> is_interface_right;      // all but none
-  std::optional<bool> is_effect_right;         // named, law, pair
-  std::optional<bool> is_partial_right;        // partial: the effect of the library found, and the rest left open
-  std::optional<bool> is_single_name_right;    // named, where no other cause is acceptable
-  std::optional<bool> has_spurious_cause;      // named, law, with the first cause right: another beside it is not
-  bool is_sure_and_wrong = false;              // a name or set with a probability of 0.95 or more, and wrong
-  std::optional<bool> is_falsely_named;        // none, unknown
-  std::optional<bool> is_true_one_covered;     // named and answered by a set
-  std::optional<bool> are_both_found;          // pair, each effect at twice the floor
-  std::optional<std::size_t> causes_answered;  // named and answered by a name or set; named: 1
-  std::optional<Forecast> forecast;            // where a cause is named
-  std::optional<double> variance_short;        // true model's variance removed less the answer's, effect right
-  std::vector<ParameterError> parameter_errors;
+  Answer given;                                  // as it was
+  Answer answer;                                 // without what is tolerated
+  std::optional<bool> is_interface_right;        // all but none
+  std::optional<bool> is_effect_right;           // named, law, pair
+  std::optional<bool> is_partial_right;          // partial: the effect of the library found, and the rest left open
+  std::optional<bool> is_single_name_right;      // named, where no other cause is acceptable
+  std::optional<bool> has_spurious_cause;        // named, law, with the first cause right: another beside it is not
+  bool is_sure_and_wrong = false;                // a name or set with a probability of 0.9 or more, and wrong
+  std::optional<bool> is_falsely_named;          // none, unknown
+  std::optional<bool> is_true_one_covered;       // named and answered by a set
+  std::optional<bool> are_both_found;            // pair, each effect at twice the floor
+  std::optional<std::size_t> causes_answered;    // named and answered by a name or set; named: 1
+  std::optional<Forecast> forecast;              // where a cause is named
+  std::optional<double> variance_short;          // true model's variance removed less the answer's, effect right
+  std::vector<ParameterError> parameter_errors;  // of the effects
+  std::vector<ParameterError> number_errors;     // of the numbers of the model that are slightly wrong
 
   /// Twice the floor or more in the first fit recording and the held-out one; or no effect is present.
   [[nodiscard]] bool is_clear() const;

@@ -26,23 +26,32 @@ std::optional<Estimate> share_of(const Cases& cases, std::optional<bool> MarkedC
   return proportion(right, marked);
 }
 
-std::vector<ParameterError> all_parameter_errors(const Cases& cases) {
+using Errors = std::vector<ParameterError> MarkedCase::*;
+
+std::vector<ParameterError> all_errors(const Cases& cases, std::initializer_list<Errors> kinds) {
   std::vector<ParameterError> errors;
   for (const MarkedCase* of_case : cases) {
-    errors.insert(errors.end(), of_case->parameter_errors.begin(), of_case->parameter_errors.end());
+    for (const Errors kind : kinds) {
+      errors.insert(errors.end(), (of_case->*kind).begin(), (of_case->*kind).end());
+    }
   }
   return errors;
 }
 
-std::optional<Estimate> interval_coverage(const Cases& cases) {
+/// Each parameter counts by itself, though those of one case may miss together.
+std::optional<Estimate> interval_coverage(const Cases& cases, std::initializer_list<Errors> kinds) {
   std::size_t inside = 0;
   std::size_t given = 0;
-  for (const ParameterError& error : all_parameter_errors(cases)) {
+  for (const ParameterError& error : all_errors(cases, kinds)) {
     if (!error.is_in_interval) continue;
     ++given;
     inside += *error.is_in_interval ? 1U : 0U;
   }
   return proportion(inside, given);
+}
+
+std::optional<Estimate> interval_coverage(const Cases& cases) {
+  return interval_coverage(cases, {&MarkedCase::parameter_errors, &MarkedCase::number_errors});
 }
 
 /// Of the cases of a class, how many got a verdict.
@@ -85,7 +94,8 @@ std::vector<Figure> figures_of(const Cases& cases, bool is_target) {
     if (of_case->forecast) forecasts.push_back(*of_case->forecast);
     if (of_case->variance_short) variance_short.push_back(*of_case->variance_short);
   }
-  for (const ParameterError& error : all_parameter_errors(cases)) errors.push_back(error.relative);
+  for (const ParameterError& error : all_errors(cases, {&MarkedCase::parameter_errors}))
+    errors.push_back(error.relative);
   std::vector<Figure> figures{
       {"interface_right", share_of(cases, &MarkedCase::is_interface_right), 0.95, {}},
       {"effect_right_or_in_set", share_of(cases, &MarkedCase::is_effect_right), 0.95, {}},
@@ -98,6 +108,7 @@ std::vector<Figure> figures_of(const Cases& cases, bool is_target) {
       {"true_effect_in_answered_set", share_of(cases, &MarkedCase::is_true_one_covered), {}, {}},
       {"both_of_a_pair_found", share_of(cases, &MarkedCase::are_both_found), 0.85, {}},
       {"true_parameter_in_interval", interval_coverage(cases), 0.93, 0.97},
+      {"of_effects_in_interval", interval_coverage(cases, {&MarkedCase::parameter_errors}), {}, {}},
       {"sure_and_wrong", sure_and_wrong(cases), {}, {}},
       {"law_right", effects_right(cases, TruthClass::law), {}, {}},
       {"partial_called_partial", share_of(cases, &MarkedCase::is_partial_right), {}, {}},
@@ -347,9 +358,14 @@ std::string published_row(const Score& score) {
   std::string row = "|";
   for (const char* column : kColumns) {
     const auto figure = std::ranges::find(score.clear, column, &Figure::name);
-    row += figure->estimate
-               ? printed(" %.3f [%.3f, %.3f] |", figure->estimate->value, figure->estimate->low, figure->estimate->high)
-               : std::string{" |"};
+    if (!figure->estimate) {
+      row += " |";
+      continue;
+    }
+    row += printed(" %.3f [%.3f, %.3f]", figure->estimate->value, figure->estimate->low, figure->estimate->high);
+    // Of how many, where it is not the cases.
+    if (figure->name == "true_parameter_in_interval") row += printed(" of %zu", figure->estimate->count);
+    row += " |";
   }
   return row;
 }

@@ -96,6 +96,36 @@ TEST_F(RunReport, CompletedTestIsGood) {
   EXPECT_THAT(page(), HasSubstr("<p class=\"verdict good\">✓ Completed"));
 }
 
+TEST_F(RunReport, BridgesAreSummedOverTime) {
+  example_.write(directory_.path());
+  EXPECT_THAT(page(), Not(HasSubstr("bridged steps so far"))) << "control";
+  TemporaryDirectory other;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  example_.bridges = {{2000.0, 0.0, 1.0, 4.0, 1.0},
+                      {2001.0, 0.0, 2.0, -1.0, 0.0},
+                      {3000.0, 1.0, 1.0, unknown, 0.0},
+                      {6000.0, 0.0, 1.0, 0.5, 1.0}};
+  example_.write(other.path());
+  const std::string html = page({.run = other.path()});
+  const auto value_at = [](const plot::Points& stairs, double time_s) {
+    double value = 0.0;
+    for (std::size_t i = 0; i < stairs.x.size() && stairs.x[i] <= time_s; ++i) value = stairs.y[i];
+    return value;
+  };
+  const plot::Points site = shown_curve(html, "bridged steps so far", "storey_1");
+  ASSERT_FALSE(site.x.empty());
+  // Within the width of the pen: the page has a tenth of a pixel.
+  EXPECT_NEAR(value_at(site, 1.9), 0.0, 0.01);
+  EXPECT_NEAR(value_at(site, 2.1), 2.0, 0.01);
+  EXPECT_NEAR(value_at(site, 5.9), 2.0, 0.01);
+  EXPECT_NEAR(value_at(site, 9.9), 3.0, 0.01);
+  EXPECT_NEAR(value_at(shown_curve(html, "bridged steps so far", "storey_2"), 9.9), 1.0, 0.01);
+  const char* energy = "energy that bridges added to the structure so far";
+  EXPECT_NEAR(value_at(shown_curve(html, energy, "storey_1"), 5.9), 3.0, 0.02);
+  EXPECT_NEAR(value_at(shown_curve(html, energy, "storey_1"), 9.9), 3.5, 0.02);
+  EXPECT_TRUE(shown_curve(html, energy, "storey_2").x.empty()) << "nothing is known of its energy";
+}
+
 TEST_F(RunReport, AbsentFilesAreLeftOutWithAWord) {
   example_.write(directory_.path());
   std::filesystem::remove(directory_ / "storey_2.h5");

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <thread>
 
+#include "tests/support/signals_in_turn.hpp"
 #include "transport/waker.hpp"
 
 namespace hybridtest::fast_dds {
@@ -169,28 +170,12 @@ TEST(PolledSocket, DeadlineEndsWait) {
   EXPECT_GE(Clock::now(), deadline);
 }
 
-// A lost signal would make both threads wait for ever.
 TEST(PolledSocket, LosesNoSignalBetweenTwoThreads) {
-  constexpr int kRounds = 5000;
   PolledSocket first{Duration{0}};
   PolledSocket second{Duration{0}};
   Waker ping{&first};
   Waker pong{&second};
-  int number = 0;  // written by one thread at a time: the signals must also order memory
-  std::thread other{[&] {
-    for (int i = 0; i < kRounds; ++i) {
-      EXPECT_TRUE(ping.wait_until(kEndless));
-      ++number;
-      pong.signal();
-    }
-  }};
-  for (int i = 0; i < kRounds; ++i) {
-    ++number;
-    ping.signal();
-    ASSERT_TRUE(pong.wait_until(kEndless));
-    ASSERT_EQ(number, 2 * (i + 1));
-  }
-  other.join();
+  expect_signals_in_turn(ping, pong, 5000, [](Waker& waker) { return waker.wait_until(kEndless); });
 }
 
 TEST(PolledSocket, TakenPortIsRefused) {

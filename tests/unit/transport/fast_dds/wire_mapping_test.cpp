@@ -55,7 +55,7 @@ class Draw {
   }
   double time_s() { return random_.uniform(0.0, 1e6); }
   Step step() { return static_cast<Step>(random_.bits() >> 1U) - 1; }
-  Duration clock() { return Duration{any<std::int64_t>()}; }
+  Duration clock() { return Duration{any<std::int64_t>() / 4}; }
   InterfaceVector vector() {
     InterfaceVector result{static_cast<Eigen::Index>(up_to(kMaxInterfaceDofs))};
     for (double& entry : result) entry = value();
@@ -88,12 +88,13 @@ class Draw {
     TestAnnouncement m;
     m.test_name = text<64>();
     m.coordinator = any<Incarnation>();
+    m.succeeds = any<Incarnation>();
     m.scenario_digest = digest();
     m.mode = one_of(CouplingMode::paced);
     m.step_s = time_s();
     m.duration_s = time_s();
     m.time_scale = time_s();
-    m.substructure_count = static_cast<std::uint16_t>(up_to(kMaxSubstructures));
+    m.substructures.resize(static_cast<std::size_t>(up_to(kMaxSubstructures)));
     for (auto& substructure : m.substructures) {
       substructure = {text<48>(), one_of(Role::operator_tool), static_cast<std::uint16_t>(up_to(kMaxInterfaceDofs))};
     }
@@ -103,10 +104,10 @@ class Draw {
     return {text<48>(),
             one_of(Role::operator_tool),
             any<Incarnation>(),
-            one_of(LifecycleState::refused),
+            one_of(LifecycleState::waiting),
             digest(),
             step(),
-            static_cast<FaultFlags>(up_to(0x1ffff)),
+            static_cast<FaultFlags>(up_to(0x7ffff)),
             clock()};
   }
   DisplacementCommand command() {
@@ -138,13 +139,13 @@ class Draw {
   }
   TestControl control() {
     return {one_of(ControlVerb::emergency_stop), any<Incarnation>(), one_of(Role::operator_tool),
-            one_of(StopReason::network_too_slow)};
+            one_of(StopReason::resume_refused)};
   }
   Event event() {
     return {text<48>(),
             any<Incarnation>(),
             one_of(Severity::fault),
-            one_of(EventCode::pause_refused),
+            one_of(EventCode::resume_refused),
             step(),
             time_s(),
             text<48>(),
@@ -247,6 +248,8 @@ template <class Sample, class Message, class Change>
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Two hundred years: differences of such readings leave the range of 64 bits.
+constexpr std::int64_t kBeyondAnyClock = 6'311'520'000LL * 1'000'000'000LL;
 
 TEST(WireMapping, RejectsCommandOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::DisplacementCommand>(Draw{3}.command(), change); };
@@ -260,6 +263,7 @@ TEST(WireMapping, RejectsCommandOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.points()[0].displacement_m().resize(kMaxInterfaceDofs + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[1].velocity_m_per_s().resize(kMaxInterfaceDofs + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.points()[2].acceleration_m_per_s2().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.send_time_ns(kBeyondAnyClock); }));
   EXPECT_FALSE(refused([](auto& s) { s.points()[2].acceleration_m_per_s2().resize(kMaxInterfaceDofs); }));
   EXPECT_FALSE(refused([](auto& s) { s.points()[0].displacement_m().assign(1, kNaN); })) << "for the nodes to decide";
 }
@@ -273,11 +277,15 @@ TEST(WireMapping, RejectsMeasurementOutOfRange) {
   EXPECT_TRUE(refused([](auto& s) { s.imposed_displacement_m().resize(kMaxInterfaceDofs + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.measured_displacement_m().resize(kMaxInterfaceDofs + 1); }));
   EXPECT_TRUE(refused([](auto& s) { s.force_n().resize(kMaxInterfaceDofs + 1); }));
+  EXPECT_TRUE(refused([](auto& s) { s.receive_time_ns(kBeyondAnyClock); }));
+  EXPECT_TRUE(refused([](auto& s) { s.send_time_ns(-kBeyondAnyClock); }));
+  EXPECT_TRUE(refused([](auto& s) { s.command_send_time_ns(std::numeric_limits<std::int64_t>::min()); }));
 }
 
 TEST(WireMapping, RejectsStatusOutOfRange) {
   const auto refused = [](auto change) { return refused_after<wire::ParticipantStatus>(Draw{5}.status(), change); };
   EXPECT_TRUE(refused([](auto& s) { s.role(4); }));
+  EXPECT_TRUE(refused([](auto& s) { s.clock_ns(kBeyondAnyClock); }));
   EXPECT_TRUE(refused([](auto& s) { s.state(static_cast<std::uint8_t>(LifecycleState::lost)); }))
       << "only the transport says who is lost";
   EXPECT_TRUE(refused([](auto& s) { s.last_step(-2); }));

@@ -247,6 +247,22 @@ TEST(Score, WrongNumbersAreNeitherRightNorWrong) {
   EXPECT_FALSE(mark(friction, named("named", {stiffness})).is_effect_right.value());
 }
 
+TEST(Score, IntervalsOfWrongNumbersCountToo) {
+  KeyCase key = key_case(TruthClass::none, {});
+  key.besides = {{"transfer_system", "gain", {{"gain_error", 0.03}}}, {"specimen", "inertia", {{"mass_kg", 5.0}}}};
+  Answer answer;
+  answer.verdict = "none";
+  answer.corrections = {{.interface = "transfer_system", .effect = "gain", .parameters = {}}};
+  answer.corrections[0].parameters["gain_error"] = {.value = 0.0305, .ci95 = std::pair{0.0302, 0.0308}};
+  const MarkedCase marked = mark(key, answer);
+  ASSERT_EQ(marked.number_errors.size(), 1U);  // of the one that was told
+  EXPECT_FALSE(marked.number_errors[0].is_in_interval.value());
+  EXPECT_TRUE(marked.parameter_errors.empty());
+  const Score score = score_of({marked});
+  EXPECT_EQ(figure(score, "true_parameter_in_interval").estimate.value().count, 1U);
+  EXPECT_FALSE(figure(score, "of_effects_in_interval").estimate.has_value());
+}
+
 TEST(Score, CorrectionCountsWhereItIsTheTruth) {
   const Cause gain{"transfer_system", "gain"};
   Answer corrected;

@@ -76,6 +76,19 @@ TEST(SweepPlan, NetworkConditionsBecomeOptionsOfSimulate) {
                           "name=swept", "--set", "a.delay_s=0.01", "--loss", "0", "--set", "a.sensors.seed=6"));
 }
 
+TEST(SweepPlan, LatenciesOfSitesBecomeOptionsOfSimulate) {
+  SweepPlan plan;
+  plan.scenario_file = "/tests/frame.yaml";
+  plan.varied = {read_varied("latency_spread=0,0.6"), read_varied("site_latency_us[far]=100..50000/2")};
+  EXPECT_EQ(site_of_latency("site_latency_us[far]"), "far");
+  for (const char* other : {"site_latency_us", "site_latency_us[far", "substructures[far].limits", "loss"}) {
+    EXPECT_EQ(site_of_latency(other), std::nullopt) << other;
+  }
+  EXPECT_THAT(plan.arguments(plan.case_at(4), "/out/run"),
+              ElementsAre("simulate", "/tests/frame.yaml", "--seed", "1", "--out", "/out/run", "--no-report",
+                          "--latency-spread", "0.6", "--site-latency", "far:50000"));
+}
+
 TEST(SweepPlan, ReadsBackWhatItWrote) {
   const TemporaryDirectory folder;
   const SweepFiles files{folder / "sweep"};

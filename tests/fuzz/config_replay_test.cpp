@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,31 +11,15 @@
 #include "core/assert.hpp"
 #include "core/random.hpp"
 #include "tests/fuzz/config_fuzz.hpp"
+#include "tests/fuzz/replay.hpp"
 
 namespace hybridtest {
 namespace {
 
-/// Files of the corpus by name, sorted, so that a seed means the same everywhere.
-std::map<std::string, std::string> corpus() {
-  std::map<std::string, std::string> files;
-  const std::filesystem::path folder = std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "tests/fuzz/corpus/config";
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    std::ifstream stream{entry.path(), std::ios::binary};
-    files[entry.path().filename().string()] =
-        std::string{std::istreambuf_iterator<char>{stream}, std::istreambuf_iterator<char>{}};
-  }
-  return files;
-}
-
-ConfigFuzzOutcome run(std::string_view text) {
-  return fuzz_config(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-}
-
 /// Changes a text as a fuzzer does: bytes, ranges, pieces of YAML, parts of other texts.
 class Mutator {
  public:
-  Mutator(std::uint64_t seed, std::uint64_t number, std::vector<std::string> texts)
-      : random_{seed, number}, texts_{std::move(texts)} {}
+  Mutator(Random& random, const std::vector<std::string>& texts) : random_{random}, texts_{texts} {}
 
   [[nodiscard]] std::string next() {
     std::string text = any(texts_);
@@ -78,8 +59,8 @@ class Mutator {
     }
   }
 
-  Random random_;
-  std::vector<std::string> texts_;
+  Random& random_;
+  const std::vector<std::string>& texts_;
 };
 
 /// The input that was running when an assertion failed, for the console.
@@ -92,32 +73,16 @@ TEST(ConfigFuzzReplay, CorpusFilesBehaveAsNamed) {
   const std::map<std::string, ConfigFuzzOutcome> expected = {{"accepted", ConfigFuzzOutcome::accepted},
                                                              {"errors", ConfigFuzzOutcome::with_errors},
                                                              {"refused", ConfigFuzzOutcome::refused}};
-  const auto files = corpus();
-  ASSERT_GE(files.size(), 10U);
-  for (const auto& [name, text] : files) {
-    const auto outcome = expected.find(name.substr(0, name.find('_')));
-    ASSERT_NE(outcome, expected.end()) << name;
-    EXPECT_EQ(run(text), outcome->second) << name;
-  }
+  test::expect_outcomes_as_named("config", fuzz_config, expected);
 }
 
 TEST(ConfigFuzzReplay, SurvivesMutationsOfTheCorpus) {
-  constexpr std::uint64_t kSeed = 1;
-  constexpr std::uint64_t kMutations = 2000;
-  std::vector<std::string> texts;
-  // Most changes make a valid configuration invalid, so valid ones are drawn more often.
-  for (const auto& [name, text] : corpus()) texts.insert(texts.end(), name.starts_with("accepted_") ? 8 : 1, text);
-  std::map<ConfigFuzzOutcome, int> outcomes;
+  const auto texts = test::to_mutate("config", 8);
   std::string text;
   set_assert_action(print_input, &text);
-  for (std::uint64_t number = 0; number < kMutations; ++number) {
-    text = Mutator{kSeed, number, texts}.next();
-    try {
-      ++outcomes[run(text)];
-    } catch (const std::exception& error) {
-      FAIL() << "mutation " << number << " of seed " << kSeed << ": " << error.what() << '\n' << text;
-    }
-  }
+  auto outcomes = test::outcomes_of_mutations(2000, fuzz_config, [&](Random& random) {
+    return text = Mutator{random, texts}.next();
+  });
   set_assert_action(nullptr, nullptr);
   // Mutations that all end the same way would test nothing.
   EXPECT_GT(outcomes[ConfigFuzzOutcome::refused], 100);
