@@ -191,15 +191,13 @@ void Coordinator::assemble(Instant now) noexcept {
   for (const auto& substructure : settings_.substructures) {
     const Peer* peer = presence_.find(substructure.id);
     if (peer == nullptr || peer->status.state != LifecycleState::refused) continue;
-    const bool is_same_scenario = peer->status.scenario_digest == presence_.identity().scenario_digest;
-    if (!resumed_ && is_same_scenario) {
-      // It gave up before it heard of this coordinator.
-      report(now, Severity::fault, EventCode::participant_missing, substructure.id);
-      begin_stop(now, StopReason::not_assembled, substructure.id);
-      return;
-    }
-    report(now, Severity::fault, resumed_ ? EventCode::resume_refused : EventCode::digest_mismatch, substructure.id);
-    begin_stop(now, StopReason::refused, substructure.id);
+    // With the same scenario, it gave up before it heard of this coordinator.
+    const bool gave_up = !resumed_ && peer->status.scenario_digest == presence_.identity().scenario_digest;
+    EventCode code = EventCode::digest_mismatch;
+    if (gave_up) code = EventCode::participant_missing;
+    if (resumed_) code = EventCode::resume_refused;
+    report(now, Severity::fault, code, substructure.id);
+    begin_stop(now, gave_up ? StopReason::not_assembled : StopReason::refused, substructure.id);
     return;
   }
   if ((resumed_ ? everyone_goes_on() : everyone_is(LifecycleState::ready)) && everyone_is_linked() && has_source) {

@@ -13,6 +13,7 @@
 
 #include "core/config/section.hpp"
 #include "core/config_error.hpp"
+#include "recording/summary/process_end.hpp"
 #include "runtime/run_directory.hpp"
 #include "runtime/version.hpp"
 
@@ -20,8 +21,6 @@ namespace hybridtest {
 namespace {
 
 constexpr const char* kHostsSchema = "hybridtest-hosts/1";
-/// Of `ssh` itself: no connection, or the key was not accepted.
-constexpr int kSshFailed = 255;
 constexpr int kNotExecutable = 126;
 constexpr int kNotFound = 127;
 constexpr Duration kCommandLimit = std::chrono::seconds{60};

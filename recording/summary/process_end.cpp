@@ -8,8 +8,6 @@ namespace hybridtest {
 namespace {
 
 constexpr const char* kFile = "processes.json";
-/// Exit code of ssh itself, when there is no connection, or no longer.
-constexpr int kSshFailed = 255;
 constexpr int kSignalsFrom = 128;
 constexpr int kSignals = 64;
 

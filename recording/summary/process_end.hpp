@@ -8,6 +8,9 @@
 
 namespace hybridtest {
 
+/// Exit code of `ssh` itself: no connection, or no longer, or the key was not accepted.
+inline constexpr int kSshFailed = 255;
+
 /// How a process of a test ended, as its parent saw it. A process that was killed cannot record that itself.
 struct ProcessEnd {
   std::string participant;
