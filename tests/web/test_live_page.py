@@ -139,8 +139,8 @@ class RunningTest(unittest.TestCase):
                     self.browser.execute_script("scrollTo(0, arguments[0])", place)
                     on_top = self.browser.execute_script(
                         "const box = document.querySelector('.emergency').getBoundingClientRect();"
-                        "return document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2)"
-                        "?.closest('.emergency') !== null && box.top >= 0 && box.bottom <= innerHeight")
+                        "const top = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);"
+                        "return Boolean(top?.closest('.emergency')) && box.top >= 0 && box.bottom <= innerHeight")
                     self.assertTrue(on_top, f"{width} × {height}, large: {large}, scrolled to {place}")
                 self.browser.find_element("id", "large_mode").click()
 

@@ -142,6 +142,18 @@ class PageStates(unittest.TestCase):
         wait_for(lambda: "has not answered for 3 s" in self.text("server_lost"), "the notice", 10)
         self.assertIn("12.3", self.text("charts"))
 
+    def test_emergency_stop_is_there_before_the_first_answer(self):
+        script = self.browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": FETCH % "null"})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
+        set_window(self.browser, 1024, 2000)
+        self.browser.get(self.server.origin)
+        wait_for(lambda: self.text("server_lost"), "the notice that nobody answers")
+        self.assertTrue(self.browser.find_element("css selector", ".emergency").is_displayed())
+        # Once the server answers that it passes nothing on, there is none.
+        answers = {"tests": {**listed("made_up"), "control": False}, "news": news()}
+        self.browser.execute_script("window.answers = arguments[0];", answers)
+        wait_for(lambda: not self.browser.find_element("css selector", ".emergency").is_displayed(), "the end of the controls")
+
     def test_another_test_can_be_chosen(self):
         self.open(news(), listed("made_up", "another"))
         self.answer(news(verdict="Another runs.", name="another"))

@@ -23,7 +23,8 @@ const status = new Status();
 const control = new Control();
 
 let chosen = null;           // name of the test on the page
-let tests = { tests: [], control: false };
+// Nobody knows yet whether this page may control a test: until the server says no, the emergency stop is there.
+let tests = { tests: [], control: null };
 let cursor = 0;
 let newest = null;           // the last answer
 let is_whole = false;
