@@ -11,7 +11,7 @@ foreach(file ${web_tests})
   add_test(NAME ${test_name} COMMAND ${HYBRIDTEST_DEBIAN_PYTHON} -B -m unittest discover --verbose
     --start-directory ${CMAKE_CURRENT_LIST_DIR} --pattern ${name}.py)
   # One at a time: they start processes and watch the time.
-  set_tests_properties(${test_name} PROPERTIES LABELS web RUN_SERIAL TRUE TIMEOUT 900
+  set_tests_properties(${test_name} PROPERTIES LABELS web RUN_SERIAL TRUE TIMEOUT 400
     SKIP_REGULAR_EXPRESSION "pages are not tested"
     ENVIRONMENT "HYBRIDTEST_PROGRAM_DIR=${PROJECT_BINARY_DIR}/bin;HYBRIDTEST_SOURCE_DIR=${PROJECT_SOURCE_DIR};HYBRIDTEST_WEB_OUTPUT=${PROJECT_BINARY_DIR}/web")
 endforeach()
