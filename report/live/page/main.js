@@ -108,8 +108,8 @@ async function poll() {
     const begin_ms = performance.now();
     try {
       if (begin_ms - tests_ms > kTestsMs) {
-        tests_ms = begin_ms;
         await ask_for_tests();
+        tests_ms = begin_ms;  // without an answer the next turn asks again
       }
       if (chosen !== null) await ask_for_news();
       if (chosen !== null && is_whole && !whole_is_here) await ask_for_whole();
