@@ -62,7 +62,8 @@ class PacketFilter {
 
   /// @param packet   one datagram that arrived at the port of the messages of users.
   [[nodiscard]] bool admits_message(Bytes packet) const noexcept;
-  /// @param packet   one datagram that arrived at a port of discovery.
+  /// @param packet   one datagram that arrived at a port of discovery, or one message that arrived where discovery and
+  ///                 messages of users share a port, as over TCP: what is encrypted, it admits as well.
   [[nodiscard]] bool admits_discovery(Bytes packet, Time now);
 
  private:

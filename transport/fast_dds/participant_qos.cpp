@@ -130,7 +130,7 @@ dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings, const
   if (settings.profile_file) {
     qos = profile_qos(*settings.profile_file);
   } else if (settings.tcp) {
-    add_tcp(settings, qos);
+    add_tcp(settings, refused, qos);
   } else {
     add_transports(settings, socket, refused, qos);
     add_discovery(settings, qos);

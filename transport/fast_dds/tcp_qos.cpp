@@ -54,7 +54,8 @@ void add_tls(const TlsFiles& files, rtps::TCPTransportDescriptor& tcp) {
 
 }  // namespace
 
-void add_tcp(const FastDdsSettings& all, dds::DomainParticipantQos& qos) {
+void add_tcp(const FastDdsSettings& all, const std::shared_ptr<RefusedPackets>& refused,
+             dds::DomainParticipantQos& qos) {
   const TcpSettings& settings = *all.tcp;
   if (!settings.listens_at && settings.dials.empty()) {
     throw ConfigError{"over TCP at least one participant listens, and the others know its host:port"};
@@ -79,8 +80,9 @@ void add_tcp(const FastDdsSettings& all, dds::DomainParticipantQos& qos) {
     qos.wire_protocol().builtin.initialPeersList.push_back(with_logical_port(to_tcp_locator("peer", address)));
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(
-      tcp_transport(tcp, settings.listens_at ? std::optional{own} : std::nullopt));
+  qos.transport().user_transports.push_back(tcp_transport(tcp, settings.listens_at ? std::optional{own} : std::nullopt,
+                                                          all.credentials ? Admission::secured : Admission::plain,
+                                                          refused));
 }
 
 }  // namespace hybridtest::fast_dds

@@ -1,5 +1,6 @@
 #include "transport/fast_dds/tcp_transport.hpp"
 
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -13,24 +14,33 @@ constexpr int kLateMessages = 50;
 
 struct TcpDescriptor final : rtps::ChainingTransportDescriptor {
   TcpDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> lower, const std::optional<Locator>& its_own,
-                Duration time_of_quiet)
-      : ChainingTransportDescriptor{std::move(lower)}, own{its_own}, quiet{time_of_quiet} {}
+                Admission its_admission, std::shared_ptr<RefusedPackets> its_refused, Duration time_of_quiet)
+      : ChainingTransportDescriptor{std::move(lower)},
+        own{its_own},
+        admission{its_admission},
+        refused{std::move(its_refused)},
+        quiet{time_of_quiet} {}
 
   [[nodiscard]] rtps::TransportInterface* create_transport() const override;  // the caller owns it
 
   std::optional<Locator> own;
+  Admission admission;
+  std::shared_ptr<RefusedPackets> refused;
   Duration quiet;
 };
 
 /// Stands before the receiver of a logical port. Several threads enter, one for each connection.
 class Gate final : public rtps::TransportReceiverInterface {
  public:
-  explicit Gate(rtps::TransportReceiverInterface* receiver) : receiver_{receiver} {}
+  Gate(rtps::TransportReceiverInterface* receiver, Admission admission, std::shared_ptr<RefusedPackets> refused)
+      : receiver_{receiver}, filter_{admission, std::move(refused)} {}
 
   void OnDataReceived(const unsigned char* bytes, std::uint32_t count, const Locator& local,
                       const Locator& from) override {
     const std::lock_guard lock{mutex_};
-    if (receiver_ != nullptr) receiver_->OnDataReceived(bytes, count, local, from);
+    if (receiver_ != nullptr && filter_.admits_discovery({bytes, count}, std::chrono::steady_clock::now())) {
+      receiver_->OnDataReceived(bytes, count, local, from);
+    }
     ++messages_;
     left_.notify_all();
   }
@@ -57,6 +67,7 @@ class Gate final : public rtps::TransportReceiverInterface {
  private:
   mutable std::mutex mutex_;
   rtps::TransportReceiverInterface* receiver_;
+  PacketFilter filter_;
   std::condition_variable left_;
   std::uint64_t messages_ = 0;
 };
@@ -94,7 +105,7 @@ class TcpTransport final : public rtps::ChainingTransport {
                         std::uint32_t bytes_max) override {
     const std::uint16_t port = IpLocator::getLogicalPort(locator);
     if (gates_.contains(port)) return false;
-    auto gate = std::make_unique<Gate>(receiver);
+    auto gate = std::make_unique<Gate>(receiver, descriptor_.admission, descriptor_.refused);
     if (!low_level_transport_->OpenInputChannel(locator, gate.get(), bytes_max)) return false;
     gates_.emplace(port, std::move(gate));
     if (!is_begun_) is_begun_ = low_level_transport_->init(nullptr);
@@ -142,8 +153,9 @@ rtps::TransportInterface* TcpDescriptor::create_transport() const { return new T
 }  // namespace
 
 std::shared_ptr<rtps::TransportDescriptorInterface> tcp_transport(
-    std::shared_ptr<rtps::TransportDescriptorInterface> lower, const std::optional<Locator>& own, Duration quiet) {
-  return std::make_shared<TcpDescriptor>(std::move(lower), own, quiet);
+    std::shared_ptr<rtps::TransportDescriptorInterface> lower, const std::optional<Locator>& own, Admission admission,
+    std::shared_ptr<RefusedPackets> refused, Duration quiet) {
+  return std::make_shared<TcpDescriptor>(std::move(lower), own, admission, std::move(refused), quiet);
 }
 
 }  // namespace hybridtest::fast_dds

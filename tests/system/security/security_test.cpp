@@ -22,6 +22,7 @@ namespace {
 
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::Optional;
 
 std::string utc_in(std::chrono::seconds time) {
@@ -159,6 +160,24 @@ TEST_F(Security, IntrudersAreKeptOutAndTheTestGoesOn) {
   }
   EXPECT_EQ(recorded("run").summary()["completed_steps"], 2000);
   EXPECT_EQ(recorded("run").summary()["data_valid"], true);
+  expect_same_as_simulated("run");
+}
+
+/// Over TCP discovery and messages share a connection and a filter.
+TEST_F(Security, OverTcpThePacketFilterAdmitsTheTestItself) {
+  make_credentials("true");
+  const std::filesystem::path profile = directory() / "network.yaml";
+  std::ofstream{profile}
+      << "schema: hybridtest-network/1\ntype: tcp\nhosts:\n  coordinator: {host: 127.0.0.1, listens: "
+      << 20'000 + std::stoi(network().back()) << "}\n  storey_1: {}\n  storey_2: {}\n";
+  StartedProgram run = start_run(scenario_, "run", secured({"--network", profile.string()}));
+  ASSERT_THAT(run.wait(), Optional(kExitCompleted)) << run.standard_error();
+  for (const char* participant : {"coordinator", "storey_1", "storey_2"}) {
+    const std::string log = text_of(directory() / "run" / (std::string{participant} + ".log"));
+    EXPECT_THAT(log, HasSubstr(" info ")) << participant;
+    EXPECT_THAT(log, Not(HasSubstr("in plain text"))) << participant;
+    EXPECT_THAT(log, Not(HasSubstr("announce falsely"))) << participant;
+  }
   expect_same_as_simulated("run");
 }
 

@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/rtps_packets.hpp"
+
 namespace hybridtest::fast_dds {
 namespace {
 
@@ -110,6 +112,13 @@ class LowerTransport final : public rtps::ChainingTransport {
 
 rtps::TransportInterface* LowerDescriptor::create_transport() const { return new LowerTransport{*this}; }
 
+/// TCP as it is used, but on that lower transport and with a short quiet time.
+std::shared_ptr<rtps::TransportDescriptorInterface> over(const std::shared_ptr<LowerDescriptor>& lower,
+                                                         const std::optional<Locator>& own = std::nullopt,
+                                                         Duration quiet = Duration{1}) {
+  return tcp_transport(lower, own, Admission::plain, std::make_shared<RefusedPackets>(), quiet);
+}
+
 /// Takes in a message until the port is closed, at most for its patience.
 class SlowReceiver final : public rtps::TransportReceiverInterface {
  public:
@@ -145,7 +154,7 @@ std::vector<std::string> closed_meanwhile(const rtps::TransportDescriptorInterfa
 
 TEST(TcpTransport, AcceptsConnectionsOnceAPortIsOpen) {
   Log log;
-  const auto descriptor = tcp_transport(std::make_shared<LowerDescriptor>(log), std::nullopt, Duration{1});
+  const auto descriptor = over(std::make_shared<LowerDescriptor>(log));
   const std::unique_ptr<rtps::TransportInterface> transport{descriptor->create_transport()};
   EXPECT_TRUE(transport->init());
   EXPECT_THAT(log.entries(), IsEmpty());
@@ -161,7 +170,7 @@ TEST(TcpTransport, AcceptsConnectionsOnceAPortIsOpen) {
 TEST(TcpTransport, ClosingWaitsForWhoIsInside) {
   Log log;
   const auto lower = std::make_shared<LowerDescriptor>(log);
-  EXPECT_THAT(closed_meanwhile(*tcp_transport(lower, std::nullopt, Duration{1}), *lower, milliseconds{100}),
+  EXPECT_THAT(closed_meanwhile(*over(lower), *lower, milliseconds{100}),
               ElementsAre("opens 7410", "begins", "enters", "leaves", "is closed"));
 }
 
@@ -177,7 +186,7 @@ TEST(TcpTransport, LowerPortIsClosedAfterAQuietTime) {
   constexpr milliseconds kQuiet{50};
   Log log;
   const auto lower = std::make_shared<LowerDescriptor>(log);
-  const auto descriptor = tcp_transport(lower, std::nullopt, kQuiet);
+  const auto descriptor = over(lower, std::nullopt, kQuiet);
   std::unique_ptr<rtps::TransportInterface> transport{descriptor->create_transport()};
   SlowReceiver receiver{log, Duration{0}};
   EXPECT_TRUE(transport->OpenInputChannel(at(kLogicalPort, 1), &receiver, 1500));
@@ -193,7 +202,7 @@ TEST(TcpTransport, LowerPortIsClosedAfterAQuietTime) {
 TEST(TcpTransport, NobodyConnectsToHimself) {
   Log log;
   const Locator own = with_port(at(kLogicalPort, 1), 5100);
-  const auto descriptor = tcp_transport(std::make_shared<LowerDescriptor>(log), own, Duration{1});
+  const auto descriptor = over(std::make_shared<LowerDescriptor>(log), own);
   const std::unique_ptr<rtps::TransportInterface> transport{descriptor->create_transport()};
   rtps::SendResourceList resources;
   Locator loopback = own;
@@ -203,6 +212,57 @@ TEST(TcpTransport, NobodyConnectsToHimself) {
   EXPECT_TRUE(transport->OpenOutputChannel(resources, with_port(loopback, 5101)));
   EXPECT_TRUE(transport->OpenOutputChannel(resources, with_port(at(kLogicalPort, 2), 5100)));
   EXPECT_THAT(log.entries(), ElementsAre("connects to 127.0.0.1:5101", "connects to 192.0.2.2:5100"));
+}
+
+/// Which of three gaps are passed on: a true one, one that no test has, and another true one.
+std::vector<std::string> passed_on(const rtps::TransportDescriptorInterface& descriptor, const LowerDescriptor& lower) {
+  class Names final : public rtps::TransportReceiverInterface {
+   public:
+    explicit Names(Log& log) : log_{log} {}
+    void OnDataReceived(const unsigned char* bytes, std::uint32_t count, const Locator&, const Locator&) override {
+      const std::vector<std::uint8_t> packet{bytes, bytes + count};
+      log_.add(packet == gap_up_to(5) ? "true gap" : packet == gap_up_to(std::uint64_t{1} << 60U) ? "harm" : "other");
+    }
+
+   private:
+    Log& log_;
+  };
+  Names receiver{*lower.log};
+  const std::unique_ptr<rtps::TransportInterface> transport{descriptor.create_transport()};
+  EXPECT_TRUE(transport->OpenInputChannel(at(kLogicalPort, 1), &receiver, 1500));
+  for (const std::uint64_t end : {std::uint64_t{5}, std::uint64_t{1} << 60U, std::uint64_t{5}}) {
+    const std::vector<std::uint8_t> packet = gap_up_to(end);
+    lower.receiver->OnDataReceived(packet.data(), static_cast<std::uint32_t>(packet.size()), {}, {});
+  }
+  EXPECT_TRUE(transport->CloseInputChannel(at(kLogicalPort, 1)));
+  return lower.log->entries();
+}
+
+TEST(TcpTransport, PassesOnWhatThePacketFilterAdmits) {
+  Log log;
+  const auto lower = std::make_shared<LowerDescriptor>(log);
+  const auto refused = std::make_shared<RefusedPackets>();
+  const auto descriptor = tcp_transport(lower, std::nullopt, Admission::plain, refused, Duration{1});
+  EXPECT_THAT(passed_on(*descriptor, *lower), ElementsAre("opens 7410", "begins", "true gap", "true gap"));
+  EXPECT_EQ(refused->harmful, 1U);
+  EXPECT_EQ(refused->in_plain_text, 0U);
+}
+
+TEST(TcpTransport, WithCredentialsItPassesOnNoPlainText) {
+  Log log;
+  const auto lower = std::make_shared<LowerDescriptor>(log);
+  const auto refused = std::make_shared<RefusedPackets>();
+  const auto descriptor = tcp_transport(lower, std::nullopt, Admission::secured, refused, Duration{1});
+  EXPECT_THAT(passed_on(*descriptor, *lower), ElementsAre("opens 7410", "begins"));
+  EXPECT_EQ(refused->harmful, 1U);
+  EXPECT_EQ(refused->in_plain_text, 2U);
+}
+
+/// Control: TCP of Fast DDS passes on everything.
+TEST(TcpTransport, WithoutItEverythingIsPassedOn) {
+  Log log;
+  const LowerDescriptor lower{log};
+  EXPECT_THAT(passed_on(lower, lower), ElementsAre("opens 7410", "true gap", "harm", "true gap", "closes 7410"));
 }
 
 }  // namespace
