@@ -5,6 +5,8 @@
 #include <mutex>
 #include <utility>
 
+#include "transport/fast_dds/receiving_transport.hpp"
+
 namespace hybridtest::fast_dds {
 namespace {
 
@@ -28,10 +30,10 @@ struct PolledDescriptor final : rtps::ChainingTransportDescriptor {
   std::shared_ptr<RefusedPackets> refused;
 };
 
-class PolledTransport final : public rtps::ChainingTransport {
+class PolledTransport final : public ReceivingTransport {
  public:
   explicit PolledTransport(const PolledDescriptor& descriptor)
-      : ChainingTransport{descriptor}, descriptor_{descriptor}, filter_{descriptor.admission, descriptor.refused} {}
+      : ReceivingTransport{descriptor}, descriptor_{descriptor}, filter_{descriptor.admission, descriptor.refused} {}
 
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
@@ -63,12 +65,6 @@ class PolledTransport final : public rtps::ChainingTransport {
     return true;
   }
 
-  bool OpenOutputChannel(rtps::SendResourceList& resources, const Locator& locator) override {
-    return low_level_transport_->OpenOutputChannel(resources, locator);
-  }
-
-  void shutdown() override { low_level_transport_->shutdown(); }
-
  private:
   static Locator sender_locator() {
     Locator locator;
@@ -93,13 +89,6 @@ class PolledTransport final : public rtps::ChainingTransport {
     const std::lock_guard lock{discovery_mutex_};
     if (!filter_.admits_discovery({bytes, count}, std::chrono::steady_clock::now())) return;
     receiver->OnDataReceived(bytes, count, local, from);
-  }
-
-  /// Never called: senders are those of UDP.
-  bool send(eprosima::fastrtps::rtps::SenderResource*, const eprosima::fastrtps::rtps::octet*, std::uint32_t,
-            eprosima::fastrtps::rtps::LocatorsIterator*, eprosima::fastrtps::rtps::LocatorsIterator*,
-            const std::chrono::steady_clock::time_point&) override {
-    return false;
   }
 
   PolledDescriptor descriptor_;

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "transport/fast_dds/receiving_transport.hpp"
+
 namespace hybridtest::fast_dds {
 namespace {
 
@@ -72,9 +74,9 @@ class Gate final : public rtps::TransportReceiverInterface {
   std::uint64_t messages_ = 0;
 };
 
-class TcpTransport final : public rtps::ChainingTransport {
+class TcpTransport final : public ReceivingTransport {
  public:
-  explicit TcpTransport(const TcpDescriptor& descriptor) : ChainingTransport{descriptor}, descriptor_{descriptor} {}
+  explicit TcpTransport(const TcpDescriptor& descriptor) : ReceivingTransport{descriptor}, descriptor_{descriptor} {}
   TcpTransport(const TcpTransport&) = delete;
   TcpTransport& operator=(const TcpTransport&) = delete;
 
@@ -120,10 +122,8 @@ class TcpTransport final : public rtps::ChainingTransport {
   }
 
   bool OpenOutputChannel(rtps::SendResourceList& resources, const Locator& locator) override {
-    return !is_own(locator) && low_level_transport_->OpenOutputChannel(resources, locator);
+    return !is_own(locator) && ReceivingTransport::OpenOutputChannel(resources, locator);
   }
-
-  void shutdown() override { low_level_transport_->shutdown(); }
 
  private:
   /// Under the address that others use, or under another one of this host.
@@ -134,14 +134,9 @@ class TcpTransport final : public rtps::ChainingTransport {
     return IpLocator::compareAddress(locator, *descriptor_.own) || low_level_transport_->is_local_locator(locator);
   }
 
-  /// Never called: receivers and senders are those of the lower transport.
+  /// Never called: the lower transport has the gates as its receivers.
   void receive(rtps::TransportReceiverInterface*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
                const Locator&) override {}
-  bool send(eprosima::fastrtps::rtps::SenderResource*, const eprosima::fastrtps::rtps::octet*, std::uint32_t,
-            eprosima::fastrtps::rtps::LocatorsIterator*, eprosima::fastrtps::rtps::LocatorsIterator*,
-            const std::chrono::steady_clock::time_point&) override {
-    return false;
-  }
 
   TcpDescriptor descriptor_;
   std::map<std::uint16_t, std::unique_ptr<Gate>> gates_;  // by logical port

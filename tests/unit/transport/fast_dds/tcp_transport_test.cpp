@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/support/rtps_packets.hpp"
+#include "transport/fast_dds/receiving_transport.hpp"
 
 namespace hybridtest::fast_dds {
 namespace {
@@ -71,9 +72,10 @@ struct LowerDescriptor final : rtps::ChainingTransportDescriptor {
   mutable rtps::TransportReceiverInterface* receiver = nullptr;
 };
 
-class LowerTransport final : public rtps::ChainingTransport {
+class LowerTransport final : public ReceivingTransport {
  public:
-  explicit LowerTransport(const LowerDescriptor& descriptor) : ChainingTransport{descriptor}, descriptor_{descriptor} {}
+  explicit LowerTransport(const LowerDescriptor& descriptor)
+      : ReceivingTransport{descriptor}, descriptor_{descriptor} {}
 
   rtps::TransportDescriptorInterface* get_configuration() override { return nullptr; }
   bool init(const eprosima::fastrtps::rtps::PropertyPolicy*) override {
@@ -97,16 +99,10 @@ class LowerTransport final : public rtps::ChainingTransport {
   bool is_local_locator(const Locator& locator) const override {
     return IpLocator::toIPv4string(locator) == "127.0.0.1";
   }
-  void shutdown() override {}
 
  private:
   void receive(rtps::TransportReceiverInterface*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
                const Locator&) override {}
-  bool send(eprosima::fastrtps::rtps::SenderResource*, const eprosima::fastrtps::rtps::octet*, std::uint32_t,
-            eprosima::fastrtps::rtps::LocatorsIterator*, eprosima::fastrtps::rtps::LocatorsIterator*,
-            const std::chrono::steady_clock::time_point&) override {
-    return false;
-  }
   const LowerDescriptor& descriptor_;
 };
 
