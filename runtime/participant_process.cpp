@@ -529,6 +529,9 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
       fast_dds::require_own_credentials(*credentials, scenario.name, effective.id);
     }
     fast_dds::require_usable(effective.network);
+    if (const std::string text = fast_dds::unfiltered_text(effective.network); !text.empty()) {
+      std::fprintf(stderr, "%s: %s\n", effective.id.c_str(), text.c_str());
+    }
     if (effective.run_directory.empty()) effective.run_directory = default_run_directory(scenario.name);
     if (effective.resumes) {
       require_resumable(effective.run_directory, scenario);

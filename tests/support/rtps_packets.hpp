@@ -1,5 +1,10 @@
 #pragma once
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +28,20 @@ inline std::vector<std::uint8_t> gap_up_to(std::uint64_t end) {
   append(end);
   packet.insert(packet.end(), 4, 0);  // no bits
   return packet;
+}
+
+/// As one datagram to a UDP port of this host.
+/// @return whether the operating system took it.
+inline bool send_to(std::uint16_t port, const std::vector<std::uint8_t>& packet) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(port);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const ssize_t sent =
+      ::sendto(socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  ::close(socket);
+  return sent == static_cast<ssize_t>(packet.size());
 }
 
 }  // namespace hybridtest

@@ -115,4 +115,8 @@ struct FastDdsSettings {
 ///         credentials that cannot be used.
 void require_usable(const FastDdsSettings& settings);
 
+/// One line for the user on what does not pass the packet filter with these settings; empty where all of it does.
+/// @throws ConfigError as require_usable().
+[[nodiscard]] std::string unfiltered_text(const FastDdsSettings& settings);
+
 }  // namespace hybridtest::fast_dds

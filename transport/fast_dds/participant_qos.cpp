@@ -4,16 +4,20 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/config_error.hpp"
 #include "core/input_file.hpp"
 #include "transport/fast_dds/addresses.hpp"
 #include "transport/fast_dds/dds_version.hpp"
+#include "transport/fast_dds/filtered_transport.hpp"
 #include "transport/fast_dds/polled_transport.hpp"
 #include "transport/fast_dds/security_qos.hpp"
 #include "transport/fast_dds/tcp_qos.hpp"
+#include "transport/fast_dds/tcp_transport.hpp"
 #include "transport/fast_dds/topics.hpp"
 
 namespace hybridtest::fast_dds {
@@ -51,9 +55,9 @@ bool has_room_for_shared_memory() {
   return !error && space.available >= kRoom;
 }
 
-Admission admission_of(const FastDdsSettings& settings) {
+Admission admission_of(const FastDdsSettings& settings, bool has_discovery_server) {
   if (!settings.credentials) return Admission::plain;
-  return settings.discovery_server ? Admission::secured_by_server : Admission::secured;
+  return has_discovery_server ? Admission::secured_by_server : Admission::secured;
 }
 
 void add_transports(const FastDdsSettings& settings, const std::shared_ptr<PolledSocket>& socket,
@@ -70,7 +74,8 @@ void add_transports(const FastDdsSettings& settings, const std::shared_ptr<Polle
   qos.transport().use_builtin_transports = false;
   if (socket) {
     qos.transport().user_transports.push_back(
-        polled_transport(udp, socket, settings.domain, settings.loopback_only, admission_of(settings), refused));
+        polled_transport(udp, socket, settings.domain, settings.loopback_only,
+                         admission_of(settings, settings.discovery_server.has_value()), refused));
   } else {
     qos.transport().user_transports.push_back(udp);
   }
@@ -119,7 +124,46 @@ dds::DomainParticipantQos profile_qos(const std::filesystem::path& file) {
   return qos;
 }
 
+/// The transports that Fast DDS makes when a profile leaves them to it.
+void spell_out_builtin_transports(dds::DomainParticipantQos& qos) {
+  auto& transports = qos.transport();
+  if (!std::exchange(transports.use_builtin_transports, false)) return;
+  const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = transports.send_socket_buffer_size;
+  udp->receiveBufferSize = transports.listen_socket_buffer_size;
+  auto& all = transports.user_transports;
+  all.insert(all.begin(), udp);
+  if (has_room_for_shared_memory()) {
+    all.insert(all.begin() + 1, std::make_shared<rtps::SharedMemTransportDescriptor>());
+  }
+}
+
+bool is_shared_memory(const std::shared_ptr<rtps::TransportDescriptorInterface>& transport) {
+  return std::dynamic_pointer_cast<rtps::SharedMemTransportDescriptor>(transport) != nullptr;
+}
+
+/// Puts the packet filter before the transports of a profile, but for shared memory: Fast DDS looks for it among them.
+void add_filter(const FastDdsSettings& settings, const std::shared_ptr<RefusedPackets>& refused,
+                dds::DomainParticipantQos& qos) {
+  const bool has_server = qos.wire_protocol().builtin.discovery_config.discoveryProtocol != DiscoveryProtocol::SIMPLE;
+  const Admission admission = admission_of(settings, has_server);
+  for (auto& transport : qos.transport().user_transports) {
+    if (is_shared_memory(transport)) continue;
+    const bool is_tcp = std::dynamic_pointer_cast<rtps::TCPTransportDescriptor>(transport) != nullptr;
+    transport = is_tcp ? tcp_transport(transport, std::nullopt, admission, refused)
+                       : filtered_transport(transport, admission, refused);
+  }
+}
+
 }  // namespace
+
+std::string unfiltered_text(const FastDdsSettings& settings) {
+  const dds::DomainParticipantQos qos = participant_qos(settings);
+  if (std::ranges::none_of(qos.transport().user_transports, is_shared_memory)) return {};
+  return (settings.profile_file ? settings.profile_file->string() + ": " : std::string{}) +
+         "what other processes of this host send through shared memory does not pass the packet filter "
+         "(docs/security.md)";
+}
 
 void require_usable(const FastDdsSettings& settings) { static_cast<void>(participant_qos(settings)); }
 
@@ -129,6 +173,8 @@ dds::DomainParticipantQos participant_qos(const FastDdsSettings& settings, const
   dds::DomainParticipantQos qos;
   if (settings.profile_file) {
     qos = profile_qos(*settings.profile_file);
+    spell_out_builtin_transports(qos);
+    add_filter(settings, refused, qos);
   } else if (settings.tcp) {
     add_tcp(settings, refused, qos);
   } else {

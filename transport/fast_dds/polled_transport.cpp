@@ -1,10 +1,9 @@
 #include "transport/fast_dds/polled_transport.hpp"
 
-#include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <utility>
 
+#include "transport/fast_dds/filtered_transport.hpp"
 #include "transport/fast_dds/receiving_transport.hpp"
 
 namespace hybridtest::fast_dds {
@@ -14,7 +13,7 @@ struct PolledDescriptor final : rtps::ChainingTransportDescriptor {
   PolledDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> its_socket,
                    std::uint32_t its_domain, bool is_loopback_only, Admission its_admission,
                    std::shared_ptr<RefusedPackets> its_refused)
-      : ChainingTransportDescriptor{std::move(udp)},
+      : ChainingTransportDescriptor{filtered_transport(std::move(udp), its_admission, its_refused)},
         socket{std::move(its_socket)},
         domain{its_domain},
         loopback_only{is_loopback_only},
@@ -44,7 +43,7 @@ class PolledTransport final : public ReceivingTransport {
 
   bool OpenInputChannel(const Locator& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t bytes_max) override {
-    if (!is_for_messages(locator)) return ChainingTransport::OpenInputChannel(locator, receiver, bytes_max);
+    if (!is_for_messages(locator)) return low_level_transport_->OpenInputChannel(locator, receiver, bytes_max);
     const auto pass_on = [this, receiver, locator, from = sender_locator()](const std::uint8_t* bytes,
                                                                             std::uint32_t count, std::uint32_t address,
                                                                             std::uint16_t port) mutable {
@@ -81,19 +80,12 @@ class PolledTransport final : public ReceivingTransport {
     return port >= first && (port - first) % ports.participantIDGain == 0;
   }
 
-  /// Packets of discovery, which arrive by multicast and unicast in a thread each. Fast DDS 2.9 takes in two
-  /// announcements of one participant at the same time, and one thread then reads the addresses that the other has
-  /// deleted (its pull request 4268).
-  void receive(rtps::TransportReceiverInterface* receiver, const eprosima::fastrtps::rtps::octet* bytes,
-               std::uint32_t count, const Locator& local, const Locator& from) override {
-    const std::lock_guard lock{discovery_mutex_};
-    if (!filter_.admits_discovery({bytes, count}, std::chrono::steady_clock::now())) return;
-    receiver->OnDataReceived(bytes, count, local, from);
-  }
+  /// Never called: the lower transport has the receivers of discovery.
+  void receive(rtps::TransportReceiverInterface*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
+               const Locator&) override {}
 
   PolledDescriptor descriptor_;
-  PacketFilter filter_;
-  std::mutex discovery_mutex_;  // held while a packet of discovery is looked at and taken in
+  PacketFilter filter_;  // of messages
 };
 
 rtps::TransportInterface* PolledDescriptor::create_transport() const { return new PolledTransport{*this}; }

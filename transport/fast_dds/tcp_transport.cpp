@@ -85,7 +85,7 @@ class TcpTransport final : public ReceivingTransport {
       // A thread that has left its gate still has a few instructions to do inside the lower transport.
       gate->wait_for_quiet(descriptor_.quiet);
       Locator locator;
-      locator.kind = LOCATOR_KIND_TCPv4;
+      locator.kind = kind();
       IpLocator::setLogicalPort(locator, port);
       low_level_transport_->CloseInputChannel(locator);
     }
@@ -95,7 +95,8 @@ class TcpTransport final : public ReceivingTransport {
 
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
-  /// The lower one begins with its first port. It does not use the properties.
+  /// The lower one begins with its first port, or with the first connection where there is none. It does not use the
+  /// properties.
   bool init(const eprosima::fastrtps::rtps::PropertyPolicy*) override { return true; }
 
   bool IsInputChannelOpen(const Locator& locator) const override {
@@ -110,8 +111,7 @@ class TcpTransport final : public ReceivingTransport {
     auto gate = std::make_unique<Gate>(receiver, descriptor_.admission, descriptor_.refused);
     if (!low_level_transport_->OpenInputChannel(locator, gate.get(), bytes_max)) return false;
     gates_.emplace(port, std::move(gate));
-    if (!is_begun_) is_begun_ = low_level_transport_->init(nullptr);
-    return is_begun_;
+    return begin();
   }
 
   bool CloseInputChannel(const Locator& locator) override {
@@ -122,10 +122,15 @@ class TcpTransport final : public ReceivingTransport {
   }
 
   bool OpenOutputChannel(rtps::SendResourceList& resources, const Locator& locator) override {
-    return !is_own(locator) && ReceivingTransport::OpenOutputChannel(resources, locator);
+    return !is_own(locator) && begin() && ReceivingTransport::OpenOutputChannel(resources, locator);
   }
 
  private:
+  bool begin() {
+    if (!is_begun_) is_begun_ = low_level_transport_->init(nullptr);
+    return is_begun_;
+  }
+
   /// Under the address that others use, or under another one of this host.
   [[nodiscard]] bool is_own(const Locator& locator) const {
     if (!descriptor_.own || IpLocator::getPhysicalPort(locator) != IpLocator::getPhysicalPort(*descriptor_.own)) {

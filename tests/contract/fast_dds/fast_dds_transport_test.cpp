@@ -25,6 +25,7 @@
 #include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
+#include "tests/support/rtps_packets.hpp"
 #include "tests/support/started_program.hpp"
 #include "tests/unit/recording/temporary_directory.hpp"
 #include "transport/fast_dds/dds_version.hpp"
@@ -347,15 +348,27 @@ TEST_F(ProfileFile, RejectsInvalidFileAndMissingProfile) {
 }
 
 TEST_F(ProfileFile, ReplacesTransportsAndPeersButNotTheLease) {
-  const auto qos = fast_dds::participant_qos(settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
+  const fast_dds::FastDdsSettings settings = settings_with(R"(<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <participant profile_name="hybridtest">
     <rtps><participantID>17</participantID></rtps>
   </participant>
-</profiles>)"));
+</profiles>)");
+  const auto qos = fast_dds::participant_qos(settings);
   EXPECT_EQ(qos.wire_protocol().participant_id, 17);
-  EXPECT_TRUE(qos.transport().user_transports.empty());
   EXPECT_EQ(qos.wire_protocol().builtin.discovery_config.leaseDuration, fast_dds::to_dds(20 * kTestLease));
+
+  // Its transports, here those that Fast DDS has anyway, pass the packet filter.
+  const auto transport = fast_dds::make_fast_dds_transport(settings, unique_test_name());
+  constexpr std::uint16_t kOfParticipant = 2 * 17;
+  constexpr std::uint16_t kFirst = 7400 + 250 * kTestDomain;
+  for (const int offset : {10, 11}) {  // of discovery and of messages, RTPS 9.6.1.1
+    EXPECT_TRUE(send_to(static_cast<std::uint16_t>(kFirst + kOfParticipant + offset), gap_up_to(5)));
+    EXPECT_TRUE(
+        send_to(static_cast<std::uint16_t>(kFirst + kOfParticipant + offset), gap_up_to(std::uint64_t{1} << 60U)));
+  }
+  EXPECT_TRUE(wait_until([&] { return transport->counters().refused_harmful >= 2; }));
+  EXPECT_EQ(transport->counters().refused_harmful, 2U);
 }
 
 }  // namespace

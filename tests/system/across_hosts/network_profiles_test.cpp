@@ -74,6 +74,20 @@ TEST_F(NetworkProfilesLive, TlsOverTcpGivesTheBitsOfSimulate) {
   expect_bits_of_simulate(with_profile(tcp_profile("127.0.0.1", free_port()) + tls("certificates")));
 }
 
+/// A profile of Fast DDS itself, which leaves it the choice of transports: UDP and shared memory.
+TEST_F(NetworkProfilesLive, FastDdsProfileGivesTheBitsOfSimulate) {
+  Arguments arguments{"--profile", write("profile.xml", R"(<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="hybridtest"><rtps/></participant>
+</profiles>)")};
+  std::ranges::copy(network(), std::back_inserter(arguments));
+  expect_bits_of_simulate(arguments);
+  for (const char* output : {"coordinator.coordinator", "experimental_site.storey_1"}) {
+    EXPECT_THAT(text_of(directory() / (std::string{output} + ".err")), HasSubstr("does not pass the packet filter"))
+        << output;
+  }
+}
+
 TEST_F(NetworkProfilesLive, TlsKeepsOutACertificateOfAnotherAuthority) {
   if (!make_certificates("certificates", {"coordinator", "storey_1", "storey_2"})) GTEST_SKIP() << "no program openssl";
   ASSERT_TRUE(make_certificates("others", {"storey_1"}));

@@ -107,6 +107,48 @@ TEST(ParticipantQos, TlsAsksBothEndsForACertificate) {
   EXPECT_THAT(refusal_of(settings), HasSubstr("tls: the certificate of the authority cannot be read"));
 }
 
+/// Fast DDS keeps every profile that a process has read, so this file is the only one here with that name.
+TEST(ParticipantQos, TransportsOfAProfileGetThePacketFilter) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("profile_" + std::to_string(::getpid()) + ".xml");
+  std::ofstream{file} << R"(<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor><transport_id>udp</transport_id><type>UDPv4</type><TTL>3</TTL></transport_descriptor>
+    <transport_descriptor><transport_id>tcp</transport_id><type>TCPv4</type>
+      <listening_ports><port>5100</port></listening_ports></transport_descriptor>
+    <transport_descriptor><transport_id>memory</transport_id><type>SHM</type></transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="hybridtest"><rtps>
+    <userTransports><transport_id>udp</transport_id><transport_id>tcp</transport_id>
+      <transport_id>memory</transport_id></userTransports>
+    <useBuiltinTransports>false</useBuiltinTransports>
+  </rtps></participant>
+</profiles>)";
+  FastDdsSettings settings;
+  EXPECT_EQ(unfiltered_text(settings), "");
+  settings.profile_file = file;
+  const dds::DomainParticipantQos qos = participant_qos(settings);
+  const auto& transports = qos.transport().user_transports;
+  ASSERT_EQ(transports.size(), 3U);
+  const auto behind_filter = [&](std::size_t i) -> std::shared_ptr<rtps::TransportDescriptorInterface> {
+    const auto filter = std::dynamic_pointer_cast<rtps::ChainingTransportDescriptor>(transports[i]);
+    return filter == nullptr ? nullptr : filter->low_level_descriptor;
+  };
+  const auto udp = std::dynamic_pointer_cast<rtps::UDPv4TransportDescriptor>(behind_filter(0));
+  ASSERT_NE(udp, nullptr);
+  EXPECT_EQ(udp->TTL, 3);
+  const auto tcp = std::dynamic_pointer_cast<rtps::TCPv4TransportDescriptor>(behind_filter(1));
+  ASSERT_NE(tcp, nullptr);
+  EXPECT_THAT(tcp->listening_ports, ElementsAre(5100));
+  EXPECT_NE(std::dynamic_pointer_cast<rtps::SharedMemTransportDescriptor>(transports[2]), nullptr);
+  EXPECT_EQ(unfiltered_text(settings),
+            file.string() +
+                ": what other processes of this host send through shared memory does not pass the packet filter "
+                "(docs/security.md)");
+  std::filesystem::remove(file);
+}
+
 TEST(ParticipantQos, WrongAddressesAreToldInWords) {
   EXPECT_THAT(refusal_of(over_tcp({}, {})), HasSubstr("at least one participant listens"));
   EXPECT_THAT(refusal_of(over_tcp({}, {"192.0.2.1"})), HasSubstr("'192.0.2.1': TCP needs a port"));

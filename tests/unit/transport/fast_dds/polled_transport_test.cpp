@@ -1,10 +1,6 @@
 #include "transport/fast_dds/polled_transport.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +11,8 @@
 #include <optional>
 
 #include "core/time.hpp"
+#include "tests/support/rtps_packets.hpp"
+#include "tests/unit/transport/fast_dds/loopback_udp.hpp"
 
 namespace hybridtest::fast_dds {
 namespace {
@@ -54,36 +52,6 @@ class MeetingPoint final : public rtps::TransportReceiverInterface {
   int received_ = 0;
 };
 
-std::uint16_t free_port() {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof(address);
-  EXPECT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), size), 0);
-  EXPECT_EQ(::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  ::close(socket);
-  return ntohs(address.sin_port);
-}
-
-void send_to(std::uint16_t port) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(::sendto(socket, "RTPS", 4, 0, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 4);
-  ::close(socket);
-}
-
-Locator loopback_at(std::uint16_t port) {
-  Locator locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  IpLocator::setIPv4(locator, 127, 0, 0, 1);
-  IpLocator::setPhysicalPort(locator, port);
-  return locator;
-}
-
 /// Two ports of one participant, a packet at each, taken in by one receiver.
 std::optional<int> threads_at_once(const rtps::TransportDescriptorInterface& descriptor, Duration patience) {
   MeetingPoint receiver{patience};
@@ -93,17 +61,11 @@ std::optional<int> threads_at_once(const rtps::TransportDescriptorInterface& des
   for (const std::uint16_t port : ports) {
     EXPECT_TRUE(transport->OpenInputChannel(loopback_at(port), &receiver, 1500));
   }
-  for (const std::uint16_t port : ports) send_to(port);
+  for (const std::uint16_t port : ports) EXPECT_TRUE(send_to(port, {'R', 'T', 'P', 'S'}));
   const std::optional<int> most = receiver.most_at_once(2);
   for (const std::uint16_t port : ports) EXPECT_TRUE(transport->CloseInputChannel(loopback_at(port)));
   transport->shutdown();
   return most;
-}
-
-std::shared_ptr<rtps::UDPv4TransportDescriptor> loopback_udp() {
-  auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList.emplace_back("127.0.0.1");
-  return udp;
 }
 
 TEST(PolledTransport, TakesInOnePacketOfDiscoveryAtATime) {

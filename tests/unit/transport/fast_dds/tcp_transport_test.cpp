@@ -207,7 +207,7 @@ TEST(TcpTransport, NobodyConnectsToHimself) {
   EXPECT_FALSE(transport->OpenOutputChannel(resources, loopback)) << "the same host";
   EXPECT_TRUE(transport->OpenOutputChannel(resources, with_port(loopback, 5101)));
   EXPECT_TRUE(transport->OpenOutputChannel(resources, with_port(at(kLogicalPort, 2), 5100)));
-  EXPECT_THAT(log.entries(), ElementsAre("connects to 127.0.0.1:5101", "connects to 192.0.2.2:5100"));
+  EXPECT_THAT(log.entries(), ElementsAre("begins", "connects to 127.0.0.1:5101", "connects to 192.0.2.2:5100"));
 }
 
 /// Which of three gaps are passed on: a true one, one that no test has, and another true one.
