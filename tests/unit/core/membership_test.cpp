@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/ring_port.hpp"
+#include "tests/support/successor.hpp"
 
 namespace hybridtest {
 namespace {
@@ -113,8 +114,6 @@ TEST_F(MembershipTest, DetectsLossOfCoordinator) {
 /// A participant that waits for a resumed coordinator for ten seconds; it runs, and its coordinator is lost at 3 s.
 class WaitingMembershipTest : public MembershipTest {
  protected:
-  static constexpr Incarnation kSuccessor = 78;
-
   Request ask_at(Duration since_start) {
     static_cast<void>(presence_.advance(Instant{since_start}));
     return patient_.next_request(Instant{since_start});
@@ -125,18 +124,6 @@ class WaitingMembershipTest : public MembershipTest {
     EXPECT_EQ(ask_at(seconds{1}), Request::none);
     presence_.set_state(LifecycleState::running);
     EXPECT_EQ(ask_at(seconds{3}), Request::pause);
-  }
-  void announce_successor(Incarnation succeeds, ScenarioDigest digest = {}) {
-    TestAnnouncement announcement;
-    announcement.coordinator = kSuccessor;
-    announcement.succeeds = succeeds;
-    announcement.scenario_digest = digest;
-    announcements_.send(announcement);
-    ParticipantStatus status;
-    status.id = "coordinator";
-    status.role = Role::coordinator;
-    status.incarnation = kSuccessor;
-    statuses_.send(status);
   }
 
   Membership patient_{presence_, MembershipPorts{announcements_, control_, seconds{30}, seconds{10}}};
@@ -159,7 +146,7 @@ TEST_F(WaitingMembershipTest, EndsTheTestWhenNobodyComesInTime) {
 
 TEST_F(WaitingMembershipTest, AcceptsASuccessorOfTheSameTest) {
   lose_coordinator();
-  announce_successor(kCoordinator);
+  announce_successor(announcements_, statuses_, kCoordinator);
   EXPECT_EQ(ask_at(seconds{5}), Request::none);
   EXPECT_EQ(presence_.state(), LifecycleState::armed);
   EXPECT_EQ(patient_.coordinator(), kSuccessor);
@@ -173,9 +160,9 @@ TEST_F(WaitingMembershipTest, AcceptsASuccessorOfTheSameTest) {
 
 TEST_F(WaitingMembershipTest, IgnoresSuccessorsOfOtherTests) {
   lose_coordinator();
-  announce_successor(kCoordinator + 5);
-  announce_successor(kCoordinator, {1, 2, 3});
-  announce_successor(0);
+  announce_successor(announcements_, statuses_, kCoordinator + 5);
+  announce_successor(announcements_, statuses_, kCoordinator, {1, 2, 3});
+  announce_successor(announcements_, statuses_, 0);
   EXPECT_EQ(ask_at(seconds{5}), Request::none);
   EXPECT_EQ(presence_.state(), LifecycleState::waiting);
   EXPECT_EQ(patient_.coordinator(), kCoordinator);
@@ -186,7 +173,7 @@ TEST_F(WaitingMembershipTest, SuccessorWaitsUntilTheLossIsKnown) {
   coordinator_is(LifecycleState::running);
   static_cast<void>(ask_at(seconds{1}));
   presence_.set_state(LifecycleState::running);
-  announce_successor(kCoordinator);
+  announce_successor(announcements_, statuses_, kCoordinator);
   EXPECT_EQ(ask_at(seconds{2}), Request::none);
   EXPECT_EQ(presence_.state(), LifecycleState::running);
   EXPECT_EQ(patient_.coordinator(), kCoordinator);
@@ -217,7 +204,7 @@ TEST_F(WaitingMembershipTest, StopsForTheOperatorWhileItWaits) {
 }
 
 TEST_F(WaitingMembershipTest, NewcomerCannotJoinAResumedTest) {
-  announce_successor(kCoordinator);
+  announce_successor(announcements_, statuses_, kCoordinator);
   EXPECT_EQ(ask_at(seconds{1}), Request::stop);
   EXPECT_EQ(presence_.state(), LifecycleState::refused);
   EXPECT_EQ(last_event(), EventCode::resume_refused);
@@ -225,7 +212,7 @@ TEST_F(WaitingMembershipTest, NewcomerCannotJoinAResumedTest) {
 
 TEST_F(WaitingMembershipTest, RestoredOneJoinsAResumedTestAlone) {
   Membership restored{presence_, MembershipPorts{announcements_, control_, seconds{30}, seconds{10}, true}};
-  announce_successor(kCoordinator);
+  announce_successor(announcements_, statuses_, kCoordinator);
   static_cast<void>(presence_.advance(Instant{seconds{1}}));
   EXPECT_EQ(restored.next_request(Instant{seconds{1}}), Request::none);
   EXPECT_EQ(presence_.state(), LifecycleState::ready);

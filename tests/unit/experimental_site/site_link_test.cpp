@@ -4,6 +4,7 @@
 
 #include "core/ring_port.hpp"
 #include "tests/support/kept_rows.hpp"
+#include "tests/support/successor.hpp"
 
 namespace hybridtest {
 namespace {
@@ -432,8 +433,6 @@ TEST_F(SiteLinkTest, SendsChangedStateInSameRun) {
 /// A link that waits for a resumed coordinator; its own is lost after the steps 0 to `last`, which is not measured yet.
 class ResumedLinkTest : public SiteLinkTest {
  protected:
-  static constexpr Incarnation kSuccessor = 78;
-
   Instant run(Duration passed = {}) {
     now_ += passed;
     return patient_.advance(now_);
@@ -460,15 +459,7 @@ class ResumedLinkTest : public SiteLinkTest {
     ASSERT_EQ(presence_.state(), LifecycleState::waiting);
   }
   void be_succeeded() {
-    TestAnnouncement announcement;
-    announcement.coordinator = kSuccessor;
-    announcement.succeeds = kCoordinator;
-    announcements_.send(announcement);
-    ParticipantStatus status;
-    status.id = "coordinator";
-    status.role = Role::coordinator;
-    status.incarnation = kSuccessor;
-    statuses_.send(status);
+    announce_successor(announcements_, statuses_, kCoordinator);
     run();
     take_requests();
     ASSERT_EQ(presence_.state(), LifecycleState::armed);

@@ -6,6 +6,7 @@
 #include "core/ring_port.hpp"
 #include "tests/support/kept_rows.hpp"
 #include "tests/support/scripted_substructure.hpp"
+#include "tests/support/successor.hpp"
 
 namespace hybridtest {
 namespace {
@@ -324,15 +325,10 @@ TEST_F(NumericalNodeTest, LeavesOnRequestWithReason) {
 /// A node of its own state, whose model of 100 N/m counts its calls.
 class RestoredNodeTest : public NumericalNodeTest {
  protected:
-  static constexpr Incarnation kSuccessor = 78;
-
   static CommandPoint point(Step step) { return command(step).points[0]; }
   static InterfaceVector force(Step step) { return InterfaceVector::Constant(1, 100.0 * static_cast<double>(step)); }
   void join_resumed() {
-    TestAnnouncement announcement;
-    announcement.coordinator = kSuccessor;
-    announcement.succeeds = kCoordinator;
-    announcements_.send(announcement);
+    announce_successor(announcements_, statuses_, kCoordinator);
     run();
     for (const ControlVerb verb : {ControlVerb::arm, ControlVerb::start}) {
       TestControl message;
