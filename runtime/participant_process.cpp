@@ -139,9 +139,14 @@ class ProcessSurroundings {
   void show_progress(const Presence& presence, Instant now) {
     if (progress_) progress_->show(presence, now);
   }
-  /// Nothing where there were none.
+  /// At the end, before the recording is closed.
+  void record_refused_packets() {
+    counters_at_end_ = transport().counters();
+    hybridtest::record_refused_packets(counters_at_end_, recorder_.sink(kRefusedPacketsTable));
+  }
+  /// Those that were recorded; nothing where there were none.
   void tell_refused_packets() {
-    if (const std::string text = refused_packets_text(transport().counters()); !text.empty()) print(text);
+    if (const std::string text = refused_packets_text(counters_at_end_); !text.empty()) print(text);
   }
   /// A line of this process alone on standard error.
   void print(const std::string& text) {
@@ -195,6 +200,7 @@ class ProcessSurroundings {
   static std::vector<RecordedTable> recorded(const std::vector<TableLayout>& tables) {
     std::vector<RecordedTable> result;
     for (const TableLayout& table : tables) result.push_back({table, kRingRows});
+    result.push_back({refused_packets_table(), 1});
     return result;
   }
 
@@ -207,6 +213,7 @@ class ProcessSurroundings {
   LiveSignals live_;  // used by the recorder until it is closed
   Recorder recorder_;
   EventLog event_log_;
+  TransportCounters counters_at_end_;
   std::optional<ParticipantProgress> progress_;  // none is shown for a child of `hybridtest run`
 };
 
@@ -299,6 +306,7 @@ void run_to_the_end(
   process.write_events();
   stay_to_be_heard(participant.stop_reason(), clock);
   at_the_end();
+  process.record_refused_packets();
 }
 
 void report_grant(Presence& presence, Instant now, const RealTimeRequest& request, const RealTimeGrant& grant) {
@@ -356,6 +364,7 @@ void run_in_real_time(
   process.write_events();
   stay_to_be_heard(participant.stop_reason(), clock);
   at_the_end();
+  process.record_refused_packets();
 }
 
 /// The recording of the process whose place this one takes; nothing in a new test.

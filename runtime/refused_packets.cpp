@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -18,6 +19,17 @@ std::string refused_packets_text(const TransportCounters& counters) {
   add(counters.refused_departures, "that say that a participant has left (each sends some when it leaves)");
   if (kinds.empty()) return {};
   return "packets refused by the packet filter: " + kinds + " (docs/security.md)";
+}
+
+TableLayout refused_packets_table() {
+  return {std::string{kRefusedPacketsTable},
+          {{"harmful", ""}, {"in_plain_text", ""}, {"announcements", ""}, {"departures", ""}}};
+}
+
+void record_refused_packets(const TransportCounters& counters, RowSink& sink) {
+  sink.append(std::array{
+      static_cast<double>(counters.refused_harmful), static_cast<double>(counters.refused_in_plain_text),
+      static_cast<double>(counters.refused_announcements), static_cast<double>(counters.refused_departures)});
 }
 
 }  // namespace hybridtest

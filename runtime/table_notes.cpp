@@ -10,6 +10,14 @@ TableNote untimed(std::string table, std::string description) {
   return {std::move(table), std::move(description), "", 0.0};
 }
 
+TableNote of_refused_packets() {
+  return untimed(
+      "refused_packets",
+      "One row at the end: how many packets the packet filter kept from Fast DDS, by kind: such as would hang "
+      "or end the process; with credentials those in plain text, false announcements, and notices that a "
+      "participant has left, which genuine ones send, too.");
+}
+
 std::vector<TableNote> of_coordinator(const Scenario& scenario) {
   // Where OpenSees leads, its analysis chooses the steps.
   const bool is_regular = !scenario.opensees;
@@ -39,7 +47,8 @@ std::vector<TableNote> of_coordinator(const Scenario& scenario) {
       untimed(
           "response_spectra",
           "Response of an oscillator with 5 % damping to what was applied. mode 0: a period of the grid; otherwise the "
-          "number of the structure's mode.")};
+          "number of the structure's mode."),
+      of_refused_packets()};
 }
 
 std::vector<TableNote> of_site(const Scenario& scenario, const SubstructureScenario& substructure) {
@@ -56,7 +65,8 @@ std::vector<TableNote> of_site(const Scenario& scenario, const SubstructureScena
       untimed("rig_actuators", "One row per control period: stroke and force of each actuator."),
       untimed("loop_timing",
               "One row: lateness and duration of the control periods, and what the operating system granted."),
-      untimed("loop_start_lateness", "Histogram of the time by which control periods started late; one row per bin.")};
+      untimed("loop_start_lateness", "Histogram of the time by which control periods started late; one row per bin."),
+      of_refused_packets()};
 }
 
 }  // namespace
@@ -66,7 +76,8 @@ std::vector<TableNote> table_notes(const Scenario& scenario, std::string_view pa
   if (substructure == nullptr) return of_coordinator(scenario);
   if (substructure->role == Role::experimental_site) return of_site(scenario, *substructure);
   return {{"steps", "One row per step: displacement of each interface degree of freedom and the restoring force.",
-           "model_time_s", scenario.time.step_s}};
+           "model_time_s", scenario.time.step_s},
+          of_refused_packets()};
 }
 
 }  // namespace hybridtest

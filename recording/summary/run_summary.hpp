@@ -83,6 +83,16 @@ struct InterlockSummary {
   std::string cause;  // interlock_cause()
 };
 
+/// What the packet filter of a participant kept from the network layer, by kind; see docs/security.md.
+struct RefusedPacketsSummary {
+  std::uint64_t harmful = 0;        // would hang or end the process
+  std::uint64_t in_plain_text = 0;  // with credentials: neither encrypted nor needed to find each other
+  std::uint64_t announcements = 0;  // with credentials: false, or in the name of another participant
+  std::uint64_t departures = 0;     // with credentials: that a participant has left; genuine ones, too
+
+  [[nodiscard]] std::uint64_t total() const noexcept { return harmful + in_plain_text + announcements + departures; }
+};
+
 /// The state of one participant's file.
 struct ParticipantFileSummary {
   std::string participant;
@@ -92,6 +102,8 @@ struct ParticipantFileSummary {
   bool write_failed = false;        // disk full
   std::uint64_t dropped_rows = 0;   // counted by the recorder
   std::uint64_t missing_steps = 0;  // gaps in the column `step` of its table `steps`
+  // None where it did not come to its end, and in the files of older versions.
+  std::optional<RefusedPacketsSummary> refused_packets{};
 };
 
 /// How the test ended, beside its stop reason.

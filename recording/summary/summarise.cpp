@@ -25,6 +25,7 @@ namespace {
 constexpr std::string_view kSteps = "steps";
 constexpr std::string_view kTest = "test";
 constexpr std::string_view kLoopTiming = "loop_timing";
+constexpr std::string_view kRefusedPackets = "refused_packets";
 
 std::string count_of(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -104,6 +105,17 @@ std::optional<LoopTimingSummary> loop_timing_of(const RunFileReader& file) {
   timing.fifo_priority = static_cast<int>(value("fifo_priority"));
   if (const double cpu = value("cpu"); cpu >= 0.0) timing.cpu = static_cast<int>(cpu);
   return timing;
+}
+
+std::optional<RefusedPacketsSummary> refused_packets_of(const RunFileReader& file) {
+  if (file.row_count(kRefusedPackets) == 0) return {};
+  const auto count = [&](std::string_view column) {
+    return static_cast<std::uint64_t>(last_of(file, kRefusedPackets, column).value_or(0.0));
+  };
+  return RefusedPacketsSummary{.harmful = count("harmful"),
+                               .in_plain_text = count("in_plain_text"),
+                               .announcements = count("announcements"),
+                               .departures = count("departures")};
 }
 
 /// A response with such a tracking error is one of other displacements than the recorded ones.
@@ -230,9 +242,10 @@ void Summariser::summarise_files() {
   for (const RunFileReader& file : files_) {
     const RunFileHeader& header = file.header();
     const RunFileCounters& counters = file.counters();
-    const ParticipantFileSummary state{header.participant,      header.role,           file.path().filename(),
-                                       counters.closed_cleanly, counters.write_failed, counters.dropped_rows(),
-                                       missing_steps(file)};
+    const ParticipantFileSummary state{header.participant,     header.role,
+                                       file.path().filename(), counters.closed_cleanly,
+                                       counters.write_failed,  counters.dropped_rows(),
+                                       missing_steps(file),    refused_packets_of(file)};
     if (header.test_name != first.test_name || header.scenario_digest != first.scenario_digest) {
       add_data_fault(state.file + " belongs to another test or scenario");
     }

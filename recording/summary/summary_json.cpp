@@ -141,6 +141,13 @@ Json json(const InterlockSummary& interlock) {
           {"model_time_s", number(interlock.model_time_s)}};
 }
 
+Json json(const RefusedPacketsSummary& refused) {
+  return {{"harmful", refused.harmful},
+          {"in_plain_text", refused.in_plain_text},
+          {"announcements", refused.announcements},
+          {"departures", refused.departures}};
+}
+
 Json json(const ParticipantFileSummary& file) {
   return {{"participant", file.participant},
           {"role", std::string{name(file.role)}},
@@ -148,7 +155,8 @@ Json json(const ParticipantFileSummary& file) {
           {"closed_cleanly", file.closed_cleanly},
           {"write_failed", file.write_failed},
           {"dropped_rows", file.dropped_rows},
-          {"missing_steps", file.missing_steps}};
+          {"missing_steps", file.missing_steps},
+          {"refused_packets", file.refused_packets ? json(*file.refused_packets) : Json(nullptr)}};
 }
 
 template <class Value>

@@ -202,6 +202,21 @@ void print_sites(const RunSummary& summary, std::ostream& stream) {
   timing.print(stream);
 }
 
+/// Of those that refused any.
+void print_refused_packets(const RunSummary& summary, std::ostream& stream) {
+  TextTable refused{{"packets refused", "harmful", "plain text", "false", "departures"}};
+  for (const ParticipantFileSummary& file : summary.participants) {
+    if (!file.refused_packets || file.refused_packets->total() == 0) continue;
+    std::vector<std::string> row{file.participant};
+    for (const auto kind : {&RefusedPacketsSummary::harmful, &RefusedPacketsSummary::in_plain_text,
+                            &RefusedPacketsSummary::announcements, &RefusedPacketsSummary::departures}) {
+      row.push_back(std::to_string((*file.refused_packets).*kind));
+    }
+    refused.add(std::move(row));
+  }
+  refused.print(stream);
+}
+
 }  // namespace
 
 std::string verdict(const RunSummary& summary) {
@@ -243,6 +258,7 @@ void print_summary(const RunSummary& summary, std::ostream& stream) {
   print_exchanges(summary, stream);
   print_clocks(summary, stream);
   print_sites(summary, stream);
+  print_refused_packets(summary, stream);
   print_list("remarks", summary.remarks, stream);
 }
 

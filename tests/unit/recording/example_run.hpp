@@ -24,6 +24,7 @@ struct ExampleRun {
   std::uint64_t site_dropped = 0;
   bool site_at_rest = false;
   bool site_skips_steps_100_to_102 = false;
+  std::vector<double> site_refused_packets;  // a row of its table; empty: a file without the table
   bool site_has_loop_thread = false;
   int site_waits = 0;       // control samples before the test, the sensors off by 3 mm and 90 kN
   int site_returns = 0;     // control samples after it, with an error of 5 mm and a force of 80 kN
@@ -148,11 +149,16 @@ struct ExampleRun {
                          {"fifo_priority", "-"},
                          {"cpu", "-"}}});
     }
+    if (!site_refused_packets.empty()) {
+      tables.push_back(
+          {"refused_packets", {{"harmful", "-"}, {"in_plain_text", "-"}, {"announcements", "-"}, {"departures", "-"}}});
+    }
     RunFileWriter writer{path, header("storey_1", Role::experimental_site), tables};
     append_site(writer);
     if (site_has_loop_thread) {
       writer.append(2, std::vector{61440.0, 8.0, 21.0, 345.0, 5.0, 12.0, 99.0, 3.0, 1.0, 80.0, 1.0});
     }
+    if (!site_refused_packets.empty()) writer.append(tables.size() - 1, site_refused_packets);
     writer.close();
   }
 

@@ -19,6 +19,7 @@
 namespace hybridtest {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -333,6 +334,27 @@ TEST(RunSummary, JsonIsInSiUnitsWithNullForUnknown) {
   EXPECT_TRUE(json.at("substructures").at(1).at("energy_error").is_null());
   EXPECT_EQ(json.at("interlocks").at(0).at("limit"), 0.12);
   EXPECT_EQ(json.at("participants").at(1).at("role"), "experimental_site");
+}
+
+TEST(RunSummary, TellsWhoRefusedPackets) {
+  const auto json_of = [](const RunSummary& summary) {
+    std::ostringstream stream;
+    write_summary_json(summary, stream);
+    return nlohmann::json::parse(stream.str()).at("participants").at(1).at("refused_packets");
+  };
+  ExampleRun run;
+  EXPECT_TRUE(json_of(summary_of(run)).is_null()) << "a file without the table";
+  run.site_refused_packets = {0.0, 0.0, 0.0, 0.0};
+  const RunSummary without = summary_of(run);
+  EXPECT_EQ(json_of(without).at("harmful"), 0);
+  EXPECT_THAT(printed(without), Not(HasSubstr("packets refused")));
+  run.site_refused_packets = {3.0, 120.0, 1.0, 2.0};
+  const RunSummary with = summary_of(run);
+  EXPECT_EQ(json_of(with),
+            (nlohmann::json{{"harmful", 3}, {"in_plain_text", 120}, {"announcements", 1}, {"departures", 2}}));
+  EXPECT_THAT(printed(with), ContainsRegex("packets refused +harmful +plain text +false +departures\n"
+                                           " +storey_1 +3 +120 +1 +2\n"));
+  EXPECT_TRUE(with.data_valid);
 }
 
 TEST(RunSummary, ReportsControlLoopTiming) {

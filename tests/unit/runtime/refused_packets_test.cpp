@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "tests/support/kept_rows.hpp"
+
 namespace hybridtest {
 namespace {
 
@@ -26,6 +30,20 @@ TEST(RefusedPackets, NoticesOfLeavingAreToldAsUsual) {
   EXPECT_EQ(refused_packets_text({.refused_departures = 2}),
             "packets refused by the packet filter: 2 that say that a participant has left (each sends some when it "
             "leaves) (docs/security.md)");
+}
+
+TEST(RefusedPackets, RowHasEachKindInItsColumn) {
+  TransportCounters counters;
+  counters.refused_harmful = 3;
+  counters.refused_in_plain_text = 120;
+  counters.refused_announcements = 1;
+  counters.refused_departures = 2;
+  KeptRows rows{refused_packets_table()};
+  record_refused_packets(counters, rows);
+  EXPECT_EQ(rows.column_values("harmful"), std::vector{3.0});
+  EXPECT_EQ(rows.column_values("in_plain_text"), std::vector{120.0});
+  EXPECT_EQ(rows.column_values("announcements"), std::vector{1.0});
+  EXPECT_EQ(rows.column_values("departures"), std::vector{2.0});
 }
 
 }  // namespace
