@@ -44,11 +44,11 @@ inline constexpr double kSpeedMax_m_per_s = 10.0;
 inline constexpr double kSpeedWindow_s = 0.02;
 /// Tolerance of the ratio of two ranges against the ratio of units: channels differ by gain, lag and noise.
 inline constexpr double kUnitRatioTolerance = 0.25;
-/// A channel with a smaller correlation to another one is at rest, or not part of the motion.
-inline constexpr double kUnitCorrelationMin = 0.5;
-/// Minimum correlation of a measured acceleration with the second derivative of the displacement. Noise of the latter
-/// reduces both by as much as the tolerance of the ratio.
-inline constexpr double kAccelerationCorrelationMin = 0.8;
+/// Minimum correlation of two channels that are the same motion in different units: two displacements, one of them as
+/// late as an actuator is, or a measured acceleration and the second derivative of the displacement. Noise of the
+/// latter reduces both by as much as the tolerance of the ratio. A channel with less is at rest, stuck, or another
+/// motion.
+inline constexpr double kScaledCopyCorrelationMin = 0.8;
 /// Minimum correlation of a force with the one that the model predicts.
 inline constexpr double kForceCorrelationMin = 0.3;
 /// Tolerance (a factor) of the force ratio for another unit. It is wide for a thousand or a million, because no
@@ -138,7 +138,8 @@ inline constexpr double kRankCorrelationMax = 0.999999;
 inline constexpr double kElasticShareMin = 0.5;
 /// Equal samples in a row at an extreme that count as clipped.
 inline constexpr std::size_t kClippedRun = 3;
-/// Longest lag of the force that is searched; minimum length of the recording in such lags; minimum correlation.
+/// Longest lag that is searched, of a force behind its motion and of an actuator behind its command; minimum length of
+/// the recording in such lags; minimum correlation.
 inline constexpr double kForceLagMax_s = 0.05;
 inline constexpr std::size_t kForceLagRecordings = 4;
 inline constexpr double kForceLagCorrelationMin = 0.5;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -41,7 +42,10 @@ Span span_of(const std::vector<double>& values) {
   return {*high - *low, static_cast<std::size_t>(farthest - values.begin())};
 }
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+/// Of two channels, the second one `lag` samples later.
+double correlation(std::span<const double> a, std::span<const double> b, std::size_t lag = 0) {
+  a = a.first(a.size() - lag);
+  b = b.subspan(lag);
   const auto n = static_cast<double>(a.size());
   const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / n;
   const double mean_b = std::accumulate(b.begin(), b.end(), 0.0) / n;
@@ -54,6 +58,16 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
     ab += (a[i] - mean_a) * (b[i] - mean_b);
   }
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+/// In another unit a channel keeps its shape, late by what an actuator needs. One that is stuck or dead moves as little
+/// as a channel in metres beside one in millimetres, but in a shape of its own.
+bool is_scaled_copy(std::span<const double> a, std::span<const double> b, std::size_t longest_lag) {
+  for (std::size_t lag = 0; lag <= std::min(longest_lag, a.size() / 2); ++lag) {
+    if (correlation(a, b, lag) >= tuning::kScaledCopyCorrelationMin) return true;
+    if (correlation(b, a, lag) >= tuning::kScaledCopyCorrelationMin) return true;
+  }
+  return false;
 }
 
 double fastest(const std::vector<double>& values, double period_s) {
@@ -72,15 +86,17 @@ void suspect(const RawRecording& raw, const RawColumn& column, std::size_t sampl
 }
 
 /// Against the other displacements of the same degree of freedom.
-bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, FindingList& findings) {
+bool is_suspected_by_ratio(const RawRecording& raw, const RawColumn& column, double period_s, FindingList& findings) {
   const Span own = span_of(column.values);
+  const std::size_t longest_lag =
+      raw.time_s.empty() ? 0 : static_cast<std::size_t>(std::lround(tuning::kForceLagMax_s / period_s));
   for (const RawColumn& other : raw.columns) {
     if (other.dof != column.dof || !is_displacement(other.channel) || &other == &column) continue;
-    if (correlation(column.values, other.values) < tuning::kUnitCorrelationMin) continue;
     const double other_width = span_of(other.values).width;
     for (const OtherUnit& unit : kOtherUnits) {
       const double ratio = own.width / other_width / unit.per_metre;
       if (ratio < 1.0 - tuning::kUnitRatioTolerance || ratio > 1.0 + tuning::kUnitRatioTolerance) continue;
+      if (!is_scaled_copy(column.values, other.values, longest_lag)) continue;
       suspect(raw, column, own.farthest,
               fmt::format("seems to be in {}: its range is {:.4g}, {:.0f} times the range of '{}' ({:.4g})", unit.name,
                           own.width, own.width / other_width, other.name, other_width),
@@ -126,7 +142,7 @@ void check_acceleration(const RawRecording& raw, const RawColumn& column, double
   });
   if (displacement == raw.columns.end()) return;
   const std::vector<double> expected = acceleration_of(displacement->values, period_s);
-  if (!(correlation(column.values, expected) >= tuning::kAccelerationCorrelationMin)) return;
+  if (!(correlation(column.values, expected) >= tuning::kScaledCopyCorrelationMin)) return;
   const double ratio = deviation(column.values) / deviation(expected);
   for (const AccelerationRatio& known : kAccelerationRatios) {
     if (!(std::abs(ratio / known.ratio - 1.0) <= tuning::kUnitRatioTolerance)) continue;
@@ -145,7 +161,7 @@ void check_acceleration(const RawRecording& raw, const RawColumn& column, double
 void check_units(const RawRecording& raw, double period_s, FindingList& findings) {
   for (const RawColumn& column : raw.columns) {
     if (column.channel == Channel::measured_acceleration) check_acceleration(raw, column, period_s, findings);
-    if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, findings)) continue;
+    if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, period_s, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
     const double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
     if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {

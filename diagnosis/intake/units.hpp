@@ -12,7 +12,8 @@ namespace hybridtest {
 /// Reports columns whose unit seems to differ from the one in their header.
 ///
 /// The displacements of a degree of freedom describe one motion: where one spans 1000, 100 or 39.37
-/// times what another spans, it is in millimetres, centimetres or inches. Alone, a displacement is
+/// times what another spans, and keeps its shape (correlation at least 0.8, up to 50 ms late), it is in millimetres,
+/// centimetres or inches. An actuator that is stuck moves as little, but not as commanded. Alone, a displacement is
 /// suspected when it passes the largest plausible one or moves faster than the largest plausible
 /// speed over 20 ms. An acceleration that goes with the second derivative of the measured displacement (correlation
 /// at least 0.8) and is 1/9.81, 100 or 1000 times as large is in g, cm/s2 or mm/s2; at 10^6 or 10^12 times it is

@@ -97,6 +97,18 @@ TEST(Diagnose, SeparatesSensorFromActuatorByForce) {
   }
 }
 
+/// It moves a thousandth of its command, and not as commanded.
+TEST(Diagnose, StuckActuatorIsFoundAtTheTransferSystem) {
+  const auto creeps_m = [](double t) { return 6e-4 * (made_motion_m(t) + made_motion_m(0.55 * t)); };
+  const Diagnosis diagnosis =
+      diagnosis_of(made_recording(creeps_m, [&](double t) { return kMadeStiffness_n_per_m * creeps_m(t); }));
+  ASSERT_FALSE(diagnosis.report.where.empty());
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.report.where.front().interface, "transfer_system");
+  EXPECT_GT(diagnosis.report.where.front().share, 0.99);
+  EXPECT_FALSE(has_cause(diagnosis, "transfer_system", "gain"));
+}
+
 /// A force in which nothing but noise is seen says nothing of how well a cause does elsewhere.
 TEST(Diagnose, JudgesCauseWhereThereIsAGap) {
   const auto read_m = [](double t) { return made_motion_m(t) + 0.002; };

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "diagnosis/intake/intake.hpp"
 #include "plant/transfer_systems/delay.hpp"
@@ -77,6 +80,49 @@ TEST(AccelerationUnits, SkippedForSensorAtAnotherPlace) {
     raw.columns[1].values[i] = 0.1 * std::sin(0.05 * static_cast<double>(i));
   }
   EXPECT_THAT(complaints_of(raw), IsEmpty());
+}
+
+/// Command and measured displacement, the latter in a unit of its own.
+RawRecording moved(const std::function<double(double)>& measured_m, double unit_m = 1.0) {
+  RawRecording raw;
+  raw.file = "made.csv";
+  raw.first_row = 2;
+  raw.columns = {{"command_displacement_m", Channel::command_displacement, 0, {}},
+                 {"measured_displacement_m", Channel::measured_displacement, 0, {}}};
+  Random random{9};
+  for (int i = 0; i < 4000; ++i) {
+    const double time_s = kSitePeriod_s * i;
+    raw.time_s.push_back(time_s);
+    raw.columns[0].values.push_back(made_motion_m(time_s));
+    raw.columns[1].values.push_back((measured_m(time_s) + 1e-6 * random.normal()) / unit_m);
+  }
+  return raw;
+}
+
+/// A thousandth of the command, half of it with the command, half of it as it likes.
+double stuck_m(double time_s) { return 6e-4 * (made_motion_m(time_s) + made_motion_m(0.55 * time_s)); }
+
+TEST(DisplacementUnits, StuckActuatorIsNotAWrongUnit) {
+  const RawRecording raw = moved(stuck_m);
+  EXPECT_THAT(complaints_of(raw), IsEmpty());
+  // It moves as little as one in metres beside a command in millimetres; only the shape tells.
+  const auto span_of = [&](std::size_t column) {
+    const auto [low, high] = std::ranges::minmax(raw.columns[column].values);
+    return high - low;
+  };
+  EXPECT_NEAR(span_of(0) / span_of(1), 1000.0, 100.0);
+}
+
+TEST(DisplacementUnits, FoundThoughTheActuatorIsLate) {
+  // 45 ms: at a correlation below that of a scaled copy where nothing is shifted.
+  const auto late_m = [](double time_s) { return 0.9 * made_motion_m(std::max(0.0, time_s - 0.045)); };
+  EXPECT_THAT(complaints_of(moved(late_m)), IsEmpty());
+  for (const auto& [unit_m, name] : {std::pair{1e-3, "millimetres"}, {1e-2, "centimetres"}, {0.0254, "inches"}}) {
+    EXPECT_THAT(complaints_of(moved(late_m, unit_m)), ElementsAre(HasSubstr(std::string{"seems to be in "} + name)));
+  }
+  // The same from the other side: the command is in millimetres beside what was measured in metres.
+  EXPECT_THAT(complaints_of(moved([&](double time_s) { return 1e-3 * late_m(time_s); })),
+              ElementsAre(testing::AllOf(HasSubstr("column 'command_displacement_m'"), HasSubstr("in millimetres"))));
 }
 
 double spring_n(double time_s) { return kMadeStiffness_n_per_m * made_motion_m(time_s); }
