@@ -102,12 +102,17 @@ double free_parameters(const IdentificationProblem& problem, const FitOutcome& f
 
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
   double sum = 0.0;
+  double numbers = 0.0;  // of the specimen's own law, of which each is an effect by name
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const EffectType& effect = *fit.effects[i].type;
     const double free = free_parameters(problem, fit, i);
+    if (effect.interface == EffectInterface::specimen && is_model_number(problem, effect)) {
+      numbers += free;
+      continue;
+    }
     sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
   }
-  return sum;
+  return sum - tuning::kParameterPrior * std::max(0.0, numbers - 1.0);
 }
 
 namespace {
@@ -158,9 +163,17 @@ std::optional<Candidate> scored(const IdentificationProblem& problem, Candidate 
   return candidate;
 }
 
+/// One effect by itself; a strength beside the stiffness of the same law. What a wrong stiffness changes depends on the
+/// strength, so that the change at the model's own strength, a nuisance, does not stand for it. Whether the stiffness
+/// is wrong at all is asked at the end.
+FitOutcome fit_alone(const IdentificationProblem& problem, const EffectType& effect) {
+  if (effect.traits.number != ModelNumber::strength) return fit_effects(problem, {&effect}, false);
+  return fit_effects(problem, {&effect, find_effect(EffectInterface::specimen, ModelNumber::stiffness)}, false);
+}
+
 std::optional<Candidate> fit_one(const IdentificationProblem& problem, const EffectType& effect,
                                  double nuisance_score) try {
-  std::optional<Candidate> alone = scored(problem, {.type = &effect, .fit = fit_effects(problem, {&effect}, false)});
+  std::optional<Candidate> alone = scored(problem, {.type = &effect, .fit = fit_alone(problem, effect)});
   // A law has its own stiffness.
   if (effect.replacement != nullptr) return alone;
   FitOutcome with_nuisance = fit_effects(problem, {&effect}, true);

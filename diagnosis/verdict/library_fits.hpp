@@ -17,7 +17,7 @@ namespace hybridtest {
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
-/// parameters [nats].
+/// parameters, the wrong numbers of the specimen's own law being those of one effect [nats].
 [[nodiscard]] double prior(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Energy of the residual over all suspect segments, each relative to the variance of its output, held out.
