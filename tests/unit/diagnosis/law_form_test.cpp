@@ -87,6 +87,24 @@ TEST(LawForm, WrongStrengthAloneIsNoMissingEffect) {
   EXPECT_NEAR(value_of(only_cause(diagnosis), "strength_error_ratio"), -0.2, 1e-3);
 }
 
+/// With both wrong it is still the law of the model, and not another one of the same form.
+TEST(LawForm, WrongStrengthAndStiffnessAreNoOtherLaw) {
+  const auto real = real_bilinear();
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{1.1 * kMadeStiffness_n_per_m, 1.25 * kYield_n, kHardening});
+  };
+  const Diagnosis diagnosis = diagnosis_of(model, recording_of(*real));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  const auto value = [&](std::string_view effect, std::string_view parameter) {
+    const auto found = std::ranges::find(diagnosis.report.ranking, effect, &report::RankedCause::effect);
+    return found == diagnosis.report.ranking.end() || !found->is_cause ? std::nan("") : value_of(*found, parameter);
+  };
+  EXPECT_EQ(std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause), 2);
+  EXPECT_NEAR(value("strength_error", "strength_error_ratio"), -0.2, 1e-3);
+  EXPECT_NEAR(value("stiffness_error", "stiffness_error_ratio"), 1.0 / 1.1 - 1.0, 1e-3);
+}
+
 /// It reloads towards its largest displacement: called a fracture with certainty before.
 TEST(LawForm, PeakOrientedSpecimenIsALawOfAnotherForm) {
   PeakOriented::Parameters parameters;
