@@ -55,18 +55,27 @@ void AlphaOperatorSplitting::correct() noexcept {
   acceleration_.noalias() = mass_ * completed_.acceleration_m_per_s2;
   acceleration_ = (1.0 + weights_.alpha) * right_hand_side_n_ - weights_.alpha * acceleration_;
   effective_mass_.solve_in_place(acceleration_);
-  completed_.displacement_m = current_.displacement_m + (weights_.beta * step_s_ * step_s_) * acceleration_;
-  completed_.velocity_m_per_s = predicted_velocity_m_per_s_ + (weights_.gamma * step_s_) * acceleration_;
-  completed_.acceleration_m_per_s2 =
-      (acceleration_ + weights_.alpha * completed_.acceleration_m_per_s2) / (1.0 + weights_.alpha);
+  const double h = step_s_;
+  const auto [alpha, beta, gamma] = weights_;
+  for (Eigen::Index k = 0; k < acceleration_.size(); ++k) {
+    const double a = acceleration_[k];
+    completed_.displacement_m[k] = current_.displacement_m[k] + (beta * h * h) * a;
+    completed_.velocity_m_per_s[k] = predicted_velocity_m_per_s_[k] + (gamma * h) * a;
+    completed_.acceleration_m_per_s2[k] = (a + alpha * completed_.acceleration_m_per_s2[k]) / (1.0 + alpha);
+  }
 }
 
 void AlphaOperatorSplitting::predict() noexcept {
-  current_.displacement_m = completed_.displacement_m + step_s_ * completed_.velocity_m_per_s +
-                            ((0.5 - weights_.beta) * step_s_ * step_s_) * acceleration_;
-  predicted_velocity_m_per_s_ = completed_.velocity_m_per_s + ((1.0 - weights_.gamma) * step_s_) * acceleration_;
-  current_.velocity_m_per_s = completed_.velocity_m_per_s + step_s_ * acceleration_;
-  current_.acceleration_m_per_s2 = acceleration_;
+  const double h = step_s_;
+  const auto [alpha, beta, gamma] = weights_;
+  for (Eigen::Index k = 0; k < acceleration_.size(); ++k) {
+    const double a = acceleration_[k];
+    const double v = completed_.velocity_m_per_s[k];
+    current_.displacement_m[k] = completed_.displacement_m[k] + h * v + ((0.5 - beta) * h * h) * a;
+    predicted_velocity_m_per_s_[k] = v + ((1.0 - gamma) * h) * a;
+    current_.velocity_m_per_s[k] = v + h * a;
+    current_.acceleration_m_per_s2[k] = a;
+  }
 }
 
 void AlphaOperatorSplitting::visit_state(const StateVisitor& visit) {

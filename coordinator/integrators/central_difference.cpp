@@ -46,13 +46,17 @@ void CentralDifference::advance(const Eigen::Ref<const Eigen::VectorXd>& restori
   next_difference_.noalias() += difference_weight_ * difference_;
   effective_mass_.solve_in_place(next_difference_);
 
-  completed_.displacement_m = current_.displacement_m;
-  completed_.velocity_m_per_s = (next_difference_ + difference_) / (2.0 * step_s_);
-  completed_.acceleration_m_per_s2 = (next_difference_ - difference_) / (step_s_ * step_s_);
-
-  current_.displacement_m += next_difference_;
-  current_.acceleration_m_per_s2 = completed_.acceleration_m_per_s2;
-  current_.velocity_m_per_s = completed_.velocity_m_per_s + step_s_ * completed_.acceleration_m_per_s2;
+  const double h = step_s_;
+  for (Eigen::Index k = 0; k < difference_.size(); ++k) {
+    const double velocity_m_per_s = (next_difference_[k] + difference_[k]) / (2.0 * h);
+    const double acceleration_m_per_s2 = (next_difference_[k] - difference_[k]) / (h * h);
+    completed_.displacement_m[k] = current_.displacement_m[k];
+    completed_.velocity_m_per_s[k] = velocity_m_per_s;
+    completed_.acceleration_m_per_s2[k] = acceleration_m_per_s2;
+    current_.displacement_m[k] += next_difference_[k];
+    current_.velocity_m_per_s[k] = velocity_m_per_s + h * acceleration_m_per_s2;
+    current_.acceleration_m_per_s2[k] = acceleration_m_per_s2;
+  }
   difference_.swap(next_difference_);
 }
 

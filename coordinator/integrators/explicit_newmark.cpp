@@ -1,5 +1,7 @@
 #include "coordinator/integrators/explicit_newmark.hpp"
 
+#include <utility>
+
 #include "core/assert.hpp"
 
 namespace hybridtest {
@@ -26,16 +28,20 @@ void ExplicitNewmark::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring
     mass_.solve_in_place(acceleration_);
   }
 
-  completed_.displacement_m = current_.displacement_m;
-  completed_.velocity_m_per_s = half_step_velocity_;
-  if (has_started_) completed_.velocity_m_per_s += (0.5 * step_s_) * acceleration_;
-  completed_.acceleration_m_per_s2 = acceleration_;
-  has_started_ = true;
-
-  half_step_velocity_ = completed_.velocity_m_per_s + (0.5 * step_s_) * acceleration_;
-  current_.displacement_m += step_s_ * half_step_velocity_;
-  current_.velocity_m_per_s = completed_.velocity_m_per_s + step_s_ * acceleration_;
-  current_.acceleration_m_per_s2 = acceleration_;
+  const double h = step_s_;
+  const bool has_half_step = std::exchange(has_started_, true);
+  for (Eigen::Index k = 0; k < acceleration_.size(); ++k) {
+    const double acceleration_m_per_s2 = acceleration_[k];
+    double velocity_m_per_s = half_step_velocity_[k];
+    if (has_half_step) velocity_m_per_s += (0.5 * h) * acceleration_m_per_s2;
+    completed_.displacement_m[k] = current_.displacement_m[k];
+    completed_.velocity_m_per_s[k] = velocity_m_per_s;
+    completed_.acceleration_m_per_s2[k] = acceleration_m_per_s2;
+    half_step_velocity_[k] = velocity_m_per_s + (0.5 * h) * acceleration_m_per_s2;
+    current_.displacement_m[k] += h * half_step_velocity_[k];
+    current_.velocity_m_per_s[k] = velocity_m_per_s + h * acceleration_m_per_s2;
+    current_.acceleration_m_per_s2[k] = acceleration_m_per_s2;
+  }
 }
 
 void ExplicitNewmark::visit_state(const StateVisitor& visit) {

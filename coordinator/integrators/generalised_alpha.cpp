@@ -86,8 +86,13 @@ void GeneralisedAlpha::find_end() noexcept {
   solved.noalias() += stiffness_ * current_.displacement_m;
   solved *= 1.0 - weights_.alpha_f;
   effective_mass_.solve_in_place(solved);
-  end_.displacement_m = predicted_displacement_m_ + (weights_.beta * step_s_ * step_s_) * solved;
-  end_.velocity_m_per_s = predicted_velocity_m_per_s_ + (weights_.gamma * step_s_) * solved;
+  const double h = step_s_;
+  const double of_displacement_s2 = weights_.beta * h * h;
+  const double of_velocity_s = weights_.gamma * h;
+  for (Eigen::Index k = 0; k < solved.size(); ++k) {
+    end_.displacement_m[k] = predicted_displacement_m_[k] + of_displacement_s2 * solved[k];
+    end_.velocity_m_per_s[k] = predicted_velocity_m_per_s_[k] + of_velocity_s * solved[k];
+  }
 }
 
 void GeneralisedAlpha::end_step() noexcept {
@@ -105,12 +110,19 @@ void GeneralisedAlpha::end_step() noexcept {
 /// On the parabola through the displacements at -1, 0 and 1, at x of the step.
 void GeneralisedAlpha::place_command() noexcept {
   const double x = static_cast<double>(iteration_) / iterations_;
-  current_.displacement_m = (0.5 * x * (x - 1.0)) * displacement_before_m_ + (1.0 - x * x) * begin_.displacement_m +
-                            (0.5 * x * (x + 1.0)) * end_.displacement_m;
-  current_.velocity_m_per_s = ((x - 0.5) / step_s_) * displacement_before_m_ -
-                              (2.0 * x / step_s_) * begin_.displacement_m + ((x + 0.5) / step_s_) * end_.displacement_m;
-  current_.acceleration_m_per_s2 =
-      (displacement_before_m_ - 2.0 * begin_.displacement_m + end_.displacement_m) / (step_s_ * step_s_);
+  const double h = step_s_;
+  const double rate_before = (x - 0.5) / h;
+  const double rate_begin = 2.0 * x / h;
+  const double rate_end = (x + 0.5) / h;
+  for (Eigen::Index k = 0; k < displacement_before_m_.size(); ++k) {
+    const double before_m = displacement_before_m_[k];
+    const double begin_m = begin_.displacement_m[k];
+    const double end_m = end_.displacement_m[k];
+    current_.displacement_m[k] =
+        (0.5 * x * (x - 1.0)) * before_m + (1.0 - x * x) * begin_m + (0.5 * x * (x + 1.0)) * end_m;
+    current_.velocity_m_per_s[k] = rate_before * before_m - rate_begin * begin_m + rate_end * end_m;
+    current_.acceleration_m_per_s2[k] = (before_m - 2.0 * begin_m + end_m) / (h * h);
+  }
 }
 
 void GeneralisedAlpha::visit_state(const StateVisitor& visit) {

@@ -103,11 +103,16 @@ void ImplicitNewmark::judge() noexcept {
 void ImplicitNewmark::follow_displacement() noexcept {
   const double h = step_s_;
   const auto& [gamma, beta, tolerance_m, iterations_max] = parameters_;
-  buffer_ = current_.displacement_m - completed_.displacement_m;
-  current_.velocity_m_per_s = (gamma / (beta * h)) * buffer_ + (1.0 - gamma / beta) * completed_.velocity_m_per_s +
-                              (h * (1.0 - 0.5 * gamma / beta)) * completed_.acceleration_m_per_s2;
-  current_.acceleration_m_per_s2 = buffer_ / (beta * h * h) - completed_.velocity_m_per_s / (beta * h) -
-                                   (0.5 / beta - 1.0) * completed_.acceleration_m_per_s2;
+  const double of_change_per_s = gamma / (beta * h);
+  const double of_velocity = 1.0 - gamma / beta;
+  const double of_acceleration_s = h * (1.0 - 0.5 * gamma / beta);
+  for (Eigen::Index k = 0; k < buffer_.size(); ++k) {
+    const double change_m = current_.displacement_m[k] - completed_.displacement_m[k];
+    const double v = completed_.velocity_m_per_s[k];
+    const double a = completed_.acceleration_m_per_s2[k];
+    current_.velocity_m_per_s[k] = of_change_per_s * change_m + of_velocity * v + of_acceleration_s * a;
+    current_.acceleration_m_per_s2[k] = change_m / (beta * h * h) - v / (beta * h) - (0.5 / beta - 1.0) * a;
+  }
 }
 
 }  // namespace hybridtest

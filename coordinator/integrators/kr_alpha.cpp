@@ -33,10 +33,14 @@ void KrAlpha::advance(const Eigen::Ref<const Eigen::VectorXd>& restoring_force_n
   } else {
     start();
   }
-  current_.displacement_m += step_s_ * completed_.velocity_m_per_s + (0.5 * step_s_ * step_s_) * weighted_;
-  current_.velocity_m_per_s = completed_.velocity_m_per_s + step_s_ * weighted_;
-  current_.acceleration_m_per_s2 = weighted_;
-  late_velocity_m_per_s_ += step_s_ * weighted_;
+  const double h = step_s_;
+  for (Eigen::Index k = 0; k < weighted_.size(); ++k) {
+    const double velocity_m_per_s = completed_.velocity_m_per_s[k];
+    current_.displacement_m[k] += h * velocity_m_per_s + (0.5 * h * h) * weighted_[k];
+    current_.velocity_m_per_s[k] = velocity_m_per_s + h * weighted_[k];
+    current_.acceleration_m_per_s2[k] = weighted_[k];
+    late_velocity_m_per_s_[k] += h * weighted_[k];
+  }
 }
 
 /// Any w_0 within O(dt) of the acceleration keeps the order; this one bounds fast modes and, with rho_inf = 1, gives

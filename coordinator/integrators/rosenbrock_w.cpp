@@ -52,24 +52,32 @@ void RosenbrockW::first_stage() noexcept {
   unbalance_n_.noalias() -= stiffness_ * shift_;
   velocity_change_ = step_s_ * unbalance_n_;
   effective_mass_.solve_in_place(velocity_change_);
-  displacement_change_ = step_s_ * velocity_m_per_s_ + (kGamma * step_s_) * velocity_change_;
-  current_.displacement_m = displacement_m_ + 0.5 * displacement_change_;
-  current_.velocity_m_per_s = velocity_m_per_s_ + 0.5 * velocity_change_;
+  const double h = step_s_;
+  for (Eigen::Index k = 0; k < velocity_change_.size(); ++k) {
+    displacement_change_[k] = h * velocity_m_per_s_[k] + (kGamma * h) * velocity_change_[k];
+    current_.displacement_m[k] = displacement_m_[k] + 0.5 * displacement_change_[k];
+    current_.velocity_m_per_s[k] = velocity_m_per_s_[k] + 0.5 * velocity_change_[k];
+  }
 }
 
 /// The same with the right-hand side (s, h M^-1 [G_s + g (K_I a_1 + C b_1)]), s = h v_s - g h b_1.
 void RosenbrockW::second_stage() noexcept {
   shift_ = kGamma * velocity_change_;
   unbalance_n_.noalias() += damping_ * shift_;
-  shift_ = step_s_ * completed_.velocity_m_per_s - (kGamma * step_s_) * velocity_change_;
-  displacement_change_ = kGamma * (displacement_change_ - shift_);
+  const double h = step_s_;
+  for (Eigen::Index k = 0; k < shift_.size(); ++k) {
+    shift_[k] = h * completed_.velocity_m_per_s[k] - (kGamma * h) * velocity_change_[k];
+    displacement_change_[k] = kGamma * (displacement_change_[k] - shift_[k]);
+  }
   unbalance_n_.noalias() += stiffness_ * displacement_change_;
   velocity_change_ = step_s_ * unbalance_n_;
   effective_mass_.solve_in_place(velocity_change_);
-  displacement_m_ += shift_ + (kGamma * step_s_) * velocity_change_;
-  velocity_m_per_s_ += velocity_change_;
-  current_.displacement_m = displacement_m_;
-  current_.velocity_m_per_s = velocity_m_per_s_;
+  for (Eigen::Index k = 0; k < shift_.size(); ++k) {
+    displacement_m_[k] += shift_[k] + (kGamma * h) * velocity_change_[k];
+    velocity_m_per_s_[k] += velocity_change_[k];
+    current_.displacement_m[k] = displacement_m_[k];
+    current_.velocity_m_per_s[k] = velocity_m_per_s_[k];
+  }
 }
 
 void RosenbrockW::visit_state(const StateVisitor& visit) {
