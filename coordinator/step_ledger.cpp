@@ -1,7 +1,5 @@
 #include "coordinator/step_ledger.hpp"
 
-#include <utility>
-
 #include "core/message_copies.hpp"
 
 namespace hybridtest {
@@ -24,11 +22,11 @@ void StepLedger::open(Step step, std::uint16_t iteration, Instant now) noexcept 
 LedgerEntry StepLedger::enter(const ForceMeasurement& measurement, Instant now) noexcept {
   if (measurement.substructure >= accounts_.size()) return LedgerEntry::foreign;
   Account& account = accounts_[measurement.substructure];
-  const std::pair answered{measurement.step, measurement.iteration};
-  const std::pair opened{step_, iteration_};
   if (measurement.sender != account.bound) return LedgerEntry::foreign;
-  if (answered > opened) return LedgerEntry::early;
-  if (answered < opened) return LedgerEntry::stale;
+  if (measurement.step != step_) return measurement.step > step_ ? LedgerEntry::early : LedgerEntry::stale;
+  if (measurement.iteration != iteration_) {
+    return measurement.iteration > iteration_ ? LedgerEntry::early : LedgerEntry::stale;
+  }
   if (account.answered) return LedgerEntry::duplicate;
   account.answered = true;
   copy_message(measurement, account.answer);

@@ -21,7 +21,9 @@ class WakeTimes {
     std::size_t place = leaves_ + participant;
     earliest_[place] = at;
     for (place /= 2; place > 0; place /= 2) {
-      earliest_[place] = std::min(earliest_[2 * place], earliest_[2 * place + 1]);
+      const Instant earliest = std::min(earliest_[2 * place], earliest_[2 * place + 1]);
+      if (earliest_[place] == earliest) return;  // and so are those above
+      earliest_[place] = earliest;
     }
   }
   [[nodiscard]] Instant at(std::size_t participant) const noexcept { return earliest_[leaves_ + participant]; }
@@ -39,18 +41,17 @@ class WakeTimes {
   /// Those who want to run by now, in order.
   void find_due(Instant now, std::vector<std::size_t>& due) const {
     due.clear();
-    add_due(1, now, due);
+    for (std::size_t place = 1; place > 0; place = after(place)) {
+      while (earliest_[place] <= now && place < leaves_) place *= 2;
+      if (earliest_[place] <= now) due.push_back(place - leaves_);
+    }
   }
 
  private:
-  void add_due(std::size_t place, Instant now, std::vector<std::size_t>& due) const {
-    if (earliest_[place] > now) return;
-    if (place >= leaves_) {
-      due.push_back(place - leaves_);
-      return;
-    }
-    add_due(2 * place, now, due);
-    add_due(2 * place + 1, now, due);
+  /// The place to look at when all of this one has been seen, in order; 0 after the last.
+  [[nodiscard]] static std::size_t after(std::size_t place) noexcept {
+    place >>= std::countr_one(place);  // up, out of the second halves
+    return place == 0 ? 0 : place + 1;
   }
 
   std::size_t leaves_;             // a power of two

@@ -1,7 +1,6 @@
 #include "transport/simulated/simulated_network.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -32,21 +31,21 @@ class MessageStore {
     if (free_count_ == 0) {
       free_.push_back(0);
       free_[free_count_++] = messages_.size();
-      messages_.emplace_back();
+      messages_.push_back(std::make_unique<Message>());
     }
     const std::size_t place = free_[--free_count_];
-    copy_message(message, messages_[place]);
+    copy_message(message, *messages_[place]);
     return place;
   }
   /// The place gets the memory of the old message.
   void take(std::size_t place, Message& message) {
-    move_message(messages_[place], message);
+    move_message(*messages_[place], message);
     drop(place);
   }
   void drop(std::size_t place) { free_[free_count_++] = place; }
 
  private:
-  std::deque<Message> messages_;
+  std::vector<std::unique_ptr<Message>> messages_;
   std::vector<std::size_t> free_;  // as many as there are messages; the first `free_count_` count
   std::size_t free_count_ = 0;
 };
