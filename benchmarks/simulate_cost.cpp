@@ -212,7 +212,9 @@ void recorded(const Scenario& scenario, const std::filesystem::path& folder) {
   std::map<std::string, std::unique_ptr<Recorder>> recorders;
   const auto open = [&](const std::string& id, const std::vector<TableLayout>& tables) {
     std::vector<RecordedTable> recorded;
-    for (const TableLayout& table : tables) recorded.push_back({table, 1U << 16U});
+    for (const TableLayout& table : tables) {  // as `hybridtest simulate` does it
+      recorded.push_back({table, table.name == "steps" ? 1U << 14U : 1U << 16U});
+    }
     RunFileHeader header;
     header.participant = id;
     recorders[id] = std::make_unique<Recorder>(folder / (id + ".h5"), header, recorded);

@@ -220,11 +220,16 @@ class SimulatedRecording {
   /// More rows than one step can append between two calls of keep_house().
   static constexpr std::size_t kRingRows = 1U << 16U;
 
-  /// The same where memory for as many would be wasted on many participants.
+  /// The same where memory for as many would be wasted: on many participants, and on tables with a row for each command
+  /// or answer. Memory that is never written to costs time too: it is set to zero.
   [[nodiscard]] std::size_t ring_rows(std::string_view table, Role role, int periods_per_step) const {
     constexpr std::size_t kCommands = 1024;  // twice those between two calls: a ring is drained when it is half full
     const std::size_t substructures = scenario_.substructures.size();
-    if (substructures <= kMaxSubstructures) return kRingRows;
+    if (substructures <= kMaxSubstructures) {
+      constexpr std::size_t kUntilDrained = 2 * kCommands * kCallsPerDrain;  // so that no drain comes earlier
+      if (table == "steps") return kUntilDrained;
+      return table == "exchanges" ? std::min(kRingRows, kUntilDrained * substructures) : kRingRows;
+    }
     if (role != Role::coordinator) return kCommands * static_cast<std::size_t>(periods_per_step);
     return table == "steps" ? kCommands : kCommands * substructures;  // one row for each of them
   }
