@@ -11,13 +11,17 @@ namespace {
 
 struct FilteredDescriptor final : rtps::ChainingTransportDescriptor {
   FilteredDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> lower, Admission its_admission,
-                     std::shared_ptr<RefusedPackets> its_refused)
-      : ChainingTransportDescriptor{std::move(lower)}, admission{its_admission}, refused{std::move(its_refused)} {}
+                     std::shared_ptr<RefusedPackets> its_refused, std::function<void()> what_is_first)
+      : ChainingTransportDescriptor{std::move(lower)},
+        admission{its_admission},
+        refused{std::move(its_refused)},
+        first{std::move(what_is_first)} {}
 
   [[nodiscard]] rtps::TransportInterface* create_transport() const override;  // the caller owns it
 
   Admission admission;
   std::shared_ptr<RefusedPackets> refused;
+  std::function<void()> first;
 };
 
 class FilteredTransport final : public ReceivingTransport {
@@ -35,6 +39,7 @@ class FilteredTransport final : public ReceivingTransport {
  private:
   void receive(rtps::TransportReceiverInterface* receiver, const eprosima::fastrtps::rtps::octet* bytes,
                std::uint32_t count, const Locator& local, const Locator& from) override {
+    if (descriptor_.first) descriptor_.first();
     const std::lock_guard lock{mutex_};
     if (!filter_.admits_discovery({bytes, count}, std::chrono::steady_clock::now())) return;
     receiver->OnDataReceived(bytes, count, local, from);
@@ -51,8 +56,8 @@ rtps::TransportInterface* FilteredDescriptor::create_transport() const { return 
 
 std::shared_ptr<rtps::TransportDescriptorInterface> filtered_transport(
     std::shared_ptr<rtps::TransportDescriptorInterface> lower, Admission admission,
-    std::shared_ptr<RefusedPackets> refused) {
-  return std::make_shared<FilteredDescriptor>(std::move(lower), admission, std::move(refused));
+    std::shared_ptr<RefusedPackets> refused, std::function<void()> first) {
+  return std::make_shared<FilteredDescriptor>(std::move(lower), admission, std::move(refused), std::move(first));
 }
 
 }  // namespace hybridtest::fast_dds

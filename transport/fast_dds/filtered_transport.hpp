@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "transport/fast_dds/dds_version.hpp"
@@ -12,8 +13,9 @@ namespace hybridtest::fast_dds {
 /// deleted (its pull request 4268).
 /// @param lower     the transport of Fast DDS.
 /// @param refused   counts what the filter does not admit.
+/// @param first     called before a packet is taken in; may be empty.
 [[nodiscard]] std::shared_ptr<rtps::TransportDescriptorInterface> filtered_transport(
     std::shared_ptr<rtps::TransportDescriptorInterface> lower, Admission admission,
-    std::shared_ptr<RefusedPackets> refused);
+    std::shared_ptr<RefusedPackets> refused, std::function<void()> first = nullptr);
 
 }  // namespace hybridtest::fast_dds

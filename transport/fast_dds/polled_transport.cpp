@@ -13,7 +13,10 @@ struct PolledDescriptor final : rtps::ChainingTransportDescriptor {
   PolledDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, std::shared_ptr<PolledSocket> its_socket,
                    std::uint32_t its_domain, bool is_loopback_only, Admission its_admission,
                    std::shared_ptr<RefusedPackets> its_refused)
-      : ChainingTransportDescriptor{filtered_transport(std::move(udp), its_admission, its_refused)},
+      : ChainingTransportDescriptor{filtered_transport(
+            std::move(udp), its_admission, its_refused,
+            // A participant that leaves sends its last messages before it says so. Fast DDS drops what it reads later.
+            [its_socket] { its_socket->receive(); })},
         socket{std::move(its_socket)},
         domain{its_domain},
         loopback_only{is_loopback_only},

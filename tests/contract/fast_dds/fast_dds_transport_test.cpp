@@ -107,6 +107,25 @@ TEST(FastDdsTransport, StalledParticipantIsLostWhileMotionIsPossible) {
   EXPECT_GE(observer->counters().deadlines_missed, 1U);
 }
 
+// Messages wait for the thread that reads them, and the departure does not: here that thread is away.
+TEST(FastDdsTransport, LastWordsAreHeardBeforeTheDeparture) {
+  const auto observer = FastDdsUdpNetwork::join(unique_test_name());
+  const auto statuses = observer->status_inbox();
+  for (int leaver = 0; leaver < 5; ++leaver) {
+    auto peer = FastDdsUdpNetwork::join(unique_test_name());
+    auto status = peer->status_outbox();
+    status->send(sample_status("peer", LifecycleState::running));
+    ASSERT_TRUE(hears(*observer, *statuses, LifecycleState::running));
+    status->send(sample_status("peer", LifecycleState::finished));
+    status.reset();
+    ParticipantStatus last;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{10};
+    while (!statuses->take(last)) ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    EXPECT_EQ(last.state, LifecycleState::finished) << "leaver " << leaver;
+    while (statuses->take(last)) EXPECT_NE(last.state, LifecycleState::lost) << "leaver " << leaver;
+  }
+}
+
 TEST(FastDdsTransport, SilentParticipantIsNotLostBeforeMotionIsPossible) {
   const auto observer = FastDdsUdpNetwork::join(unique_test_name());
   const auto statuses = observer->status_inbox();
