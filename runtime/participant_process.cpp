@@ -275,10 +275,12 @@ class DeadlineHousekeeping {
   std::atomic<bool> recording_failed_{false};
 };
 
-/// Exit code of the process, after its records are closed. A completed part is valid only with all its records.
-int exit_code_of(const Participant& participant, const Recorder& recorder) {
+/// Last words and exit code of the process, after its records are closed. A completed part is valid only with all its
+/// records.
+int end_of(const Participant& participant, ProcessSurroundings& process) {
+  process.tell_refused_packets();
   const int exit_code = exit_code_for(participant.stop_reason());
-  const bool has_holes = recorder.failed() || recorder.dropped() > 0;
+  const bool has_holes = process.recorder().failed() || process.recorder().dropped() > 0;
   return exit_code == kExitCompleted && has_holes ? kExitDataInvalid : exit_code;
 }
 
@@ -288,6 +290,15 @@ void stay_to_be_heard(StopReason reason, const ProcessClock& clock) {
   const bool is_news =
       reason == StopReason::emergency_stop || reason == StopReason::refused || reason == StopReason::resume_refused;
   if (is_news) rest_until(clock, clock.now() + kLinger);
+}
+
+/// What is left to write once the node is done, while the recording is open.
+void write_the_rest(const Participant& participant, ProcessSurroundings& process, const ProcessClock& clock,
+                    const std::function<void()>& at_the_end) {
+  process.write_events();
+  stay_to_be_heard(participant.stop_reason(), clock);
+  at_the_end();
+  process.record_refused_packets();
 }
 
 /// @param meanwhile    called after each advance() of the node.
@@ -303,10 +314,7 @@ void run_to_the_end(
         housekeeping(now);
         meanwhile(now);
       });
-  process.write_events();
-  stay_to_be_heard(participant.stop_reason(), clock);
-  at_the_end();
-  process.record_refused_packets();
+  write_the_rest(participant, process, clock, at_the_end);
 }
 
 void report_grant(Presence& presence, Instant now, const RealTimeRequest& request, const RealTimeGrant& grant) {
@@ -361,10 +369,7 @@ void run_in_real_time(
     }
   }
   process.send_waiting();
-  process.write_events();
-  stay_to_be_heard(participant.stop_reason(), clock);
-  at_the_end();
-  process.record_refused_packets();
+  write_the_rest(participant, process, clock, at_the_end);
 }
 
 /// The recording of the process whose place this one takes; nothing in a new test.
@@ -414,8 +419,7 @@ int run_coordinator(const Scenario& scenario, const ParticipantProcessOptions& o
   } else {
     run_to_the_end(participant, process, clock, scenario, watch_lead, finish);
   }
-  process.tell_refused_packets();
-  return exit_code_of(participant, process.recorder());
+  return end_of(participant, process);
 }
 
 int run_numerical(const Scenario& scenario, const SubstructureScenario& substructure,
@@ -435,8 +439,7 @@ int run_numerical(const Scenario& scenario, const SubstructureScenario& substruc
     run_to_the_end(participant, process, clock, scenario);
   }
   if (const std::string text = participant.failure_text(); !text.empty()) process.print(text);
-  process.tell_refused_packets();
-  return exit_code_of(participant, process.recorder());
+  return end_of(participant, process);
 }
 
 /// Runs the link on this thread and the control loop on its own thread.
@@ -476,8 +479,7 @@ int run_site(const Scenario& scenario, const SubstructureScenario& substructure,
     run_to_the_end(participant, process, clock, scenario);
   }
   set_assert_action(nullptr, nullptr);
-  process.tell_refused_packets();
-  return exit_code_of(participant, process.recorder());
+  return end_of(participant, process);
 }
 
 /// @throws ConfigError when the scenario has no substructure of this id and role.
