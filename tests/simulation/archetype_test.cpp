@@ -119,7 +119,7 @@ class Archetype : public testing::TestWithParam<std::tuple<Belief, Recorded>> {
     std::vector<double> acceleration_g;
     for (double value = 0.0; in >> value;) acceleration_g.push_back(value);
     const auto first = static_cast<std::size_t>(kDuration_s / 0.005);
-    const std::filesystem::path file = directory_ / "twice.txt";
+    std::filesystem::path file = directory_ / "twice.txt";
     std::ofstream out{file};
     out << "time_s acceleration_m_per_s2\n";
     for (std::size_t i = 0; i < 2 * first; ++i) {

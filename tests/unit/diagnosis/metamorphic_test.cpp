@@ -141,7 +141,7 @@ Recording recording_of(const Specimen& specimen, const Recorded& how) {
   std::string text = how.has_steps ? "step" : "time_s";
   for (std::size_t dof = 0; dof < how.dof + 1; ++dof) {
     const std::string suffix = how.dof == 0 ? "" : fmt::format("_{}", dof + 1);
-    text += ",measured_displacement_m" + suffix + ",measured_force_n" + suffix;
+    text += fmt::format(",measured_displacement_m{0},measured_force_n{0}", suffix);
   }
   text += "\n";
   const std::function<double(double)> force_n = specimen.force_n();
@@ -178,7 +178,8 @@ void expect_cause(const Specimen& specimen, const Recorded& how, const report::R
 class Metamorphic : public testing::TestWithParam<std::tuple<Specimen, Recorded>> {};
 
 TEST_P(Metamorphic, AnswerIsThatOfThePlainTest) {
-  const auto& [specimen, how] = GetParam();
+  const Specimen& specimen = std::get<0>(GetParam());
+  const Recorded& how = std::get<1>(GetParam());
   SiteModel model = made_model();
   model.make_law = [&] { return specimen.believed(how); };
   const Recording recording = recording_of(specimen, how);
