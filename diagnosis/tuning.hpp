@@ -379,8 +379,6 @@ inline constexpr double kNamedLeavesHeldOut = 0.03;
 /// alone.
 inline constexpr double kNearFloor = 2.0;
 inline constexpr double kWellAboveFloor = 10.0;
-/// Of kNamedLeaves, so little that the floor does not matter: computed signals have none.
-inline constexpr double kNearNothing = 0.1;
 inline constexpr double kPartialLeaves = 0.3;
 /// Share of the output [rms over rms] by which a number of the model may be off: load cells, displacement transducers
 /// and measured stiffnesses are rarely known to better than a hundredth or two.
@@ -412,6 +410,9 @@ inline constexpr double kTwoSided99 = 2.576;
 /// under the noise, the 95 % quantile of error over half (split conformal prediction; Lei et al., JASA 113, 2018). The
 /// test IntervalCoverage.ScaleIsTheQuantileOfDrawnRigs computes it again.
 inline constexpr double kIntervalScale = 1.36;
+/// Share of what is known of a parameter that comes from other blocks, below which a block stands alone: an interval from
+/// differences between blocks would be a thousand times too wide.
+inline constexpr double kToldByOthers = 1e-3;
 /// Draws of a bootstrap; one in forty lies beyond either end of a 95 % interval.
 inline constexpr std::size_t kResamples = 200;
 /// Blocks per segment that the shrinking is resampled from.

@@ -105,12 +105,14 @@ struct Doubt {
 
 /// What a block pulls at the parameters, as if it had not pulled the fit towards itself: its residual over one minus
 /// its leverage (CR3 of Bell and McCaffrey, Survey Methodology 28, 2002), brought to the parameters' size by
-/// X' f(X M X') = f(X'X M) X', with M = root root' the inverse of the normal matrix.
+/// X' f(X M X') = f(X'X M) X', with M = root root' the inverse of the normal matrix. What this block alone tells, as an
+/// instant that lies in it, has no other fit to be compared with: the block pulls nothing there.
 Eigen::VectorXd pull_of_block(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
                               const Eigen::MatrixXd& root) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage{root.transpose() * (columns.transpose() * columns) *
                                                                 root};
-  const Eigen::VectorXd scale = (1.0 - leverage.eigenvalues().array()).max(tuning::kCovarianceRidge).inverse().matrix();
+  const Eigen::ArrayXd told_by_others = 1.0 - leverage.eigenvalues().array();
+  const Eigen::VectorXd scale = (told_by_others > tuning::kToldByOthers).select(told_by_others.inverse(), 0.0).matrix();
   const Eigen::VectorXd own =
       leverage.eigenvectors().transpose() * (root.transpose() * (columns.transpose() * residual));
   return root * (leverage.eigenvectors() * scale.cwiseProduct(own));
@@ -253,19 +255,20 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
   Eigen::MatrixXd all(linear.columns.rows(), count + beside);
   all.leftCols(count) = linear.columns;
   if (beside > 0) all.rightCols(beside) = numbers.columns;
+  // Columns in metres and in newtons differ by ten orders of magnitude, which would cost their inverses all digits.
+  const Eigen::VectorXd size = all.colwise().norm().transpose().array().max(std::numeric_limits<double>::min());
+  all *= size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd own = all.leftCols(count);
   // Noise of one sample, as if all were independent of each other.
   double independent = 0.0;
   for (const std::size_t position : projection.touched()) independent += problem.segments[position].independent;
   const double noise = residual.squaredNorm() / std::max(1.0, independent);
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(count + beside);
-  Eigen::VectorXd meat = precision;
   for (Eigen::Index i = 0; i < beside; ++i) {
-    const double deviation = numbers.deviations[static_cast<std::size_t>(i)];
-    const double known = noise / (deviation * deviation);
-    precision[count + i] = known;
-    meat[count + i] = known * noise;
+    const double deviation = numbers.deviations[static_cast<std::size_t>(i)] * size[count + i];
+    precision[count + i] = noise / (deviation * deviation);
   }
-  Sandwich right{linear.columns, Eigen::VectorXd::Zero(count)};
+  Sandwich right{own, Eigen::VectorXd::Zero(count)};
   Sandwich wrong{all, precision};
   Eigen::VectorXd by_noise = Eigen::VectorXd::Zero(count);
   double blocks = 0.0;
@@ -273,27 +276,28 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     const Eigen::Index begin = projection.first_row(t);
     for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b, blocks += 1.0) {
-      const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
-      right.add_block(residual, begin + fit.block_begins[b], size);
-      wrong.add_block(residual, begin + fit.block_begins[b], size);
+      const Eigen::Index rows = fit.block_begins[b + 1] - fit.block_begins[b];
+      right.add_block(residual, begin + fit.block_begins[b], rows);
+      wrong.add_block(residual, begin + fit.block_begins[b], rows);
     }
-    const Eigen::Index size = fit.measured.size();
-    by_noise += variances_of_sums(residual.segment(begin, size), wrong.weights(begin, size).leftCols(count));
+    const Eigen::Index rows = fit.measured.size();
+    by_noise += variances_of_sums(residual.segment(begin, rows), wrong.weights(begin, rows).leftCols(count));
   }
   wrong.widen_to(by_noise);
-  wrong.add_prior(meat);
+  wrong.add_prior(noise * precision);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     const Eigen::Index begin = projection.first_row(t);
-    const Eigen::Index size = fit.measured.size();
-    const double repeatable = fit.discrepancy->repeatable(residual.segment(begin, size));
-    right.add_pull(fit.discrepancy->pull(repeatable, right.weights(begin, size)));
-    wrong.add_pull(fit.discrepancy->pull(std::max(repeatable, allowed_energy(fit)), wrong.weights(begin, size)));
+    const Eigen::Index rows = fit.measured.size();
+    const double repeatable = fit.discrepancy->repeatable(residual.segment(begin, rows));
+    right.add_pull(fit.discrepancy->pull(repeatable, right.weights(begin, rows)));
+    wrong.add_pull(fit.discrepancy->pull(std::max(repeatable, allowed_energy(fit)), wrong.weights(begin, rows)));
   }
-  return {
-      .variances = right.covariance().diagonal(),
-      .covariance = tuning::kIntervalScale * tuning::kIntervalScale * wrong.covariance().topLeftCorner(count, count),
-      .freedom = std::max(1.0, blocks - 1.0)};
+  const auto unit = size.head(count).cwiseInverse().asDiagonal();
+  return {.variances = (unit * right.covariance() * unit).diagonal(),
+          .covariance = tuning::kIntervalScale * tuning::kIntervalScale *
+                        (unit * wrong.covariance().topLeftCorner(count, count) * unit),
+          .freedom = std::max(1.0, blocks - 1.0)};
 }
 
 /// Where a free parameter of the linearisation stands among those of the effects, and its unit there.
@@ -462,6 +466,10 @@ double quantile_95(double freedom) noexcept {
 
 double half_width_95(const ParameterEstimate& estimate) noexcept {
   return quantile_95(estimate.freedom) * estimate.standard_error;
+}
+
+double half_interval_95(const ParameterEstimate& estimate) noexcept {
+  return quantile_95(estimate.freedom) * estimate.beside_wrong_numbers;
 }
 
 double SegmentResult::held_out_mean_square(const FitSegment& segment) const {

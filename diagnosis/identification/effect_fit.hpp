@@ -24,6 +24,9 @@ struct ParameterEstimate {
 /// Half of the 95 % interval beside a model whose numbers are right.
 [[nodiscard]] double half_width_95(const ParameterEstimate& estimate) noexcept;
 
+/// Half of the 95 % interval that is reported: every number of the model may be slightly wrong beside.
+[[nodiscard]] double half_interval_95(const ParameterEstimate& estimate) noexcept;
+
 /// Residuals of a fit on one segment, in its averaged samples.
 struct SegmentResult {
   bool touched = false;

@@ -17,7 +17,7 @@ using report::Verdict;
 
 /// With more left than a name allows, a cause is one part of the answer.
 Verdict verdict_by_remainder(const GapEnergy& after, double left, const VerdictPolicy& policy) noexcept {
-  const double over_floor = after.floor > 0.0 ? std::sqrt(after.total / after.floor) : 0.0;
+  const double over_floor = after.allowed > 0.0 ? std::sqrt(after.total / after.allowed) : 0.0;
   if (left > policy.partial_leaves) return Verdict::unknown;
   return leaves_little(left, over_floor, policy.named_leaves) ? Verdict::named : Verdict::partial;
 }
@@ -133,7 +133,7 @@ namespace {
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
   report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
   parameter.is_at_bound = estimate.at_bound;
-  const double half = quantile_95(estimate.freedom) * estimate.beside_wrong_numbers;
+  const double half = half_interval_95(estimate);
   if (half > 0.0) parameter.ci95 = report::Interval{estimate.value - half, estimate.value + half};
   return parameter;
 }

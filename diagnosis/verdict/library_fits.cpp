@@ -256,6 +256,13 @@ std::vector<std::size_t> longest_first(const IdentificationProblem& problem,
   return order;
 }
 
+/// A stiffness or strength of the specimen's law. A law in place of the specimen's own has its own.
+bool is_of_law(const EffectType& effect) {
+  const ModelNumber number = effect.traits.number;
+  return effect.interface == EffectInterface::specimen &&
+         (number == ModelNumber::stiffness || number == ModelNumber::strength);
+}
+
 }  // namespace
 
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
@@ -264,6 +271,10 @@ std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, c
   std::size_t column = 0;
   for (std::size_t i = 0; i < problem.segments.size() && column < fit.nuisance.size(); ++i) {
     if (!fit.segments[i].touched) continue;
+    if (!problem.segments[i].is_suspect) {
+      column += problem.segments[i].nuisance_types.size();
+      continue;
+    }
     for (const EffectType* type : problem.segments[i].nuisance_types) {
       auto number = std::ranges::find(numbers, type, &EffectSetting::type);
       if (number == numbers.end()) {
@@ -406,13 +417,9 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   std::erase_if(effects, [&](const EffectType* effect) {
     // Of the laws the simplest stands for all: which one it is, is asked when the effects beside it are known.
     if (effect->replacement != nullptr && effect != &law_candidates(problem.law_is_spring).front().type) return true;
-    // A law in place of the specimen's own has its own stiffness and strength.
-    const ModelNumber number = effect->traits.number;
-    const bool is_of_law = effect->interface == EffectInterface::specimen &&
-                           (number == ModelNumber::stiffness || number == ModelNumber::strength);
     return std::ranges::any_of(base, [&](const EffectSetting& setting) {
       return setting.type == effect ||
-             (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law));
+             (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law(*effect)));
     });
   });
   IdentificationProblem extended = coarse;
@@ -440,8 +447,12 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(
       promising.size(), threads,
       [&](std::size_t i) {
+        const EffectSetting& further = promising[i].fit.effects.front();
         std::vector<EffectSetting> start = base;
-        start.push_back(promising[i].fit.effects.front());
+        if (further.type->replacement != nullptr) {
+          std::erase_if(start, [](const EffectSetting& setting) { return is_of_law(*setting.type); });
+        }
+        start.push_back(further);
         together[i] = fit_together(coarse, promising[i].type, start, search_effects);
       },
       counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));

@@ -57,8 +57,8 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
-/// The wrong numbers of the model that a fit with nuisance parameters found, as effects; of several recordings the
-/// mean.
+/// The wrong numbers of the model that a fit with nuisance parameters found at the suspect segments, as effects; of
+/// several recordings the mean. What it needs elsewhere is a matter of the channel there.
 [[nodiscard]] std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit);
 
 /// Every judged effect and law fitted, best score first; those that cannot be fitted are omitted, and those that the

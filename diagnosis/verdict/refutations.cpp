@@ -25,6 +25,7 @@ using enum EffectInterface;
 /// One fitted effect and the data that may speak against it.
 struct Suspect {
   const IdentificationProblem& problem;
+  const FitOutcome& outcome;
   const EffectSetting& effect;
   const std::vector<ParameterEstimate>& estimates;
 
@@ -218,6 +219,26 @@ std::string friction_refuted(const Suspect& suspect) {
                      100.0 * stuck_m / path_m);
 }
 
+/// A part that may as well have been broken before the test is a model that is too stiff: what it carried until it
+/// broke has to be seen in what is left otherwise.
+std::string instant_refuted(const Suspect& suspect) {
+  const double instant_s = suspect.parameter("instant_s").value;
+  const double lost_ratio = suspect.parameter("lost_ratio").value;
+  double deviance = 0.0;
+  for (std::size_t i = 0; i < suspect.problem.segments.size(); ++i) {
+    const FitSegment& fit = suspect.problem.segments[i];
+    if (!suspect.ends_at(fit)) continue;
+    const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+    const auto before = std::min(fit.measured.size(), static_cast<Eigen::Index>(instant_s / period_s));
+    const double carried = lost_ratio * lost_ratio * fit.measured.head(before).squaredNorm();
+    const double left = suspect.outcome.segments[i].mean_square * static_cast<double>(fit.measured.size());
+    deviance += fit.independent * carried / left;
+  }
+  if (deviance > tuning::kTwoSided95 * tuning::kTwoSided95) return {};
+  return fmt::format("{}: the recordings do not show the part that broke at {}", suspect.name(),
+                     report::quantity(instant_s, "s"));
+}
+
 /// What speaks against an effect beyond its interval.
 struct Check {
   EffectInterface interface;
@@ -236,13 +257,20 @@ constexpr std::array kChecks{
     Check{force_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_n_per_s", "N"); }},
     Check{displacement_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_m_per_s", "m"); }},
     Check{specimen, "geometric_stiffness", height_refuted},
+    Check{specimen, "fracture", instant_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
 };
 
 /// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter: an
 /// interval beside a shape that makes up for the size says nothing of absence.
+/// What a model lacks besides other effects has to be seen in the interval that is reported, every
+/// number of the model in doubt.
 std::string absence_not_excluded(const Suspect& suspect) {
+  const EffectType& type = *suspect.effect.type;
+  const bool is_addition = type.traits.number == ModelNumber::none && type.replacement == nullptr;
+  const bool is_beside_others = suspect.outcome.effects.size() > 1;
+  decltype(half_width_95)& half_width = is_addition && is_beside_others ? half_interval_95 : half_width_95;
   const auto free = std::ranges::count_if(suspect.effect.type->parameters, [&](const EffectParameter& parameter) {
     return !is_fixed(suspect.problem, *suspect.effect.type, parameter);
   });
@@ -253,8 +281,7 @@ std::string absence_not_excluded(const Suspect& suspect) {
     if (!can_be_absent || (free > 1 && !parameter.is_linear) ||
         is_fixed(suspect.problem, *suspect.effect.type, parameter))
       continue;
-    const double off = std::abs(estimate.value - parameter.neutral);
-    if (off > tuning::kTwoSided95 * estimate.standard_error) continue;
+    if (std::abs(estimate.value - parameter.neutral) > half_width(estimate)) continue;
     return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), parameter.name);
   }
   return {};
@@ -263,7 +290,7 @@ std::string absence_not_excluded(const Suspect& suspect) {
 }  // namespace
 
 bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
-  return !absence_not_excluded({problem, fit.effects[position], fit.parameters[position]}).empty();
+  return !absence_not_excluded({problem, fit, fit.effects[position], fit.parameters[position]}).empty();
 }
 
 bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
@@ -287,7 +314,7 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
 
 std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
-    const Suspect suspect{problem, candidate.fit.effects[i], candidate.fit.parameters[i]};
+    const Suspect suspect{problem, candidate.fit, candidate.fit.effects[i], candidate.fit.parameters[i]};
     // Effects found before were needed without this one; beside it their intervals may be wide.
     std::string why = suspect.effect.type == candidate.type ? absence_not_excluded(suspect) : std::string{};
     for (const Check& check : kChecks) {

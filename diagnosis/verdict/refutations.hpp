@@ -8,7 +8,8 @@
 namespace hybridtest {
 
 /// Whether the 95 % interval of what an effect is proportional to, or of its only parameter, holds the value at which
-/// it is absent.
+/// it is absent: of what a model lacks besides other effects the interval that is reported, else the
+/// one beside numbers of the model that are right.
 /// @param position   in the fit's effects.
 [[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
@@ -21,6 +22,7 @@ namespace hybridtest {
 ///   which it is absent;
 /// - a column that is shorter than ten times its drift;
 /// - a further effect with a parameter at the end of its search range, see is_cut_off();
+/// - a fracture so early that the recordings do not show what the part carried before;
 /// - dry friction that sticks over more than half of the path: that is an elastoplastic spring.
 [[nodiscard]] std::string refutation(const IdentificationProblem& problem, const Candidate& candidate);
 

@@ -136,16 +136,15 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   return rest;
 }
 
-/// Drops what the other effects can do without, the least needed first, and numbers of the model that may as well be
-/// right.
+/// Drops what the other effects can do without, the least needed first, and what may as well be absent.
 void prune(const IdentificationProblem& problem, const FitOutcome& baseline, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
     std::optional<FitOutcome> best;
     for (std::size_t i = 0; i < fit.effects.size(); ++i) {
       FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
       const EffectType& type = *fit.effects[i].type;
-      const bool may_be_right = is_number(problem, type) && may_be_absent(problem, fit, i);
-      if (!may_be_right && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit})) continue;
+      if (!may_be_absent(problem, fit, i) && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit}))
+        continue;
       if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
     }
     if (!best) return;
@@ -214,6 +213,33 @@ std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutco
   const auto position = static_cast<std::size_t>(next - beside.data());
   growth.accepted.push_back({next->type, softmax(scores_of(beside))[position]});
   return growth;
+}
+
+/// Further effects one by one, until none is accepted.
+void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
+                  std::size_t threads, const PartProgress& progress, Growth& growth) {
+  for (std::size_t round = 0;
+       growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
+    const std::vector<Candidate> beside =
+        fit_beside(problem, coarse, growth.fit.effects, threads, progress.round(round, tuning::kEffectsMax - 2));
+    std::optional<Growth> next = grown(problem, selection.baseline, growth, beside);
+    if (!next) break;
+    growth = std::move(*next);
+  }
+}
+
+/// The form of a law and which effects are needed, when all are known: compared at the lower rate, at a fraction of the
+/// cost.
+/// @return whether an effect was dropped.
+bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
+            Growth& growth) {
+  const std::size_t count = growth.fit.effects.size();
+  if (count < 2) return false;
+  growth.fit = refit_effects(coarse, growth.fit.effects, false);
+  settle_form(coarse, selection, growth);
+  prune(coarse, fit_nothing(coarse, false), growth.fit);
+  growth.fit = refit_effects(problem, growth.fit.effects, false);
+  return growth.fit.effects.size() < count;
 }
 
 /// Whether this candidate is grown: the first one is, and one that scores nearly as well; where a sensor's effect
@@ -364,21 +390,12 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   Growth growth =
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
-  for (std::size_t round = 0; growth.accepted.size() > 1 && growth.fit.effects.size() < tuning::kEffectsMax &&
-                              gap_energy(problem, growth.fit).is_clear();
-       ++round) {
-    const std::vector<Candidate> beside =
-        fit_beside(problem, coarse, growth.fit.effects, threads, further.round(round, tuning::kEffectsMax - 2));
-    std::optional<Growth> next = grown(problem, selection.baseline, growth, beside);
-    if (!next) break;
-    growth = std::move(*next);
-  }
-  if (growth.fit.effects.size() > 1) {
-    // Comparisons among what was found do at the lower rate, at a fraction of the cost.
-    growth.fit = refit_effects(coarse, growth.fit.effects, false);
-    settle_form(coarse, selection, growth);
-    prune(coarse, fit_nothing(coarse, false), growth.fit);
-    growth.fit = refit_effects(problem, growth.fit.effects, false);
+  // Beside a leader alone nothing was accepted.
+  if (growth.accepted.size() > 1) grow_further(problem, coarse, selection, threads, further, growth);
+  // In place of what was dropped, something else may be needed.
+  if (settle(problem, coarse, selection, growth)) {
+    grow_further(problem, coarse, selection, threads, further, growth);
+    settle(problem, coarse, selection, growth);
   }
   selection.shares = cause_shares(coarse, growth.fit.effects, progress.part(tuning::kEffectsChosen, 1.0));
   selection.chosen = std::move(growth.fit);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/random.hpp"
@@ -126,8 +125,7 @@ bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
 
 /// What was named leaves, on recordings that were not fitted, more than a name allows.
 bool leaves_a_part(const Shrink& held_out) {
-  const double floor = held_out.floor_nrmse;
-  const double over_floor = floor > 0.0 ? held_out.nrmse_after / floor : std::numeric_limits<double>::infinity();
+  const double over_floor = held_out.nrmse_after / std::hypot(held_out.floor_nrmse, tuning::kModelAllowance);
   return !leaves_little(held_out.unknown_share, over_floor, tuning::kNamedLeavesHeldOut);
 }
 

@@ -5,6 +5,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
+#include "diagnosis/verdict/library_fits.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Numbers of the user's model that are slightly off: corrected, and no causes.
@@ -74,6 +75,30 @@ TEST(Corrections, NumbersFurtherOffAreCauses) {
   EXPECT_THAT(names_in(diagnosis.report.ranking, true),
               UnorderedElementsAre("specimen stiffness_error", "force_sensor gain"));
   EXPECT_THAT(names_in(diagnosis.report.corrections, false), UnorderedElementsAre("transfer_system gain"));
+}
+
+TEST(Corrections, ChannelBringsNoNumberOfTheNextOne) {
+  // The specimen pinches, which no stiffness mends. The sensor's gain, which the force shows too, must not bring one
+  // along while the displacement is judged.
+  const auto moved_m = [](double t) { return 1.03 * made_motion_m(t); };
+  const Recording recording = made_recording(moved_m, [&](double t) {
+    const double share = moved_m(t) / 0.006;
+    return kMadeStiffness_n_per_m * moved_m(t) * (1.0 - 0.9 * std::exp(-share * share));
+  });
+  const IdentificationProblem whole = make_problem(made_model(), segments_of(recording, 0, 0));
+  const auto numbers_at = [&](Channel channel, EffectInterface interface) {
+    const IdentificationProblem problem = judged_at(whole, channel);
+    const FitOutcome fit = fit_effects(problem, {find_effect(interface, "gain")}, true);
+    std::vector<std::string> names;
+    for (const EffectSetting& number : wrong_numbers(problem, fit)) {
+      names.push_back(std::string{name_of(number.type->interface)} + " " + std::string{number.type->name});
+    }
+    return names;
+  };
+  EXPECT_THAT(numbers_at(Channel::measured_displacement, EffectInterface::displacement_sensor),
+              Not(testing::Contains("specimen stiffness_error")));
+  EXPECT_THAT(numbers_at(Channel::measured_force, EffectInterface::force_sensor),
+              testing::Contains("specimen stiffness_error"));
 }
 
 TEST(Corrections, PolicyDecidesWhatIsSlightlyOff) {

@@ -94,10 +94,30 @@ TEST(FitEffects, FindsTimeOfFracture) {
   EXPECT_NEAR(fit.effects[0].values[0], lost, 1e-3);  // 20 N of noise on 30 kN, 250 times a second
   // It breaks over one sample, and what is compared are means of two.
   EXPECT_NEAR(fit.effects[0].values[1], instant_s, 2.0 * kSitePeriod_s);
+  // One block alone tells it: its interval is as long as a few samples, and holds it.
+  EXPECT_LT(half_interval_95(fit.parameters[0][1]), 0.05);
+  EXPECT_LT(std::abs(fit.effects[0].values[1] - instant_s), half_interval_95(fit.parameters[0][1]) + kSitePeriod_s);
   // The block in which it breaks is not thought to have broken at any other time.
   const FitSegment& segment = problem.segments.back();
   EXPECT_LT(fit.segments.back().held_out_mean_square(segment),
             0.01 * fit_nothing(problem, false).segments.back().held_out_mean_square(segment));
+}
+
+/// A drift [m/s] of micrometres beside a force whose numbers are as large in newtons: as sure as straight lines through
+/// the same noise are.
+TEST(FitEffects, IntervalsDoNotSufferFromUnits) {
+  const double drift_m_per_s = 2e-6;
+  const auto drifting_m = [&](double t) { return made_motion_m(t) + drift_m_per_s * t; };
+  const auto problem = problem_of(made_recording(drifting_m, spring_n));
+  for (const std::vector<const EffectType*>& beside :
+       {std::vector<const EffectType*>{}, {find_effect(specimen, "fracture")}}) {
+    std::vector<const EffectType*> effects{find_effect(displacement_sensor, "drift"),
+                                           find_effect(displacement_sensor, "bias")};
+    effects.insert(effects.end(), beside.begin(), beside.end());
+    const FitOutcome fit = fit_effects(problem, effects, true);
+    EXPECT_LT(std::abs(fit.effects[0].values[0] - drift_m_per_s), half_interval_95(fit.parameters[0][0]));
+    EXPECT_LT(half_interval_95(fit.parameters[0][0]), 0.2 * drift_m_per_s);
+  }
 }
 
 /// Noise that is loud while the specimen moves far and quiet else: of one level it would be thought to be where it

@@ -103,7 +103,7 @@ TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   Candidate pair = fit_of(specimen, "viscous_damping", {100.0}, 40.0);
   pair.fit.effects.push_back({find_effect(specimen, "inertia"), {5.0}});
-  pair.fit.parameters.push_back({{.value = 5.0, .standard_error = 4.0}});
+  pair.fit.parameters.push_back({{.value = 5.0, .standard_error = 4.0, .beside_wrong_numbers = 4.0}});
   EXPECT_THAT(refutation(problem, pair), IsEmpty());
   pair.type = find_effect(specimen, "inertia");
   EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
@@ -139,6 +139,28 @@ TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {
   EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.012}, 0.0001)),
               HasSubstr("of the path, as a spring that yields"));
   EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001}, 0.0001)), IsEmpty());
+}
+
+TEST(Refutation, PartThatBrokeBeforeTheRecordingsShowIt) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  const auto broken_at = [&](double instant_s) {
+    Candidate fracture = fit_of(specimen, "fracture", {0.02, instant_s});
+    fracture.fit.segments = fit_nothing(problem, false).segments;
+    return fracture;
+  };
+  // 2 % of the spring: until 5 ms at most 0.1 N, until 0.5 s up to 250 N, beside 20 N of noise.
+  EXPECT_THAT(refutation(problem, broken_at(0.005)), HasSubstr("do not show the part that broke at 5.00"));
+  EXPECT_THAT(refutation(problem, broken_at(0.5)), IsEmpty());
+}
+
+TEST(Refutation, FurtherEffectIsJudgedByTheIntervalThatIsReported) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate inertia = fit_of(specimen, "inertia", {5.0}, 1.0);
+  inertia.fit.parameters[0][0].beside_wrong_numbers = 4.0;
+  EXPECT_THAT(refutation(problem, inertia), IsEmpty());
+  inertia.fit.effects.push_back({find_effect(specimen, "viscous_damping"), {100.0}});
+  inertia.fit.parameters.push_back({{.value = 100.0, .standard_error = 4.0}});
+  EXPECT_THAT(refutation(problem, inertia), HasSubstr("mass_kg"));
 }
 
 TEST(Refutation, DropsWhatIsRefutedAndKeepsTheOrder) {

@@ -55,7 +55,20 @@ TEST(CarryingOver, WhatStaysWellAboveTheFloorIsAPart) {
   EXPECT_EQ(carried_over(Verdict::named, leaving(0.04, 2.1)), Verdict::partial) << "more than 3 %";
   EXPECT_EQ(carried_over(Verdict::named, leaving(0.02, 9.0)), Verdict::named);
   EXPECT_EQ(carried_over(Verdict::named, leaving(0.02, 11.0)), Verdict::partial) << "well above the floor";
-  EXPECT_EQ(carried_over(Verdict::named, leaving(0.002, 11.0)), Verdict::named) << "next to nothing of the gap";
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.0002, 11.0)), Verdict::partial) << "however large the gap was";
+}
+
+/// Without noise the floor is what no model is expected to reproduce: 0.05 % of the output.
+TEST(CarryingOver, ComputedSignalsHaveAFloor) {
+  const auto leaving = [](double nrmse) {
+    Shrink shrink = removing({0.9, 0.999}, 0.1, 0.05);
+    shrink.floor_nrmse = 0.0;
+    shrink.unknown_share = 0.01;
+    shrink.nrmse_after = nrmse;
+    return shrink;
+  };
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.0049)), Verdict::named);
+  EXPECT_EQ(carried_over(Verdict::named, leaving(0.0051)), Verdict::partial);
 }
 
 }  // namespace
