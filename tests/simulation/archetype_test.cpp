@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "coordinator/excitation/read_ground_motion.hpp"
 #include "core/random.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/runs/diagnose_site.hpp"
@@ -88,10 +89,6 @@ const std::vector<Recorded> kBelieved{
     {.name = "TenSecants", .secants = 10.0},
 };
 
-std::filesystem::path shipped(const std::string& file) {
-  return std::filesystem::path{HYBRIDTEST_SOURCE_DIR} / "launch" / "scenarios" / file;
-}
-
 class Archetype : public testing::TestWithParam<std::tuple<Belief, Recorded>> {
  protected:
   /// What the site recorded of the shipped test.
@@ -112,18 +109,15 @@ class Archetype : public testing::TestWithParam<std::tuple<Belief, Recorded>> {
 
   /// The first seconds of the shipped ground motion, twice.
   [[nodiscard]] std::filesystem::path repeated_motion() {
-    const Scenario scenario = shipped_scenario("two_storey_one_site", {});
-    std::ifstream in{shipped("ground_motions/design_ec8_c.AT2")};
-    std::string line;
-    for (int i = 0; i < 4; ++i) std::getline(in, line);
-    std::vector<double> acceleration_g;
-    for (double value = 0.0; in >> value;) acceleration_g.push_back(value);
-    const auto first = static_cast<std::size_t>(kDuration_s / 0.005);
+    const GroundMotion motion = read_ground_motion(std::filesystem::path{HYBRIDTEST_SOURCE_DIR} /
+                                                   "launch/scenarios/ground_motions/design_ec8_c.AT2");
+    const auto first = static_cast<std::size_t>(kDuration_s / motion.dt_s);
     std::filesystem::path file = directory_ / "twice.txt";
     std::ofstream out{file};
     out << "time_s acceleration_m_per_s2\n";
     for (std::size_t i = 0; i < 2 * first; ++i) {
-      out << fmt::format("{:.3f} {:.9f}\n", 0.005 * static_cast<double>(i), 9.80665 * acceleration_g[i % first]);
+      out << fmt::format("{:.3f} {:.9f}\n", motion.dt_s * static_cast<double>(i),
+                         motion.acceleration_m_per_s2[i % first]);
     }
     return file;
   }

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,13 +13,17 @@
 namespace hybridtest {
 
 /// A message of a writer that skips those from 1 to this number, and says so to every reader of the participant.
-/// @param end   beyond 2^24 no test has it: Fast DDS 2.9 is busy for years with a gap up to 2^60.
-inline std::vector<std::uint8_t> gap_up_to(std::uint64_t end) {
+/// @param end           beyond 2^24 no test has it: Fast DDS 2.9 is busy for years with a gap up to 2^60.
+/// @param participant   the writer's; its GUID prefix.
+inline std::vector<std::uint8_t> gap_up_to(std::uint64_t end, const std::array<std::uint8_t, 12>& participant = {1},
+                                           const std::array<std::uint8_t, 4>& writer = {}) {
   constexpr std::uint8_t kGap = 0x08;
   constexpr std::uint8_t kLittleEndian = 0x01;
-  std::vector<std::uint8_t> packet{'R', 'T', 'P', 'S', 2, 3, 1, 15, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  std::vector<std::uint8_t> packet{'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  packet.insert(packet.end(), participant.begin(), participant.end());
   packet.insert(packet.end(), {kGap, kLittleEndian, 28, 0});
-  packet.insert(packet.end(), 8, 0);  // to whom and of whom
+  packet.insert(packet.end(), 4, 0);  // to every reader
+  packet.insert(packet.end(), writer.begin(), writer.end());
   const auto append = [&packet](std::uint64_t number) {
     for (const unsigned shift : {32U, 40U, 48U, 56U, 0U, 8U, 16U, 24U}) {
       packet.push_back(static_cast<std::uint8_t>(number >> shift));

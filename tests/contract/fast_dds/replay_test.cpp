@@ -1,8 +1,5 @@
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <algorithm>
@@ -19,9 +16,11 @@
 #include "tests/contract/fast_dds/fast_dds_networks.hpp"
 #include "tests/contract/networks.hpp"
 #include "tests/contract/sample_messages.hpp"
+#include "tests/support/rtps_packets.hpp"
 #include "tests/support/started_program.hpp"
 #include "transport/fast_dds/participant_qos.hpp"
 #include "transport/fast_dds/ports.hpp"
+#include "transport/fast_dds/receiving_transport.hpp"
 
 /// Packets of somebody who is no participant: a command that was captured in one test and is sent again in another, and
 /// messages of the protocol in the name of a participant.
@@ -45,15 +44,10 @@ struct TapDescriptor final : rtps::ChainingTransportDescriptor {
   std::shared_ptr<Captured> captured;
 };
 
-class Tap final : public rtps::ChainingTransport {
+class Tap final : public ReceivingTransport {
  public:
-  explicit Tap(const TapDescriptor& descriptor) : ChainingTransport{descriptor}, descriptor_{descriptor} {}
+  explicit Tap(const TapDescriptor& descriptor) : ReceivingTransport{descriptor}, descriptor_{descriptor} {}
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-  bool send(eprosima::fastrtps::rtps::SenderResource* sender, const Octet* bytes, std::uint32_t count,
-            eprosima::fastrtps::rtps::LocatorsIterator* begin, eprosima::fastrtps::rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& until) override {
-    return sender->send(bytes, count, begin, end, until);
-  }
   void receive(rtps::TransportReceiverInterface* receiver, const Octet* bytes, std::uint32_t count,
                const Locator& local, const Locator& remote) override {
     {
@@ -115,20 +109,15 @@ void replace(Packet& packet, const GuidPrefix& from, const GuidPrefix& to) {
 
 /// Sends to the sockets for messages, or for discovery, of all participants of the domain on this machine.
 void send_to_everyone(const std::vector<Packet>& packets, std::uint32_t domain, bool is_discovery = false) {
-  const int sender = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const PortParameters ports;
   const std::uint32_t offset = is_discovery ? ports.offsetd1 : ports.offsetd3;
   for (const Packet& packet : packets) {
     for (std::uint32_t participant = 0; participant < 119; ++participant) {
-      sockaddr_in to{};
-      to.sin_family = AF_INET;
-      to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      to.sin_port = htons(static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * domain + offset +
-                                                     ports.participantIDGain * participant));
-      ::sendto(sender, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+      send_to(static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * domain + offset +
+                                         ports.participantIDGain * participant),
+              packet);
     }
   }
-  ::close(sender);
 }
 
 void append(Packet& packet, std::initializer_list<int> more) {
@@ -152,11 +141,9 @@ Packet leaving_notice(const GuidPrefix& participant) {
 
 /// No message of this writer between the first one and 2^60 comes any more.
 Packet endless_gap(const GuidPrefix& participant, const std::array<std::uint8_t, 4>& writer) {
-  Packet packet = packet_of(participant);
-  append(packet, {8, 1, 28, 0, 0, 0, 0, 0});
-  packet.insert(packet.end(), writer.begin(), writer.end());
-  append(packet, {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0x10, 0, 0, 0, 0, 0, 0, 0, 0});
-  return packet;
+  std::array<std::uint8_t, GuidPrefix::size> prefix{};
+  std::ranges::copy(participant.value, prefix.begin());
+  return gap_up_to(std::uint64_t{1} << 60U, prefix, writer);
 }
 
 class Replay : public ::testing::Test {
