@@ -438,7 +438,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     explained.push_back(parts.explained - before);
     judgements.push_back(stage.judgement);
   }
-  report.verdict = verdict_with(traces, verdict_of(judgements), parts, settings.policy);
+  report.verdict = verdict_with(traces, verdict_of(judgements), parts);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const double part = parts.explained > 0.0 ? explained[i] / parts.explained : 1.0;
     std::ranges::move(rank(stages[i], part), std::back_inserter(report.ranking));

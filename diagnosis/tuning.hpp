@@ -359,8 +359,9 @@ inline constexpr int kSilence_s = 1;
 
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
-/// A gap above this multiple of its floor that nothing reduces is unknown.
-inline constexpr double kUnknownOverFloor = 2.0;
+/// Residual over the floor [rms over rms] up to which nothing of a gap is left to explain, and a cause is named; above,
+/// a gap that nothing reduces is unknown.
+inline constexpr double kNearFloor = 2.0;
 /// A signal smaller than this multiple of its noise [standard deviations] cannot show a gap, so that an absent gap is
 /// no evidence. At the larger multiple an effect of a tenth of the signal is as visible.
 inline constexpr double kExcitedOverNoise = 3.0;
@@ -369,17 +370,10 @@ inline constexpr double kWellExcitedOverNoise = 30.0;
 inline constexpr double kFaultOverFloor = 1.15;
 /// When one gap exceeds its floor by more than this factor, gaps below this factor count as none.
 inline constexpr double kSuspectOverFloor = 2.0;
-/// Share of the repeatable gap [variance] up to which its cause is named (a tenth of its amplitude), and up to which it
-/// is named in part.
-inline constexpr double kNamedLeaves = 0.01;
-/// Share of the gap [variance] that a named cause may leave on recordings that were not fitted, where its numbers are
-/// not the best ones.
-inline constexpr double kNamedLeavesHeldOut = 0.03;
-/// Residual over the floor [rms over rms] up to which nothing of a gap is left, and above which no cause is named
-/// alone.
-inline constexpr double kNearFloor = 2.0;
-inline constexpr double kWellAboveFloor = 10.0;
+/// Share of the repeatable gap [variance] up to which its cause is named in part.
 inline constexpr double kPartialLeaves = 0.3;
+/// Share of the gap [variance] that hardly matters: a tenth of its amplitude.
+inline constexpr double kHardlyLeft = 0.01;
 /// Share of the output [rms over rms] by which a number of the model may be off: load cells, displacement transducers
 /// and measured stiffnesses are rarely known to better than a hundredth or two.
 inline constexpr double kNumbersWithin = 0.025;
@@ -420,7 +414,7 @@ inline constexpr std::size_t kShrinkBlocks = 12;
 
 // The computed structure: all signals are computed, without measurement noise.
 
-/// As kNamedLeaves: wrong ratios come within a hundredth, right ones within rounding.
+/// As kHardlyLeft: wrong ratios come within a hundredth, right ones within rounding.
 inline constexpr double kComputedLeaves = 1e-6;
 /// Gauss-Newton on its ratios: steps, halvings of a step, step of the differences, change below which it is found.
 inline constexpr int kRatioIterations = 12;

@@ -112,14 +112,15 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
   constexpr auto kPolicy = "What counts as a cause";
   const CLI::Range share{0.0, 1.0};
   command
-      ->add_option("--named-leaves", options->policy.named_leaves,
-                   "Share of the gap's energy up to which its cause is named, 0 to 1")
+      ->add_option(
+          "--named-leaves", options->policy.named_leaves,
+          "Share of the gap's energy up to which its cause is named though more than the floor is left, 0 to 1")
       ->check(share)
       ->capture_default_str()
       ->group(kPolicy);
   command
       ->add_option("--partial-leaves", options->policy.partial_leaves,
-                   "Likewise up to which it is named in part; with more left the gap is unknown")
+                   "Share up to which it is named in part; with more left the gap is unknown")
       ->check(share)
       ->capture_default_str()
       ->group(kPolicy);

@@ -8,7 +8,6 @@
 #include "core/parameters/unit_of.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
-#include "diagnosis/verdict/remainder.hpp"
 
 namespace hybridtest {
 namespace {
@@ -19,7 +18,7 @@ using report::Verdict;
 Verdict verdict_by_remainder(const GapEnergy& after, double left, const VerdictPolicy& policy) noexcept {
   const double over_floor = after.allowed > 0.0 ? std::sqrt(after.total / after.allowed) : 0.0;
   if (left > policy.partial_leaves) return Verdict::unknown;
-  return leaves_little(left, over_floor, policy.named_leaves) ? Verdict::named : Verdict::partial;
+  return policy.names(left, over_floor) ? Verdict::named : Verdict::partial;
 }
 
 /// The gap in units of the outputs. A model that is far off makes it larger than the output itself, and then hardly
@@ -29,10 +28,11 @@ double gap_to_explain(const IdentificationProblem& problem, const Selection& sel
   return std::min(outputs, gap_energy(problem, selection.baseline).excess());
 }
 
-/// Several effects that explain a gap only together, and leave part of it, are a curve fit and not a cause.
-bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total,
+/// Several effects that explain a gap only together, and leave part of it that matters, are a curve fit and not a
+/// cause.
+bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total, double left,
                   const VerdictPolicy& policy) {
-  return selection.chosen.effects.size() > 1 &&
+  return selection.chosen.effects.size() > 1 && left > tuning::kHardlyLeft &&
          gap_energy(problem, selection.library.front().fit).excess() > policy.partial_leaves * total;
 }
 
@@ -98,7 +98,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   Judgement judgement;
   if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return judgement;
   if (selection.chosen.effects.empty()) {
-    if (!stands_above_floor(problem, selection.baseline, tuning::kUnknownOverFloor)) return judgement;
+    if (!stands_above_floor(problem, selection.baseline, tuning::kNearFloor)) return judgement;
     judgement.verdict = Verdict::unknown;
     judgement.gap_left = 1.0;
     return judgement;
@@ -107,13 +107,17 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   const GapEnergy after = gap_energy(problem, selection.chosen);
   judgement.gap_left = total > 0.0 ? after.excess() / total : 0.0;
   judgement.verdict = verdict_by_remainder(after, judgement.gap_left, policy);
-  if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total, policy)) {
+  if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total, judgement.gap_left, policy)) {
     judgement.verdict = Verdict::unknown;
   }
   if (judgement.verdict == Verdict::unknown) return judgement;
+  // A set says less than a name, and may leave what hardly matters.
+  bool may_be_set = judgement.verdict == Verdict::named || judgement.gap_left <= tuning::kHardlyLeft;
   // Where a search ran into its limit, something else may be meant.
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
-    if (is_cut_off(problem, selection.chosen, i)) judgement.verdict = Verdict::partial;
+    if (!is_cut_off(problem, selection.chosen, i)) continue;
+    judgement.verdict = Verdict::partial;
+    may_be_set = false;
   }
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
@@ -124,7 +128,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   } else {
     std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
   }
-  if (judgement.verdict == Verdict::named && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
+  if (may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
   return judgement;
 }
 
@@ -244,15 +248,15 @@ Verdict verdict_of(std::span<const Judgement> judgements) {
   return count(Verdict::set) > 0 ? Verdict::set : Verdict::named;
 }
 
-Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts,
-                     const VerdictPolicy& policy) {
+Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts) {
   if (traces.empty()) return verdict;
   switch (verdict) {
-    case Verdict::none: return Verdict::named;
+    case Verdict::none:
+    case Verdict::named: return Verdict::named;
     case Verdict::set:
       // The set is kept, unless the choice between its members changes hardly anything.
-      return parts.traced < (1.0 - policy.named_leaves) * parts.all() ? Verdict::set : Verdict::named;
-    default: return parts.left <= policy.named_leaves * parts.all() ? Verdict::named : Verdict::partial;
+      return parts.traced < (1.0 - tuning::kHardlyLeft) * parts.all() ? Verdict::set : Verdict::named;
+    default: return parts.left <= tuning::kHardlyLeft * parts.all() ? Verdict::named : Verdict::partial;
   }
 }
 

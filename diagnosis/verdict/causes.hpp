@@ -65,7 +65,7 @@ void add_gap(const IdentificationProblem& problem, const Selection& selection, c
 /// Traces are certain: if there are any, the verdict names them. The verdict is complete only if the rest of the gap
 /// is explained too.
 [[nodiscard]] report::Verdict verdict_with(std::span<const Trace> traces, report::Verdict verdict,
-                                           const GapParts& parts, const VerdictPolicy& policy);
+                                           const GapParts& parts);
 
 /// Lists the traces as causes, in front of causes with a smaller share of the gap.
 void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vector<report::RankedCause>& ranking);

@@ -7,7 +7,6 @@
 #include "core/random.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
-#include "diagnosis/verdict/remainder.hpp"
 
 namespace hybridtest {
 
@@ -124,9 +123,9 @@ bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
 }
 
 /// What was named leaves, on recordings that were not fitted, more than a name allows.
-bool leaves_a_part(const Shrink& held_out) {
+bool leaves_a_part(const Shrink& held_out, const VerdictPolicy& policy) {
   const double over_floor = held_out.nrmse_after / std::hypot(held_out.floor_nrmse, tuning::kModelAllowance);
-  return !leaves_little(held_out.unknown_share, over_floor, tuning::kNamedLeavesHeldOut);
+  return !policy.names(held_out.unknown_share, over_floor);
 }
 
 }  // namespace
@@ -135,11 +134,12 @@ Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out, 
   const auto against = [&](const Shrink& one) { return contradicts(one, policy); };
   if (!report::names_a_cause(verdict) || held_out.empty()) return verdict;
   if (!std::ranges::all_of(held_out, against)) {
-    const bool is_part = verdict == Verdict::named && std::ranges::any_of(held_out, leaves_a_part);
+    const bool is_part = verdict == Verdict::named &&
+                         std::ranges::any_of(held_out, [&](const Shrink& one) { return leaves_a_part(one, policy); });
     return is_part ? Verdict::partial : verdict;
   }
   const bool is_clear = std::ranges::any_of(
-      held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kUnknownOverFloor * one.floor_nrmse; });
+      held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kNearFloor * one.floor_nrmse; });
   return is_clear ? Verdict::unknown : Verdict::none;
 }
 

@@ -145,11 +145,12 @@ TEST(Diagnose, FindsActualCompensatorSetting) {
     dof.of(Channel::measured_force)[i] = kMadeStiffness_n_per_m * dof.of(Channel::measured_displacement)[i];
   }
   const Diagnosis diagnosis = diagnose(model, {&recording, 1}, one_thread());
-  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
   ASSERT_TRUE(has_cause(diagnosis, "compensator", "setting_mismatch"));
   // Its points move by whole samples of 2 ms, in between the search is by derivatives.
   EXPECT_NEAR(diagnosis.causes[0].values[0], 0.020, 1e-5);
-  // The real one's order was lower until its points lay in the record.
+  // The real one's order was lower until its points lay in the record: a part that the setting does not explain, and
+  // that stands above the floor of a recording without noise.
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::partial);
   EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
 }
 
