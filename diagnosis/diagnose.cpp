@@ -79,11 +79,6 @@ double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetti
   return most;
 }
 
-/// The probability that the cause is among the candidates at all.
-double in_library(const Judgement& judgement) {
-  return judgement.verdict == Verdict::partial ? tuning::kPartialRight : tuning::kNamedRight;
-}
-
 /// The causes of the verdict first, then the other candidates.
 /// @param part   of the whole explained gap, that this stage explains.
 std::vector<RankedCause> rank(const Stage& stage, double part) {
@@ -101,7 +96,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.is_cause = true;
       cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
-      cause.probability = in_library(judgement) * selection.chosen_probabilities[i];
+      cause.probability = tuning::kAnswerRight * selection.chosen_probabilities[i];
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
@@ -116,7 +111,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
     const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
     RankedCause cause = ranked(fit, 0);
-    cause.probability = in_library(judgement) * selection.probabilities[i];
+    cause.probability = tuning::kAnswerRight * selection.probabilities[i];
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;
     ranking.push_back(std::move(cause));
@@ -202,7 +197,7 @@ std::vector<RankedCause> corrections_of(std::span<const Stage> stages) {
   for (const Stage& stage : stages) {
     for (const std::size_t i : stage.judgement.corrections) {
       corrections.push_back(ranked(stage.selection.chosen, i));
-      corrections.back().probability = in_library(stage.judgement) * stage.selection.chosen_probabilities[i];
+      corrections.back().probability = tuning::kAnswerRight * stage.selection.chosen_probabilities[i];
       corrections.back().share = stage.selection.shares[i];
     }
   }
