@@ -92,7 +92,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
       listed.push_back(selection.chosen.effects[i].type);
       if (judgement.is_correction(i)) continue;
-      RankedCause cause = ranked(selection.chosen, i);
+      RankedCause cause = ranked(stage.problem.model, selection.chosen, i);
       cause.is_cause = true;
       cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
@@ -110,7 +110,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
     const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
     const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
-    RankedCause cause = ranked(fit, 0);
+    RankedCause cause = ranked(stage.problem.model, fit, 0);
     cause.probability = tuning::kAnswerRight * selection.probabilities[i];
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;
@@ -196,7 +196,7 @@ std::vector<RankedCause> corrections_of(std::span<const Stage> stages) {
   std::vector<RankedCause> corrections;
   for (const Stage& stage : stages) {
     for (const std::size_t i : stage.judgement.corrections) {
-      corrections.push_back(ranked(stage.selection.chosen, i));
+      corrections.push_back(ranked(stage.problem.model, stage.selection.chosen, i));
       corrections.back().probability = tuning::kAnswerRight * stage.selection.chosen_probabilities[i];
       corrections.back().share = stage.selection.shares[i];
     }
@@ -296,7 +296,7 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     if (stage.changes_model() && i + 1 < outputs.size()) {
       SiteModel corrected = fine.model;
       const FitOutcome& chosen = stage.selection.chosen;
-      std::ranges::copy(chosen.effects, std::back_inserter(corrected.effects));
+      for (const EffectSetting& effect : chosen.effects) add_effect(corrected, effect);
       for (std::size_t j = 0; j < chosen.effects.size(); ++j) {
         found.push_back({chosen.effects[j], chosen.covariances[j]});
       }

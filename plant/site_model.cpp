@@ -15,6 +15,21 @@ const EffectType* setting_mismatch() { return find_effect(EffectInterface::compe
 
 }  // namespace
 
+const EffectSetting* place_of(const SiteModel& model, const EffectType& type) noexcept {
+  if (!type.traits.takes_place) return nullptr;
+  const auto last = std::ranges::find(model.effects.rbegin(), model.effects.rend(), &type, &EffectSetting::type);
+  return last == model.effects.rend() ? nullptr : &*last;
+}
+
+void add_effect(SiteModel& model, const EffectSetting& effect) {
+  const EffectSetting* const place = place_of(model, *effect.type);
+  if (place == nullptr) {
+    model.effects.push_back(effect);
+  } else {
+    model.effects[static_cast<std::size_t>(place - model.effects.data())] = effect;
+  }
+}
+
 StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s) {
   const EffectType* const in_setting = model.compensator_delay.most_s > 0.0 ? setting_mismatch() : nullptr;
   std::vector<std::unique_ptr<Effect>> made;

@@ -42,6 +42,13 @@ struct SiteModel {
   std::vector<EffectSetting> effects;
 };
 
+/// The effect of `model` in whose place an added one of this type comes; null: an added one stands behind those there.
+[[nodiscard]] const EffectSetting* place_of(const SiteModel& model, const EffectType& type) noexcept;
+
+/// Adds an effect to the model. A force that cannot be negative would never shrink by another one beside it: of such a
+/// type the numbers are those of the whole specimen, and it takes the place of the last one that the model has.
+void add_effect(SiteModel& model, const EffectSetting& effect);
+
 /// The effects of `model` at one interface, in their order.
 /// @throws ConfigError as the effects.
 [[nodiscard]] StageEffects effects_at(const SiteModel& model, EffectInterface interface, double sample_period_s);

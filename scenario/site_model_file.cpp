@@ -108,6 +108,35 @@ std::string longer_by(std::span<const ListedEffect> effects, std::string text, b
   return text;
 }
 
+std::string without_effects(const std::string& text) {
+  return text.starts_with("effects:") ? std::string{} : text.substr(0, text.find("\neffects:") + 1);
+}
+
+/// Lists all effects of the site in place of the added ones, where one of these takes the place of one that the site
+/// has.
+/// @return whether it does.
+bool list_all(std::vector<ListedEffect>& added, std::vector<SiteModel> dofs) {
+  const auto concerns = [](const ListedEffect& effect, std::size_t dof) {
+    return effect.dof.value_or(static_cast<int>(dof)) == static_cast<int>(dof);
+  };
+  bool any = false;
+  for (const ListedEffect& effect : added) {
+    for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
+      if (!concerns(effect, dof)) continue;
+      any = any || place_of(dofs[dof], *effect.setting.type) != nullptr;
+      add_effect(dofs[dof], effect.setting);
+    }
+  }
+  if (!any) return false;
+  added.clear();
+  for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
+    for (const EffectSetting& effect : dofs[dof].effects) {
+      added.push_back({effect, dofs.size() > 1 ? std::optional{static_cast<int>(dof)} : std::nullopt});
+    }
+  }
+  return true;
+}
+
 constexpr double kUsualControlRate_hz = 1024.0;
 
 std::string indented(std::string_view lines, std::string_view first, std::string_view others) {
@@ -230,8 +259,12 @@ SiteModelText SiteModelFile::with_effects(std::span<const ListedEffect> effects)
     result.text.replace(result.text.find(written(compensators)), written(compensators).size(),
                         written(result.compensators));
   }
-  result.text = longer_by(rest, std::move(result.text), has_effects);
-  result.rig = longer_by(rest, std::move(result.rig), has_effects);
+  const bool lists_all = list_all(rest, dofs);
+  const auto longer = [&](const std::string& yaml) {
+    return longer_by(rest, lists_all ? without_effects(yaml) : yaml, has_effects && !lists_all);
+  };
+  result.text = longer(result.text);
+  result.rig = longer(result.rig);
   return result;
 }
 

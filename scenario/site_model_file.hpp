@@ -34,7 +34,9 @@ struct SiteModelFile : SiteModelText {
   bool has_effects = false;              // in `text` and `rig`, as their last key
 
   /// With effects added behind those it has, and a law in place of the specimen's own where one of them is a law. A
-  /// wrong setting of a compensator that has one is corrected there, so that the setting is counted once.
+  /// wrong setting of a compensator that has one is corrected there, so that the setting is counted once. Where one of
+  /// them takes the place of one that the site has (add_effect()), the list is written anew, for each degree of
+  /// freedom.
   [[nodiscard]] SiteModelText with_effects(std::span<const ListedEffect> effects) const;
 };
 

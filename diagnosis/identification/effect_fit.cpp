@@ -39,8 +39,11 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
     if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
   }
   result.columns.rightCols(solution.columns.cols()) = solution.columns;
+  const std::vector<LinearParameter>& linear = projection.plan().linear;
   for (std::size_t i = 0; i < solution.held.size(); ++i) {
-    if (!solution.held[i]) result.free.push_back(static_cast<std::size_t>(searched) + i);
+    // Nothing left of what the model has is as uncertain as a little of it.
+    const bool is_of_model = i < linear.size() && linear[i].is_of_model;
+    if (!solution.held[i] || is_of_model) result.free.push_back(static_cast<std::size_t>(searched) + i);
   }
   const std::vector<SearchedParameter>& parameters = projection.plan().searched;
   for (std::size_t i = 0; i < result.free.size(); ++i) {
@@ -390,8 +393,9 @@ enum class Look { from_start, everywhere };
 
 /// @param start   first point of the search; empty: none.
 FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
-                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance, Freedom freedom) {
-  const VariableProjection projection{problem, plan_search(problem, effects, freedom), with_nuisance};
+                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance,
+                    const std::vector<Freedom>& freedoms) {
+  const VariableProjection projection{problem, plan_search(problem, effects, freedoms), with_nuisance};
   const SearchPlan& plan = projection.plan();
   Eigen::VectorXd first(start.empty() ? 0 : static_cast<Eigen::Index>(plan.searched.size()));
   for (Eigen::Index i = 0; i < first.size(); ++i) {
@@ -441,16 +445,36 @@ Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outco
   return sum;
 }
 
+/// Whether an effect that the model has may as well be of no size; then its shape means nothing.
+bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const EffectType& type = *fit.effects[position].type;
+  if (place_of(problem.model, type) == nullptr) return false;
+  for (std::size_t i = 0; i < type.parameters.size(); ++i) {
+    const ParameterEstimate& estimate = fit.parameters[position][i];
+    if (type.parameters[i].is_linear && estimate.value <= half_width_95(estimate)) return true;
+  }
+  return false;
+}
+
 /// Parameters that a scenario may leave out are left out where the blocks cannot hold them: when they are fitted, but
-/// predict a block that was left out much worse than the others alone do.
+/// predict a block that was left out much worse than the others alone do. The shape of an effect that the model has is
+/// the model's where nothing is left of it.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
-  FitOutcome all = fit_free(problem, effects, start, look, with_nuisance, Freedom::all);
+  FitOutcome all = fit_free(problem, effects, start, look, with_nuisance, {});
+  std::vector<Freedom> freedoms(effects.size(), Freedom::all);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (may_have_no_size(problem, all, i)) freedoms[i] = Freedom::required;
+  }
+  if (std::ranges::find(freedoms, Freedom::required) != freedoms.end()) {
+    return fit_free(problem, effects, start, look, with_nuisance, freedoms);
+  }
   const Squares squares = squares_of(problem, all);
+  freedoms.assign(effects.size(), Freedom::required);
   const bool has_optional =
-      plan_search(problem, effects, Freedom::required).searched.size() < plan_search(problem, effects).searched.size();
+      plan_search(problem, effects, freedoms).searched.size() < plan_search(problem, effects).searched.size();
   if (!has_optional || squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted) return all;
-  FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, Freedom::required);
+  FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, freedoms);
   return squares_of(problem, required).held_out < squares.held_out ? required : all;
 }
 

@@ -188,7 +188,7 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
     std::erase_if(extended.effects, [](const EffectSetting& effect) { return effect.type->traits.needs_time; });
   }
   for (const EffectSetting& effect : added) {
-    if (segment.touched_by(*effect.type)) extended.effects.push_back(effect);
+    if (segment.touched_by(*effect.type)) add_effect(extended, effect);
   }
   if (segment.is_smoothed) {
     // Smoothing removes the steps of the converter too.

@@ -382,6 +382,7 @@ IdentificationProblem judged_at(const IdentificationProblem& problem, Channel ou
 bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
   // Not linear, and so no nuisance.
   if (type.traits.number == ModelNumber::strength || type.traits.number == ModelNumber::bandwidth) return true;
+  if (place_of(problem.model, type) != nullptr) return true;
   return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
     return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();
   });

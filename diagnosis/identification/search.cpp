@@ -84,6 +84,11 @@ bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, co
   return range == nullptr || range->restriction.beside == other || (has_none && !problem.model.has_bandwidth);
 }
 
+double left_out(const IdentificationProblem& problem, const EffectType& effect, std::size_t parameter) {
+  const EffectSetting* const own = place_of(problem.model, effect);
+  return own == nullptr ? effect.parameters[parameter].fallback : own->values[parameter];
+}
+
 double SearchedParameter::at(double place) const noexcept {
   return logarithmic ? low * std::pow(high / low, place) : low + (high - low) * place;
 }
@@ -94,7 +99,7 @@ double SearchedParameter::place_of(double value) const noexcept {
 }
 
 SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
-                       Freedom freedom) {
+                       const std::vector<Freedom>& freedoms) {
   SearchPlan plan;
   plan.linear_ones_remove_all = true;
   for (std::size_t i = 0; i < effects.size(); ++i) {
@@ -102,11 +107,13 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
     const bool all_searched = touches_several(problem, effect);
     EffectSetting neutral{.type = &effect, .values = {}};
     bool removed_by_linear = false;
+    const bool is_of_model = place_of(problem.model, effect) != nullptr;
+    const bool is_whole = freedoms.empty() || freedoms[i] == Freedom::all;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
-      const bool is_left_out = freedom == Freedom::required && !std::isnan(parameter.fallback) && !parameter.is_linear;
+      const bool is_left_out = !is_whole && !std::isnan(left_out(problem, effect, j)) && !parameter.is_linear;
       if (is_left_out || is_fixed(problem, effect, parameter)) {
-        neutral.values.push_back(parameter.fallback);
+        neutral.values.push_back(left_out(problem, effect, j));
         continue;
       }
       const SearchRange& range = *range_of(effect, parameter);
@@ -114,9 +121,9 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
         neutral.values.push_back(parameter.neutral);
         const double unit = 0.5 * range.high * problem.scales.of(range.scale);
         const double low = least_of(problem, effect, j, range);
-        plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral});
-        // Without its stiffness a law has no force, which is not the baseline.
-        removed_by_linear = effect.replacement == nullptr;
+        plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral, is_of_model});
+        // Without its stiffness a law has no force, nor has a model without what it has: neither is the baseline.
+        removed_by_linear = effect.replacement == nullptr && !is_of_model;
       } else {
         plan.searched.push_back(searched(problem, effect, i, j, range));
         neutral.values.push_back(plan.searched.back().at(0.5));

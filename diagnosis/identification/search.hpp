@@ -31,6 +31,7 @@ struct LinearParameter {
   double unit = 1.0;  // a change that is visible in the recording
   double low = 0.0;
   double high = 0.0;
+  bool is_of_model = false;  // of an effect that the model has: what is left of it there
 };
 
 /// Which parameters of a list of effects are searched, which are linear and which stay as they are.
@@ -41,13 +42,20 @@ struct SearchPlan {
   bool linear_ones_remove_all = false;  // without them every effect is absent
 };
 
-/// Which parameters of the effects are free: all, or only those that a scenario has to give.
+/// Which parameters of an effect are free: all, or only those that a scenario has to give; of an effect that the model
+/// has, only its size.
 enum class Freedom : std::uint8_t { all, required };
 
+/// @param freedoms   one per effect; empty: all of each.
 [[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,
-                                     const std::vector<const EffectType*>& effects, Freedom freedom = Freedom::all);
+                                     const std::vector<const EffectType*>& effects,
+                                     const std::vector<Freedom>& freedoms = {});
 
-/// The parameter is not searched: its fallback is used.
+/// What a parameter is that is left out: the model's own value of an effect that it has, else the fallback of the
+/// library; NaN where it has to be given.
+[[nodiscard]] double left_out(const IdentificationProblem& problem, const EffectType& effect, std::size_t parameter);
+
+/// The parameter is not searched: it is left_out().
 [[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,
                             const EffectParameter& parameter);
 

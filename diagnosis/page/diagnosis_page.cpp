@@ -67,6 +67,9 @@ std::string parameter_text(const ReportedParameter& parameter) {
       fmt::format("<span class=\"par\">{} <b>{}</b>", escaped(plain_parameter(parameter.name, parameter.unit)),
                   escaped(quantity(parameter.value, parameter.unit)));
   if (parameter.ci95) text += fmt::format(" <small>({})</small>", escaped(between(*parameter.ci95, parameter.unit)));
+  if (is_corrected(parameter)) {
+    text += fmt::format(" <small>instead of {}</small>", escaped(quantity(*parameter.in_model, parameter.unit)));
+  }
   if (parameter.is_at_bound) text += " <small class=\"warn\">at the limit of its search range</small>";
   return text + "</span>";
 }

@@ -35,7 +35,7 @@ std::vector<std::string> causes(const DiagnosisReport& report) {
   std::vector<std::string> names;
   for (const RankedCause& cause : report.ranking) {
     if (!cause.is_cause) continue;
-    names.push_back(plain(cause.effect) + law_in_words(cause));
+    names.push_back(plain(cause.effect) + law_in_words(cause) + corrected_in_words(cause));
   }
   return names;
 }
@@ -93,6 +93,23 @@ std::string law_in_words(const RankedCause& cause) {
           ? ""
           : fmt::format(", and has lost {} of its stiffness by the end", percent(cause.lost_stiffness));
   return fmt::format(" ({}: the specimen {}{})", plain(cause.law), cause.in_words, lost);
+}
+
+bool is_corrected(const ReportedParameter& parameter) {
+  if (!parameter.in_model) return false;
+  const double value = *parameter.in_model;
+  return parameter.ci95 ? value < parameter.ci95->low || value > parameter.ci95->high : value != parameter.value;
+}
+
+std::string corrected_in_words(const RankedCause& cause) {
+  std::vector<std::string> numbers;
+  for (const ReportedParameter& parameter : cause.parameters) {
+    if (!is_corrected(parameter)) continue;
+    numbers.push_back(fmt::format("{} {} instead of {}", plain_parameter(parameter.name, parameter.unit),
+                                  quantity(parameter.value, parameter.unit),
+                                  quantity(*parameter.in_model, parameter.unit)));
+  }
+  return numbers.empty() ? "" : " (" + joined(numbers) + ")";
 }
 
 std::string plain_parameter(std::string_view name, std::string_view unit) {

@@ -29,6 +29,10 @@ namespace hybridtest::report {
 [[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
 /// ` (takeda: the specimen …)` for a law in place of the specimen's own; empty for an effect.
 [[nodiscard]] std::string law_in_words(const RankedCause& cause);
+/// The model's own value of a parameter lies outside of its interval.
+[[nodiscard]] bool is_corrected(const ReportedParameter& parameter);
+/// ` (friction force 0 N instead of 2.00 kN)` for an effect that the model has; empty for one that it lacks.
+[[nodiscard]] std::string corrected_in_words(const RankedCause& cause);
 /// The numbers of the model that are slightly off, with their values; empty when there are none.
 [[nodiscard]] std::string corrections_sentence(const DiagnosisReport& report);
 /// The verdict in one to three sentences.

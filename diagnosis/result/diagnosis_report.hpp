@@ -88,6 +88,7 @@ struct ReportedParameter {
   double value = 0.0;
   std::optional<Interval> ci95{};
   bool is_at_bound = false;
+  std::optional<double> in_model{};  // of an effect that the model has: its value there
 };
 
 /// One effect in the ranking; the verdict's causes come first.

@@ -68,7 +68,8 @@ std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, cons
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     const EffectSetting& effect = selection.chosen.effects[i];
     const ModelNumber number = effect.type->traits.number;
-    if (number == ModelNumber::none || number == ModelNumber::offset || number == ModelNumber::damping) continue;
+    const bool is_number = number != ModelNumber::none || place_of(problem.model, *effect.type) != nullptr;
+    if (!is_number || number == ModelNumber::offset || number == ModelNumber::damping) continue;
     if (changes_at_most(problem, effect, share)) corrections.push_back(i);
   }
   return corrections;
@@ -175,8 +176,20 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
 
 }  // namespace
 
-report::RankedCause ranked(const FitOutcome& fit, std::size_t position) {
-  return ranked(fit.effects[position], fit.parameters[position], fit.covariances[position]);
+report::RankedCause ranked(const SiteModel& model, const FitOutcome& fit, std::size_t position) {
+  const EffectSetting& effect = fit.effects[position];
+  report::RankedCause cause = ranked(effect, fit.parameters[position], fit.covariances[position]);
+  const EffectSetting* const own = place_of(model, *effect.type);
+  if (own == nullptr) return cause;
+  for (std::size_t i = 0; i < cause.parameters.size(); ++i) {
+    report::ReportedParameter& parameter = cause.parameters[i];
+    const EffectParameter& limits = effect.type->parameters[i];
+    parameter.in_model = own->values[i];
+    // None of it is left, or it is as it was: no limit that a search ran into.
+    if (parameter.value == limits.neutral || parameter.value == own->values[i]) parameter.is_at_bound = false;
+    if (parameter.ci95) parameter.ci95->low = std::max(parameter.ci95->low, limits.low);
+  }
+  return cause;
 }
 
 report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates,

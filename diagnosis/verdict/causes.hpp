@@ -32,8 +32,9 @@ void settle_corrections(std::span<Judgement* const> judgements);
 
 /// An effect with its parameters and their 95 % intervals, where they have a standard error; its probability, its share
 /// and whether it is a cause are set by the caller.
+/// @param model      that the fit adds the effect to.
 /// @param position   of the effect among those of the fit.
-[[nodiscard]] report::RankedCause ranked(const FitOutcome& fit, std::size_t position);
+[[nodiscard]] report::RankedCause ranked(const SiteModel& model, const FitOutcome& fit, std::size_t position);
 /// @param estimates    one per parameter of the effect, in their order.
 /// @param covariance   of them; of a law in place of the specimen's own only.
 [[nodiscard]] report::RankedCause ranked(const EffectSetting& effect, const std::vector<ParameterEstimate>& estimates,

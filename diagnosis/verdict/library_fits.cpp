@@ -80,9 +80,9 @@ bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& f
   });
 }
 
-/// Whether a parameter is optional in a scenario and this fit is at its default.
-bool is_dispensable(const EffectParameter& parameter, const SearchRange& range, const ParameterEstimate& estimate) {
-  const double off = std::abs(estimate.value - parameter.fallback);  // NaN where it has to be given
+/// Whether a parameter may be left out and this fit is at what it then is; NaN where it has to be given.
+bool is_dispensable(double left_out, const SearchRange& range, const ParameterEstimate& estimate) {
+  const double off = std::abs(estimate.value - left_out);
   const double resolved = (range.high - range.low) * tuning::kRangeUnresolved;
   return off <= std::max(half_width_95(estimate), range.scale == ParameterScale::one ? resolved : 0.0);
 }
@@ -93,7 +93,8 @@ double free_parameters(const IdentificationProblem& problem, const FitOutcome& f
   for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
     const EffectParameter& parameter = effect.parameters[j];
     if (is_fixed(problem, effect, parameter)) continue;
-    if (!is_dispensable(parameter, *range_of(effect, parameter), fit.parameters[position][j])) free += 1.0;
+    const SearchRange& range = *range_of(effect, parameter);
+    if (!is_dispensable(left_out(problem, effect, j), range, fit.parameters[position][j])) free += 1.0;
   }
   return free;
 }
@@ -134,6 +135,8 @@ double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit
 bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
   if (!problem.law_is_spring) return false;
   return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
+    const std::ptrdiff_t position = &effect - fit.effects.data();
+    if (slides_as_in_model(problem, fit, static_cast<std::size_t>(position))) return false;
     const auto at = [&](std::string_view name) {
       const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
       return found == effect.type->parameters.end()
@@ -423,7 +426,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     });
   });
   IdentificationProblem extended = coarse;
-  extended.model.effects.insert(extended.model.effects.end(), base.begin(), base.end());
+  for (const EffectSetting& effect : base) add_effect(extended.model, effect);
   for (FitSegment& fit : extended.segments) fit.baseline = predict(coarse, fit, base);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(

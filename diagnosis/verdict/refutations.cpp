@@ -198,8 +198,19 @@ std::string height_refuted(const Suspect& suspect) {
                      report::quantity(stroke_m, "m"));
 }
 
+bool slides_as_in_model(const Suspect& suspect) {
+  const EffectType& type = *suspect.effect.type;
+  const EffectSetting* const own = place_of(suspect.problem.model, type);
+  const auto presliding = std::ranges::find(type.parameters, "presliding_displacement_m", &EffectParameter::name);
+  if (own == nullptr || presliding == type.parameters.end()) return false;
+  const auto position = static_cast<std::size_t>(presliding - type.parameters.begin());
+  const ParameterEstimate& estimate = suspect.estimates[position];
+  return estimate.value - half_width_95(estimate) <= own->values[position];
+}
+
 /// Between reversals friction sticks over twice its presliding displacement, then it slides.
 std::string friction_refuted(const Suspect& suspect) {
+  if (slides_as_in_model(suspect)) return {};
   const double sticks_m = 2.0 * suspect.parameter("presliding_displacement_m").value;
   double path_m = 0.0;
   double stuck_m = 0.0;
@@ -265,12 +276,18 @@ constexpr std::array kChecks{
 /// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter: an
 /// interval beside a shape that makes up for the size says nothing of absence.
 /// What a model lacks besides other effects has to be seen in the interval that is reported, every
-/// number of the model in doubt.
+/// number of the model in doubt. An effect that the model has is none where it may be as it is there.
 std::string absence_not_excluded(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
   const bool is_addition = type.traits.number == ModelNumber::none && type.replacement == nullptr;
   const bool is_beside_others = suspect.outcome.effects.size() > 1;
   decltype(half_width_95)& half_width = is_addition && is_beside_others ? half_interval_95 : half_width_95;
+  if (const EffectSetting* const own = place_of(suspect.problem.model, type)) {
+    for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+      if (std::abs(suspect.estimates[i].value - own->values[i]) > half_width_95(suspect.estimates[i])) return {};
+    }
+    return fmt::format("{}: the intervals hold what it is in the model", suspect.name());
+  }
   const auto free = std::ranges::count_if(suspect.effect.type->parameters, [&](const EffectParameter& parameter) {
     return !is_fixed(suspect.problem, *suspect.effect.type, parameter);
   });
@@ -289,6 +306,10 @@ std::string absence_not_excluded(const Suspect& suspect) {
 
 }  // namespace
 
+bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  return slides_as_in_model(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});
+}
+
 bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   return !absence_not_excluded({problem, fit, fit.effects[position], fit.parameters[position]}).empty();
 }
@@ -300,7 +321,7 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
     const EffectParameter& parameter = effect.parameters[i];
     const ParameterEstimate& estimate = fit.parameters[position][i];
     const SearchRange* const range = search_range(effect, parameter);
-    if (!estimate.at_bound || range == nullptr || estimate.value == parameter.fallback) continue;
+    if (!estimate.at_bound || range == nullptr || estimate.value == left_out(problem, effect, i)) continue;
     const double scale = problem.scales.of(range->scale);
     const bool is_upper = estimate.value > 0.5 * scale * (range->low + range->high);
     const bool is_chosen = is_upper

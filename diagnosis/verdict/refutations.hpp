@@ -13,6 +13,12 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
+/// Whether a friction that the model has slides no later than it does there. What the user calls a friction is one,
+/// however late it slides.
+/// @param position   in the fit's effects.
+[[nodiscard]] bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit,
+                                      std::size_t position);
+
 /// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves, or an effect
 /// that was fitted together with it. In words, with values; empty when nothing speaks against it. Refuted are
 ///

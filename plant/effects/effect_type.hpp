@@ -64,6 +64,7 @@ struct EffectTraits {
   DigitTrace digits = DigitTrace::none;
   bool follows_derivatives = false;  // its force follows velocity or acceleration
   bool needs_time = false;           // it follows rate, time or acceleration: without time it has no meaning
+  bool takes_place = false;          // beside one that the model has, it takes its place; see add_effect()
 };
 
 struct EffectParameter {

@@ -15,7 +15,7 @@ class BoucWenHysteresis final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fy z, dz = (1 - (s sign(z dx) + 1 - s) |z|^n) dx / xy";
   static constexpr std::string_view kSource = "Wen (1976)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .takes_place = true};
   static constexpr std::array kParameters{
       EffectParameter{
           .name = "yield_force_n", .unit = "N", .what = "Fy", .low = 0.0, .high = kUnbounded, .is_linear = true},

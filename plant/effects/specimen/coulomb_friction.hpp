@@ -15,7 +15,7 @@ class CoulombFriction final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fc (z + a |z|), dz = dx / d, |z| <= 1";
   static constexpr std::string_view kSource = "Coulomb (1785); Dahl (1968)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .takes_place = true};
   static constexpr std::array kParameters{EffectParameter{.name = "friction_force_n",
                                                           .unit = "N",
                                                           .what = "Fc, while sliding",

@@ -16,7 +16,7 @@ class StribeckFriction final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + Fc z, dz = dx / d, |z| <= 1 + r exp(-(v / vs)^2)";
   static constexpr std::string_view kSource = "Armstrong-Helouvry et al. (1994)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::rate, .needs_time = true, .takes_place = true};
   static constexpr std::array kParameters{EffectParameter{.name = "friction_force_n",
                                                           .unit = "N",
                                                           .what = "Fc, at high velocity",

@@ -25,13 +25,14 @@ inline double made_motion_m(double time_s) {
 
 /// 12 s of a site whose transducer reads `measured_m(t)` and whose load cell `force_n(t)`, with noise.
 inline Recording made_recording(const std::function<double(double)>& measured_m,
-                                const std::function<double(double)>& force_n, double force_noise_n = 20.0) {
+                                const std::function<double(double)>& force_n, double force_noise_n = 20.0,
+                                std::uint64_t seed = 3) {
   Recording recording;
   recording.file = "made.csv";
   recording.sample_period_s = kSitePeriod_s;
   recording.samples = 6000;
   recording.dofs.resize(1);
-  Random random{3};
+  Random random{seed};
   for (std::size_t i = 0; i < recording.samples; ++i) {
     const double time_s = kSitePeriod_s * static_cast<double>(i);
     recording.dofs[0].of(Channel::command_displacement).push_back(made_motion_m(time_s));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "core/config_error.hpp"
 #include "diagnosis/runs/diagnose_site.hpp"
@@ -170,6 +171,31 @@ TEST_F(SiteFile, AddedEffectsFollowExistingOnes) {
     const double bias_n = site.dofs[0].effects.empty() ? 0.0 : 1.0;
     EXPECT_DOUBLE_EQ(force_at(longer.dofs[0], {.displacement_m = 1.0}), 1.5 * (6.0 + bias_n));
     EXPECT_EQ(longer.with_effects({}).text, longer.text);
+  }
+}
+
+TEST_F(SiteFile, CorrectedFrictionTakesThePlaceOfItsOwn) {
+  const std::string friction = "{interface: specimen, effect: coulomb_friction, friction_force_n: 4.0}";
+  const std::string bias = "{interface: force_sensor, effect: bias, bias_n: 1.0}";
+  const std::vector<ListedEffect> added{
+      {{find_effect(EffectInterface::specimen, "coulomb_friction"), {3.0, 0.0, 1e-3}}, 0},
+      {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, 0}};
+  for (const std::string& list : {"[" + friction + ", " + bias + "]", "[" + bias + ", " + friction + "]"}) {
+    const SiteModelFile site = read("specimen: [{type: none}, {type: none}]\neffects: " + list + "\n");
+    ASSERT_EQ(force_at(site.dofs[0], {.displacement_m = 1.0}), 5.0);
+    const SiteModelFile corrected = read(site.with_effects(added).text);
+    EXPECT_EQ(force_at(corrected.dofs[0], {.displacement_m = 1.0}), 1.5 * (3.0 + 1.0));
+    EXPECT_EQ(force_at(corrected.dofs[1], {.displacement_m = 1.0}), 5.0);
+    EXPECT_EQ(corrected.with_effects({}).text, corrected.text);
+    // The same in a scenario's rig.
+    const SiteModelFile in_rig = read("rig:\n" + [&] {
+      std::string indented;
+      std::istringstream lines{site.with_effects(added).rig};
+      for (std::string line; std::getline(lines, line);) indented += "  " + line + "\n";
+      return indented;
+    }());
+    EXPECT_EQ(force_at(in_rig.dofs[0], {.displacement_m = 1.0}), 1.5 * (3.0 + 1.0));
+    EXPECT_EQ(force_at(in_rig.dofs[1], {.displacement_m = 1.0}), 5.0);
   }
 }
 
