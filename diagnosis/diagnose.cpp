@@ -17,6 +17,7 @@
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/experiments.hpp"
+#include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/selection.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/stiffness_loss.hpp"
@@ -100,9 +101,23 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
+      if (judgement.rivals && judgement.rivals->chosen == i) {
+        cause.probability = tuning::kAnswerRight * judgement.rivals->probability;
+        cause.is_indistinguishable = true;
+      }
       ranking.push_back(std::move(cause));
     }
     std::ranges::stable_sort(ranking, std::greater{}, &RankedCause::share);
+    if (judgement.rivals) {
+      for (const Candidate& rival : judgement.rivals->fitted) {
+        listed.push_back(rival.type);
+        RankedCause cause = ranked(stage.problem.model, rival.fit, 0);
+        cause.probability = tuning::kAnswerRight * judgement.rivals->probability;
+        cause.is_indistinguishable = true;
+        cause.is_cause = is_set;
+        ranking.push_back(std::move(cause));
+      }
+    }
   }
   for (std::size_t i = 0; i < selection.library.size() && ranking.size() < tuning::kRankingMax; ++i) {
     const Candidate& candidate = selection.library[i];
@@ -173,6 +188,10 @@ std::string next_experiment(std::span<const Stage> stages, const std::vector<rep
     if (stage.judgement.verdict != Verdict::set) continue;
     std::vector<const EffectType*> members;
     for (const std::size_t i : stage.judgement.indistinguishable) members.push_back(stage.selection.library[i].type);
+    if (const auto& rivals = stage.judgement.rivals) {
+      members.push_back(stage.selection.chosen.effects[rivals->chosen].type);
+      std::ranges::transform(rivals->fitted, std::back_inserter(members), &Candidate::type);
+    }
     return experiment_that_splits(members);
   }
   const auto is_open = [](const Stage& stage) {
@@ -290,9 +309,12 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     const PartProgress of_stage = progress.round(i, outputs.size());
     stage.problem.progress = of_stage;
     thinner.progress = of_stage;
-    stage.selection = select_effects(stage.problem, thinner, settings.threads, of_stage);
+    stage.selection =
+        select_effects(stage.problem, thinner, settings.threads, of_stage.part(0.0, tuning::kEffectsChosen));
     settle_noise(stage.problem, stage.selection.chosen);
     stage.judgement = judge(stage.problem, stage.selection, settings.policy);
+    find_rivals(stage.problem, thinner, stage.selection, settings.policy, settings.threads,
+                of_stage.part(tuning::kEffectsChosen, 1.0), stage.judgement);
     if (stage.changes_model() && i + 1 < outputs.size()) {
       SiteModel corrected = fine.model;
       const FitOutcome& chosen = stage.selection.chosen;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
@@ -34,8 +35,8 @@ PartProgress::PartProgress(ProgressSink sink, ProgressClock now) {
 
 PartProgress PartProgress::part(double from, double to) const {
   PartProgress inner = *this;
-  inner.from_ = from_ + from * (to_ - from_);
-  inner.to_ = from_ + to * (to_ - from_);
+  inner.from_ = std::lerp(from_, to_, from);  // exact at the end: shares never decrease
+  inner.to_ = std::lerp(from_, to_, to);
   return inner;
 }
 
@@ -48,7 +49,7 @@ void PartProgress::report(std::string_view stage, std::size_t done, std::size_t 
   if (!shared_) return;
   const double share = all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1.0;
   const std::scoped_lock lock{shared_->mutex};
-  shared_->last = {.stage = stage, .done = done, .all = all, .share = from_ + share * (to_ - from_)};
+  shared_->last = {.stage = stage, .done = done, .all = all, .share = std::lerp(from_, to_, share)};
   shared_->send();
 }
 

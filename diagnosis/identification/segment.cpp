@@ -56,6 +56,14 @@ void smooth_input(Segment& segment, std::span<const double> displacement_m, std:
   segment.narrow_noise = narrow.motion(error);
 }
 
+/// Readings over the widest window that leaves nothing but noise.
+std::vector<double> without_noise(std::span<const double> readings) {
+  const std::vector<Motion> smooth = LocalPolynomial{widest_faithful_half_width(readings), 1.0}.motion(readings);
+  std::vector<double> values(smooth.size());
+  std::ranges::transform(smooth, values.begin(), &Motion::displacement_m);
+  return values;
+}
+
 std::vector<Motion> smooth_motion(const FlatSmoother& smoother, std::vector<Motion> motion) {
   for (double Motion::*channel : {&Motion::displacement_m, &Motion::velocity_m_per_s, &Motion::acceleration_m_per_s2}) {
     std::vector<double> values(motion.size());
@@ -80,7 +88,7 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     segment.input = LocalPolynomial{half_width, segment.period_s}.motion(dof.of(from));
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
-    if (dof.has(Channel::measured_force)) segment.load_n = dof.of(Channel::measured_force);
+    if (dof.has(Channel::measured_force)) segment.load_n = without_noise(dof.of(Channel::measured_force));
   } else {
     segment.input_noise = white_noise_level(dof.of(from));
     segment.input_step = steps_of_readings(dof.of(from)).step;

@@ -100,10 +100,7 @@ std::string row(const RankedCause& cause) {
 
 /// The causes and the effects that cannot be distinguished from them; empty when there is no such effect.
 std::string alike_text(const DiagnosisReport& report) {
-  std::vector<std::string> alike;
-  for (const RankedCause& cause : report.ranking) {
-    if (cause.is_cause || cause.is_indistinguishable) alike.push_back(name_of(cause));
-  }
+  const std::vector<std::string> alike = in_words(indistinguishable(report));
   const bool is_open =
       report.verdict == Verdict::set || std::ranges::any_of(report.ranking, &RankedCause::is_indistinguishable);
   if (!is_open || alike.size() < 2) return "";

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace hybridtest::report {
@@ -31,11 +32,14 @@ std::string three_digits(double value) {
   return fmt::format("{:.2f}", value);
 }
 
+std::string in_words(const RankedCause& cause) {
+  return plain(cause.effect) + law_in_words(cause) + corrected_in_words(cause);
+}
+
 std::vector<std::string> causes(const DiagnosisReport& report) {
   std::vector<std::string> names;
   for (const RankedCause& cause : report.ranking) {
-    if (!cause.is_cause) continue;
-    names.push_back(plain(cause.effect) + law_in_words(cause) + corrected_in_words(cause));
+    if (cause.is_cause) names.push_back(in_words(cause));
   }
   return names;
 }
@@ -76,7 +80,39 @@ std::string named_sentence(const DiagnosisReport& report) {
   return text + removal(report);
 }
 
+std::string set_sentence(const DiagnosisReport& report) {
+  const std::vector<const RankedCause*> alike = indistinguishable(report);
+  std::vector<std::string> others;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_cause && std::ranges::find(alike, &cause) == alike.end()) others.push_back(in_words(cause));
+  }
+  std::string text = where_it_lies(report) + "; these recordings cannot distinguish " + joined(in_words(alike));
+  if (!others.empty()) text += (others.size() > 1 ? "; further causes are " : "; a further cause is ") + joined(others);
+  return text + removal(report);
+}
+
 }  // namespace
+
+std::vector<const RankedCause*> indistinguishable(const DiagnosisReport& report) {
+  const bool is_cause_marked = std::ranges::any_of(
+      report.ranking, [](const RankedCause& cause) { return cause.is_cause && cause.is_indistinguishable; });
+  std::vector<const RankedCause*> members;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_indistinguishable || (cause.is_cause && !is_cause_marked)) members.push_back(&cause);
+  }
+  return members;
+}
+
+std::vector<std::string> in_words(std::span<const RankedCause* const> members) {
+  const bool at_one_interface = std::ranges::all_of(
+      members, [&](const RankedCause* member) { return member->interface == members.front()->interface; });
+  std::vector<std::string> names;
+  for (const RankedCause* const member : members) {
+    names.push_back(at_one_interface ? in_words(*member)
+                                     : fmt::format("{} of the {}", in_words(*member), plain(member->interface)));
+  }
+  return names;
+}
 
 std::string plain(std::string_view name) {
   std::string text{name};
@@ -204,9 +240,7 @@ std::string verdict_sentence(const DiagnosisReport& report) {
                  ? "The model agrees with the recordings: no gap is larger than its noise floor."
                  : "The model lacks nothing. Some of its numbers are slightly off, and correcting them closes the gap.";
     case Verdict::named: return named_sentence(report);
-    case Verdict::set:
-      return where_it_lies(report) + "; these recordings cannot distinguish " + joined(causes(report)) +
-             removal(report);
+    case Verdict::set: return set_sentence(report);
     case Verdict::partial:
       return named_sentence(report) + remainder(report) + " No effect in the library explains what is left.";
     case Verdict::unknown:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,10 @@ namespace hybridtest::report {
 
 /// The interface at fault whose share is largest; nullptr when there is none.
 [[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
+/// The members of a set; without one the causes, and what cannot be distinguished from them.
+[[nodiscard]] std::vector<const RankedCause*> indistinguishable(const DiagnosisReport& report);
+/// Their names, with the interface of each where they are not all at one.
+[[nodiscard]] std::vector<std::string> in_words(std::span<const RankedCause* const> members);
 /// ` (takeda: the specimen …)` for a law in place of the specimen's own; empty for an effect.
 [[nodiscard]] std::string law_in_words(const RankedCause& cause);
 /// The model's own value of a parameter lies outside of its interval.

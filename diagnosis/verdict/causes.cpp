@@ -36,10 +36,18 @@ bool is_patchwork(const IdentificationProblem& problem, const Selection& selecti
          gap_energy(problem, selection.library.front().fit).excess() > policy.partial_leaves * total;
 }
 
+}  // namespace
+
+double nats_that_decide(double probability) noexcept {
+  return tuning::kTemperature * std::log(probability / (1.0 - probability));
+}
+
+namespace {
+
 /// The most probable candidates, until their sum of probabilities is large enough; and those that the data alone cannot
 /// tell from the first one, with no more parameters, however rare they are.
 std::vector<std::size_t> credible(const Selection& selection, double probability) {
-  const double within = tuning::kTemperature * std::log(probability / (1.0 - probability));
+  const double within = nats_that_decide(probability);
   const Candidate& first = selection.library.front();
   std::vector<std::size_t> members;
   double sum = 0.0;
@@ -113,12 +121,12 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   }
   if (judgement.verdict == Verdict::unknown) return judgement;
   // A set says less than a name, and may leave what hardly matters.
-  bool may_be_set = judgement.verdict == Verdict::named || judgement.gap_left <= tuning::kHardlyLeft;
+  judgement.may_be_set = judgement.verdict == Verdict::named || judgement.gap_left <= tuning::kHardlyLeft;
   // Where a search ran into its limit, something else may be meant.
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     if (!is_cut_off(problem, selection.chosen, i)) continue;
     judgement.verdict = Verdict::partial;
-    may_be_set = false;
+    judgement.may_be_set = false;
   }
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
@@ -129,7 +137,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   } else {
     std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
   }
-  if (may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
+  if (judgement.may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
   return judgement;
 }
 

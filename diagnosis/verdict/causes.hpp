@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,13 @@
 
 namespace hybridtest {
 
+/// Effects that cannot be distinguished from a chosen one, see find_rivals().
+struct Rivals {
+  std::size_t chosen = 0;         // position in Selection::chosen
+  std::vector<Candidate> fitted;  // each in the place of the chosen one: it first, then the others that were chosen
+  double probability = 0.0;       // of each of them and of the chosen one
+};
+
 /// The verdict on the gap of one interface.
 struct Judgement {
   report::Verdict verdict = report::Verdict::none;
@@ -17,11 +25,16 @@ struct Judgement {
   std::vector<std::size_t> indistinguishable;
   // Positions in Selection::chosen of numbers of the model that are slightly off: corrected, but no causes.
   std::vector<std::size_t> corrections;
+  std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
+  bool may_be_set = false;     // what is left allows one, and no search ran into its limit
   double gap_left = 0.0;       // share of the repeatable gap that the chosen effects leave
 
   [[nodiscard]] bool is_correction(std::size_t chosen) const;
 };
+
+/// Advantage in log density at which one of two candidates has this probability [nats].
+[[nodiscard]] double nats_that_decide(double probability) noexcept;
 
 [[nodiscard]] Judgement judge(const IdentificationProblem& problem, const Selection& selection,
                               const VerdictPolicy& policy = {});

@@ -87,6 +87,8 @@ bool is_dispensable(double left_out, const SearchRange& range, const ParameterEs
   return off <= std::max(half_width_95(estimate), range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
+}  // namespace
+
 double free_parameters(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const EffectType& effect = *fit.effects[position].type;
   double free = 0.0;
@@ -98,8 +100,6 @@ double free_parameters(const IdentificationProblem& problem, const FitOutcome& f
   }
   return free;
 }
-
-}  // namespace
 
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
   double sum = 0.0;
@@ -413,6 +413,13 @@ void score_again(const IdentificationProblem& problem, std::vector<Candidate>& c
   std::ranges::stable_sort(candidates, std::greater{}, &Candidate::score);
 }
 
+IdentificationProblem beside_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects) {
+  IdentificationProblem extended = problem;
+  for (const EffectSetting& effect : effects) add_effect(extended.model, effect);
+  for (FitSegment& fit : extended.segments) fit.baseline = predict(problem, fit, effects);
+  return extended;
+}
+
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                   const std::vector<EffectSetting>& base, std::size_t threads,
                                   const PartProgress& progress) {
@@ -425,9 +432,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
              (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law(*effect)));
     });
   });
-  IdentificationProblem extended = coarse;
-  for (const EffectSetting& effect : base) add_effect(extended.model, effect);
-  for (FitSegment& fit : extended.segments) fit.baseline = predict(coarse, fit, base);
+  const IdentificationProblem extended = beside_effects(coarse, base);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(
       effects.size(), threads,

@@ -16,6 +16,10 @@ namespace hybridtest {
 /// same for all candidates. Wrong numbers of the model that are needed elsewhere cost what cost_of_numbers() says.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
+/// Number of parameters of an effect that the recordings need: an optional one at its default is none.
+/// @param position   in the fit's effects.
+[[nodiscard]] double free_parameters(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
+
 /// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
 /// parameters, the wrong numbers of the specimen's own law being those of one effect [nats].
 [[nodiscard]] double prior(const IdentificationProblem& problem, const FitOutcome& outcome);
@@ -80,6 +84,10 @@ void score_again(const IdentificationProblem& problem, std::vector<Candidate>& c
 
 /// Where a sensor's effect leads, and one of a stage changes the prediction alike, the stage's comes first.
 void put_stage_before_sensor(std::vector<Candidate>& candidates);
+
+/// The problem with these effects in its model. The scales, floors and free numbers stay.
+[[nodiscard]] IdentificationProblem beside_effects(const IdentificationProblem& problem,
+                                                   const std::vector<EffectSetting>& effects);
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
 /// on `coarse` with `base` as it is; the most promising ones, and the numbers of the model that may be wrong, are

@@ -200,7 +200,8 @@ TEST(Diagnose, ReportsProgressOfEveryStage) {
     EXPECT_THAT(stages, testing::ElementsAre("recordings examined", "effects fitted one by one",
                                              "effects fitted at the full rate", "further effects screened",
                                              "effects searched together", "effects fitted together at the full rate",
-                                             "combinations of the causes", "curves computed"));
+                                             "combinations of the causes", "effects compared with the causes",
+                                             "curves computed"));
   }
 }
 

@@ -219,6 +219,36 @@ TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {
   EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
 }
 
+TEST(DiagnosisPage, CauseBesideASetIsNoMemberOfIt) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::set;
+  report.ranking.resize(2);
+  for (RankedCause& member : report.ranking) member.is_cause = member.is_indistinguishable = true;
+  RankedCause further;
+  further.interface = "transfer_system";
+  further.effect = "delay";
+  further.is_cause = true;
+  report.ranking.push_back(further);
+  EXPECT_THAT(verdict_sentence(report),
+              HasSubstr("cannot distinguish coulomb friction and stribeck friction; a further cause is delay"));
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("cannot distinguish coulomb friction and stribeck friction."));
+}
+
+TEST(DiagnosisPage, MembersOfASetAtTwoInterfacesSayWhichOneEach) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::set;
+  report.ranking.resize(2);
+  for (RankedCause& member : report.ranking) {
+    member.effect = "gain";
+    member.is_cause = member.is_indistinguishable = true;
+  }
+  report.ranking[0].interface = "transfer_system";
+  report.ranking[1].interface = "displacement_sensor";
+  constexpr const char* kMembers = "cannot distinguish gain of the transfer system and gain of the displacement sensor";
+  EXPECT_THAT(verdict_sentence(report), HasSubstr(kMembers));
+  EXPECT_THAT(diagnosis_page(report), HasSubstr(kMembers));
+}
+
 TEST(Wording, QuantitiesUseReadableUnits) {
   EXPECT_EQ(quantity(0.0166, "s"), "16.6\u00a0ms");
   EXPECT_EQ(quantity(-4.0e6, "N/m"), "-4.00\u00a0MN/m");

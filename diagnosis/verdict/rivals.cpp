@@ -1,0 +1,306 @@
+#include "diagnosis/verdict/rivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "core/config_error.hpp"
+#include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/refutations.hpp"
+
+namespace hybridtest {
+
+namespace {
+
+/// Changes of the baseline in the suspect segments, weighted and one behind the other.
+template <class ChangeOf>
+Eigen::VectorXd stacked_changes(const IdentificationProblem& problem, ChangeOf&& change_of) {
+  Eigen::VectorXd all;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    if (!fit.is_suspect) continue;
+    all.conservativeResize(all.size() + fit.baseline.size());
+    all.tail(fit.baseline.size()).setZero();
+    const Eigen::VectorXd change = change_of(i);
+    if (change.size() > 0) all.tail(fit.baseline.size()) = fit.weight * change;
+  }
+  return all;
+}
+
+Eigen::VectorXd changes_by(const IdentificationProblem& problem, std::span<const EffectSetting> effects) {
+  return stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd {
+    return predict(problem, problem.segments[i], effects) - problem.segments[i].baseline;
+  });
+}
+
+/// Its free numbers of the model included.
+Eigen::VectorXd changes_of(const IdentificationProblem& problem, const FitOutcome& fit) {
+  return stacked_changes(problem, [&](std::size_t i) { return fit.segments[i].change; });
+}
+
+/// What a chosen effect changes beside the others.
+struct Place {
+  const FitOutcome* chosen = nullptr;
+  std::size_t position = 0;           // of the effect in it
+  std::vector<EffectSetting> others;  // but for numbers that are slightly off: a rival may need other ones
+  Eigen::VectorXd all;                // changes by everything that was chosen
+  Eigen::VectorXd alone;              // of them what goes without the effect
+  Eigen::VectorXd by_others;
+  Eigen::VectorXd by_corrections;  // numbers that are slightly off, beside the effect
+
+  [[nodiscard]] const EffectType* type() const { return chosen->effects[position].type; }
+
+  /// A difference that is small against what the effect changes.
+  [[nodiscard]] bool is_small(const Eigen::VectorXd& difference) const {
+    const double within = std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature);
+    return difference.norm() <= within * alone.norm();
+  }
+  /// Whether changes have the same signature, and so the same size.
+  [[nodiscard]] bool is_same(const Eigen::VectorXd& changes) const { return is_small(changes - all); }
+  /// Whether the others are beside a rival, the first effect of its fit, as they are beside the effect.
+  [[nodiscard]] bool has_same_others(const IdentificationProblem& problem, const FitOutcome& rival) const {
+    const std::span beside{rival.effects.data() + 1, others.size()};
+    return is_small(changes_by(problem, beside) - by_others);
+  }
+};
+
+Place place_in(const IdentificationProblem& problem, const FitOutcome& chosen, std::size_t position,
+               const Judgement& judgement) {
+  Place place{.chosen = &chosen,
+              .position = position,
+              .others = {},
+              .all = {},
+              .alone = {},
+              .by_others = {},
+              .by_corrections = {}};
+  std::vector<EffectSetting> rest = chosen.effects;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(position));
+  for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
+    if (i != position && !judgement.is_correction(i)) place.others.push_back(chosen.effects[i]);
+  }
+  place.all = changes_of(problem, chosen);
+  place.alone = place.all - changes_by(problem, rest);
+  place.by_others = changes_by(problem, place.others);
+  std::vector<EffectSetting> causes = place.others;
+  causes.push_back(chosen.effects[position]);
+  place.by_corrections = place.all - changes_by(problem, causes);
+  return place;
+}
+
+/// Whether the effect is found already: in this place, or beside it.
+bool is_found(const Place& place, const EffectType* type) {
+  return type == place.type() || std::ranges::find(place.others, type, &EffectSetting::type) != place.others.end();
+}
+
+/// The same problem whose nuisances are the numbers that a rival may need beside it: what it stands for, the
+/// other causes and itself are none of them, and a zero is known exactly before a test.
+IdentificationProblem with_numbers_beside(IdentificationProblem problem, const Place& place, const EffectType* rival) {
+  for (FitSegment& fit : problem.segments) {
+    std::vector<Eigen::Index> kept;
+    std::vector<const EffectType*> types;
+    for (std::size_t i = 0; i < fit.nuisance_types.size(); ++i) {
+      const EffectType* const type = fit.nuisance_types[i];
+      if (!fit.is_suspect || type == rival || type->traits.number == ModelNumber::offset || is_found(place, type)) {
+        continue;
+      }
+      kept.push_back(static_cast<Eigen::Index>(i));
+      types.push_back(type);
+    }
+    fit.nuisance = Eigen::MatrixXd{fit.nuisance(Eigen::all, kept)};
+    fit.nuisance_types = std::move(types);
+  }
+  return problem;
+}
+
+/// By how much the held-out log density is larger with one fit than with another, and the standard error of that from
+/// the differences between blocks [nats].
+struct Loss {
+  double nats = 0.0;
+  double standard_error = 0.0;
+};
+
+Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen) {
+  Loss loss{.nats = held_out_score(problem, chosen) - held_out_score(problem, rival)};
+  double variance = 0.0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    const std::vector<double>& with_rival = rival.segments[i].held_out_squares;
+    const std::vector<double>& with_chosen = chosen.segments[i].held_out_squares;
+    if (with_rival.size() != with_chosen.size() || with_chosen.size() < 2) continue;
+    const auto blocks = static_cast<double>(with_chosen.size());
+    const double slope = 0.5 * fit.independent / static_cast<double>(fit.measured.size()) /
+                         (chosen.segments[i].held_out_mean_square(fit) + 1.0 / (fit.weight * fit.weight));
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t block = 0; block < with_chosen.size(); ++block) {
+      const double difference = slope * (with_rival[block] - with_chosen[block]);
+      sum += difference;
+      squares += difference * difference;
+    }
+    variance += blocks / (blocks - 1.0) * std::max(0.0, squares - sum * sum / blocks);
+  }
+  loss.standard_error = std::sqrt(variance);
+  return loss;
+}
+
+/// The numbers of the model beside a rival are slightly off only, or as they are beside the effect, and change less
+/// than the rival does.
+bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
+  if (!fit.with_nuisance) return true;
+  const Eigen::VectorXd by_effects = changes_by(problem, fit.effects);
+  const Eigen::VectorXd by_numbers = changes_of(problem, fit) - by_effects;
+  const Eigen::VectorXd measured =
+      stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd { return problem.segments[i].measured; });
+  const Eigen::VectorXd own = by_effects - changes_by(problem, std::span{fit.effects}.subspan(1));
+  const bool is_slight =
+      by_numbers.norm() <= within * measured.norm() || place.is_small(by_numbers - place.by_corrections);
+  return is_slight && by_numbers.norm() <= own.norm();
+}
+
+/// The difference of two replays is no more than what no model is expected to reproduce.
+bool is_negligible(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen) {
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    Eigen::VectorXd difference = Eigen::VectorXd::Zero(fit.baseline.size());
+    if (rival.segments[i].change.size() > 0) difference += rival.segments[i].change;
+    if (chosen.segments[i].change.size() > 0) difference -= chosen.segments[i].change;
+    if (difference.norm() > tuning::kModelAllowance * fit.measured.norm()) return false;
+  }
+  return true;
+}
+
+/// Whether the recordings decide against the rival: by what it leaves, or by numbers at the other channels that would
+/// have to be off for it.
+bool is_told(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen, double decides) {
+  const Loss loss = loss_by(problem, rival, chosen);
+  const double of_numbers = rival.cost_of_numbers - chosen.cost_of_numbers;
+  if (of_numbers > decides) return true;
+  return loss.nats - of_numbers > std::max(loss.standard_error, decides) && !is_negligible(problem, rival, chosen);
+}
+
+/// Whether something speaks against the rival by itself. That the effect may also be there in part is no doubt about
+/// it: it is in the effect's place.
+bool is_refuted(IdentificationProblem problem, const Place& place, const Candidate& rival) {
+  for (FitSegment& fit : problem.segments) {
+    for (std::size_t i = 0; i < fit.number_types.size(); ++i) {
+      if (fit.number_types[i] == place.type()) fit.number_slopes.col(static_cast<Eigen::Index>(i)).setZero();
+    }
+  }
+  const Candidate instead{.type = rival.type,
+                          .fit = refit_effects(problem, rival.fit.effects, rival.fit.with_nuisance)};
+  return !refutation(problem, instead).empty();
+}
+
+/// Whether these recordings cannot tell the rival, the first effect of its fit, from the chosen one.
+bool is_rival(const IdentificationProblem& problem, const VerdictPolicy& policy, const Place& place,
+              const Candidate& rival) {
+  if (!place.is_same(changes_of(problem, rival.fit))) return false;
+  if (!place.has_same_others(problem, rival.fit)) return false;
+  if (is_told(problem, rival.fit, *place.chosen, nats_that_decide(policy.credible))) return false;
+  const std::vector<ParameterEstimate>& estimates = rival.fit.parameters.front();
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    if (estimates[i].at_bound && estimates[i].value != rival.type->parameters[i].fallback) return false;
+  }
+  return are_slight(problem, place, rival.fit, policy.numbers_within) &&
+         free_parameters(problem, rival.fit, 0) <= free_parameters(problem, *place.chosen, place.position) &&
+         !is_refuted(problem, place, rival);
+}
+
+/// The effect in the place of the chosen one, fitted at the full rate; beside numbers of the model only where it is no
+/// rival without them.
+std::optional<Candidate> rival_in(const IdentificationProblem& problem, const VerdictPolicy& policy, const Place& place,
+                                  const EffectSetting& effect) try {
+  std::vector<EffectSetting> effects{effect};
+  effects.insert(effects.end(), place.others.begin(), place.others.end());
+  Candidate rival{.type = effect.type, .fit = refit_effects(problem, effects, false)};
+  if (is_rival(problem, policy, place, rival)) return rival;
+  const IdentificationProblem beside = with_numbers_beside(problem, place, effect.type);
+  rival.fit = refit_effects(beside, rival.fit.effects, true);
+  if (is_rival(beside, policy, place, rival)) return rival;
+  return {};
+} catch (const ConfigError&) {
+  return {};
+}
+
+/// Effects of about the same signature at the lower rate.
+std::vector<EffectSetting> of_same_signature(const IdentificationProblem& coarse, const Place& place,
+                                             std::size_t threads, const PartProgress& progress) {
+  const IdentificationProblem extended = beside_effects(coarse, place.others);
+  std::vector<const EffectType*> effects = judged_effects(coarse);
+  std::erase_if(effects, [&](const EffectType* type) { return type->replacement != nullptr || is_found(place, type); });
+  std::vector<std::optional<EffectSetting>> same(effects.size());
+  for_each_in_parallel(
+      effects.size(), threads,
+      [&](std::size_t i) {
+        try {
+          const IdentificationProblem beside = with_numbers_beside(extended, place, effects[i]);
+          const FitOutcome fit = fit_effects(beside, {effects[i]}, true);
+          if (place.is_same(place.by_others + changes_of(beside, fit))) same[i] = fit.effects.front();
+        } catch (const ConfigError&) {
+          same[i].reset();
+        }
+      },
+      [&](std::size_t done, std::size_t all) { progress.report("effects compared with the causes", done, all); });
+  std::vector<EffectSetting> found;
+  for (std::optional<EffectSetting>& effect : same) {
+    if (effect) found.push_back(std::move(*effect));
+  }
+  return found;
+}
+
+/// Positions of the chosen effects that may be a cause of the verdict, largest share first. Not among them: a number of
+/// the specimen's law beside another cause, which is the user's and free beside every candidate.
+std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, const Selection& selection,
+                                         const Judgement& judgement) {
+  const std::vector<EffectSetting>& effects = selection.chosen.effects;
+  std::vector<std::size_t> causes;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const EffectType& type = *effects[i].type;
+    const bool is_of_law = type.interface == EffectInterface::specimen && is_model_number(problem, type);
+    // A single number that is slightly off may be the cause after all, see settle_corrections().
+    const bool may_be_cause = effects.size() == 1 || (!judgement.is_correction(i) && !is_of_law);
+    if (may_be_cause && type.replacement == nullptr) causes.push_back(i);
+  }
+  std::ranges::stable_sort(causes, std::greater{}, [&](std::size_t i) { return selection.shares[i]; });
+  return causes;
+}
+
+/// Of the chosen effect and of its rivals together.
+double probability_of_all(const Selection& selection, const Rivals& rivals) {
+  double sum = selection.chosen_probabilities[rivals.chosen];
+  for (std::size_t i = 0; i < selection.library.size() && rivals.chosen == 0; ++i) {
+    if (std::ranges::find(rivals.fitted, selection.library[i].type, &Candidate::type) != rivals.fitted.end()) {
+      sum += selection.probabilities[i];
+    }
+  }
+  return std::min(1.0, sum);
+}
+
+}  // namespace
+
+void find_rivals(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
+                 const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress, Judgement& judgement) {
+  if (!report::names_a_cause(judgement.verdict)) return;
+  const FitOutcome chosen = refit_effects(problem, selection.chosen.effects, false);
+  const FitOutcome thin = refit_effects(coarse, selection.chosen.effects, false);
+  const std::vector<std::size_t> causes = causes_by_share(problem, selection, judgement);
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const std::size_t position = causes[i];
+    Rivals rivals{.chosen = position, .fitted = {}, .probability = 1.0};
+    const Place place = place_in(problem, chosen, position, judgement);
+    for (const EffectSetting& effect : of_same_signature(coarse, place_in(coarse, thin, position, judgement), threads,
+                                                         progress.round(i, causes.size()))) {
+      if (std::optional<Candidate> rival = rival_in(problem, policy, place, effect)) {
+        rivals.fitted.push_back(std::move(*rival));
+      }
+    }
+    if (rivals.fitted.empty()) continue;
+    rivals.probability = probability_of_all(selection, rivals) / static_cast<double>(1 + rivals.fitted.size());
+    judgement.rivals = std::move(rivals);
+    if (judgement.may_be_set) judgement.verdict = report::Verdict::set;
+    return;
+  }
+}
+
+}  // namespace hybridtest
