@@ -1,5 +1,6 @@
 #include "diagnosis/diagnose.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

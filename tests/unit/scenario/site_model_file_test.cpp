@@ -1,5 +1,6 @@
 #include "scenario/site_model_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -180,7 +181,7 @@ TEST_F(SiteFile, CorrectedFrictionTakesThePlaceOfItsOwn) {
   const std::vector<ListedEffect> added{
       {{find_effect(EffectInterface::specimen, "coulomb_friction"), {3.0, 0.0, 1e-3}}, 0},
       {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, 0}};
-  for (const std::string& list : {"[" + friction + ", " + bias + "]", "[" + bias + ", " + friction + "]"}) {
+  for (const std::string& list : {fmt::format("[{}, {}]", friction, bias), fmt::format("[{}, {}]", bias, friction)}) {
     const SiteModelFile site = read("specimen: [{type: none}, {type: none}]\neffects: " + list + "\n");
     ASSERT_EQ(force_at(site.dofs[0], {.displacement_m = 1.0}), 5.0);
     const SiteModelFile corrected = read(site.with_effects(added).text);
