@@ -30,11 +30,11 @@ using report::RankedCause;
 using report::Verdict;
 
 std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Recording> recordings, RecordingRole role,
-                                      std::size_t dof) {
+                                      std::size_t dof, const SiteModel& completed) {
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
-    std::vector<Segment> own = modelled_segments(model, recordings[i], dof, i);
+    std::vector<Segment> own = modelled_segments(model, recordings[i], dof, i, completed);
     carry_history(model, recordings, dof, own);
     std::ranges::move(own, std::back_inserter(segments));
   }
@@ -234,6 +234,11 @@ std::vector<EffectSetting> causes_of(std::span<const Stage> stages, std::span<co
   return causes;
 }
 
+SiteModel with_effects(SiteModel model, std::span<const EffectSetting> effects) {
+  for (const EffectSetting& effect : effects) add_effect(model, effect);
+  return model;
+}
+
 /// The segments like those in which the fit found a gap. A channel that a cause also changes, but that is within its
 /// noise floor with and without the cause, does not show how much of the gap is removed.
 std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments) {
@@ -412,7 +417,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const PartProgress& progress = settings.progress;
   progress.report("recordings examined", 0, 1);
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
-  std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof);
+  std::vector<Segment> segments = segments_in_role(model, recordings, RecordingRole::fit, settings.dof, model);
   // Random network faults are found by their traces only.
   std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
   if (segments.empty() && traces.empty()) {
@@ -432,7 +437,11 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   std::vector<Judgement*> all_judgements;
   std::ranges::transform(stages, std::back_inserter(all_judgements), [](Stage& stage) { return &stage.judgement; });
   settle_corrections(all_judgements);
-  const std::vector<Segment> held_out = segments_in_role(model, recordings, RecordingRole::held_out, settings.dof);
+  // Smoothed as the fitted ones are.
+  const bool is_smoothed = std::ranges::any_of(segments, &Segment::is_smoothed);
+  const std::vector<Segment> held_out =
+      segments_in_role(model, recordings, RecordingRole::held_out, settings.dof,
+                       is_smoothed ? with_effects(model, causes_of(stages, {})) : model);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {
     drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);
@@ -461,6 +470,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     std::ranges::move(rank(stages[i], part), std::back_inserter(report.ranking));
   }
   put_causes_first(report.ranking);
+  settle_set(report);
   report.corrections = corrections_of(stages);
   const FitOutcome all_causes = fit_of_all(problem, stages);
   settle_noise(problem, all_causes);

@@ -374,8 +374,8 @@ inline constexpr double kSuspectOverFloor = 2.0;
 inline constexpr double kPartialLeaves = 0.3;
 /// Share of the gap [variance] that hardly matters: a tenth of its amplitude.
 inline constexpr double kHardlyLeft = 0.01;
-/// Share of the output [rms over rms] by which a number of the model may be off: load cells, displacement transducers
-/// and measured stiffnesses are rarely known to better than a hundredth or two.
+/// Share of the output [rms over rms] by which a number of the model is off [standard deviation]: load cells,
+/// displacement transducers and measured stiffnesses are rarely known to better than a hundredth or two.
 inline constexpr double kNumbersWithin = 0.025;
 /// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
 inline constexpr double kCarriesOver = 0.5;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/config_error.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
@@ -74,8 +75,64 @@ Eigen::MatrixXd knowledge_of_ranges(const VariableProjection& projection, const 
   return precision.asDiagonal();
 }
 
+/// A fit moved away from its optimum, and what it leaves.
+class MovedFit {
+ public:
+  MovedFit(const VariableProjection& projection, const Linearisation& linear, const Eigen::VectorXd& places,
+           const Projected& solution)
+      : projection_{projection}, linear_{linear}, places_{places}, solution_{solution} {
+    if (places.size() > 0) measured_ = projection.predicted(places, solution) + solution.residual;
+  }
+
+  /// The prediction is a sum of columns: nothing moves but their coefficients.
+  [[nodiscard]] bool is_linear() const noexcept { return places_.size() == 0; }
+  /// The residual in free simulation. @param step   of the parameters that can be fitted without a block.
+  [[nodiscard]] Eigen::VectorXd residual(const Eigen::VectorXd& step) const {
+    Eigen::VectorXd places = places_;
+    Projected solution = solution_;
+    for (Eigen::Index i = 0; i < step.size(); ++i) {
+      const auto index = linear_.free[static_cast<std::size_t>(linear_.held_out_with[static_cast<std::size_t>(i)])];
+      const auto position = static_cast<Eigen::Index>(index);
+      if (position < places.size()) {
+        places[position] = std::clamp(places[position] + step[i], 0.0, 1.0);
+      } else {
+        solution.coefficients[position - places.size()] += step[i];
+      }
+    }
+    return measured_ - projection_.predicted(places, solution);
+  }
+
+ private:
+  const VariableProjection& projection_;
+  const Linearisation& linear_;
+  const Eigen::VectorXd& places_;
+  const Projected& solution_;
+  Eigen::VectorXd measured_;
+};
+
+double squares_without(const Eigen::VectorXd& residual, Eigen::Index first, Eigen::Index size) {
+  return residual.squaredNorm() - residual.segment(first, size).squaredNorm();
+}
+
+/// The block's residual when it is not fitted. A Gauss-Newton step of the fit to the other blocks, which is the whole
+/// way for linear parameters; otherwise it is halved until it improves that fit, or not taken.
+Eigen::VectorXd left_out(const MovedFit& fit, const Eigen::VectorXd& residual, const Eigen::MatrixXd& inside,
+                         const Eigen::VectorXd& step, Eigen::Index first) {
+  const Eigen::VectorXd block = residual.segment(first, inside.rows());
+  if (fit.is_linear()) return block - inside * step;
+  const double before = squares_without(residual, first, inside.rows());
+  double share = 1.0;
+  for (int halvings = 0; halvings < tuning::kRelinearisations; ++halvings, share *= 0.5) try {
+      const Eigen::VectorXd moved = fit.residual(share * step);
+      if (squares_without(moved, first, inside.rows()) <= before) return moved.segment(first, inside.rows());
+    } catch (const ConfigError&) {
+      continue;  // parameters that the effect does not accept
+    }
+  return block;
+}
+
 void hold_out(const VariableProjection& projection, const IdentificationProblem& problem, const Linearisation& linear,
-              const Eigen::VectorXd& residual, FitOutcome& outcome) {
+              const MovedFit& fit_of_all, const Eigen::VectorXd& residual, FitOutcome& outcome) {
   const Eigen::MatrixXd columns = linear.columns(Eigen::all, linear.held_out_with);
   const Eigen::MatrixXd normal = columns.transpose() * columns + knowledge_of_ranges(projection, linear, residual);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
@@ -90,9 +147,10 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
       Eigen::VectorXd block = residual.segment(first, size);
       if (columns.cols() > 0) {
-        const auto inside = columns.middleRows(first, size);
+        const Eigen::MatrixXd inside = columns.middleRows(first, size);
         const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
-        block += inside * rest.ldlt().solve(inside.transpose() * block);
+        const Eigen::VectorXd step = -rest.ldlt().solve(inside.transpose() * block);
+        block = left_out(fit_of_all, residual, inside, step, first);
       }
       result.held_out_squares[b] = unweighted * block.squaredNorm();
     }
@@ -415,7 +473,7 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
     outcome.nuisance.push_back(solution.coefficients[i]);
   }
   std::ranges::transform(problem.segments, std::back_inserter(outcome.segments), untouched);
-  hold_out(projection, problem, linear, solution.residual, outcome);
+  hold_out(projection, problem, linear, {projection, linear, places, solution}, solution.residual, outcome);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     SegmentResult& result = outcome.segments[projection.touched()[t]];

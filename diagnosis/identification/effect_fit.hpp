@@ -53,8 +53,8 @@ struct FitOutcome {
 /// least squares (variable projection; Golub and Pereyra, 1973), the others by a bounded
 /// trust-region search (Ceres) from the best of several starts. Deterministic.
 ///
-/// Held-out blocks: the residual of each block when it is not fitted is computed from the linearised fit. This is exact
-/// for linear parameters.
+/// Held-out blocks: the residual of each block when it is not fitted, the fit moved by one Gauss-Newton step of the
+/// other blocks and the block predicted again in free simulation. This is the fit itself where parameters are linear.
 /// @param with_nuisance   leave the segments' slightly wrong model parameters free as well.
 [[nodiscard]] FitOutcome fit_effects(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects, bool with_nuisance);

@@ -1,9 +1,11 @@
 #include "diagnosis/identification/segment.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "core/random.hpp"
@@ -211,35 +213,99 @@ double smoothing_error(const SiteModel& model, const Segment& smooth, const DofR
   return std::sqrt(squares / static_cast<double>(first_force.size()));
 }
 
-Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
-  double best = 0.0;
-  double least = std::numeric_limits<double>::infinity();
+double squared_difference(const std::vector<double>& values, const std::vector<double>& others) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) squares += std::pow(values[i] - others[i], 2);
+  return squares;
+}
+
+/// The deviation with the least squares of all that are tried, and these.
+struct Deviation {
+  double value = 0.0;
+  double squares = std::numeric_limits<double>::infinity();
+};
+
+/// @param squares   that one deviation leaves of the recorded force.
+template <class Squares>
+Deviation best_deviation(const Segment& segment, const DofRecording& dof, Squares&& squares) {
+  Deviation best;
   for (const double deviation : tuning::kSmoothingDeviations) {
-    const Segment tried = smoothed_alike(segment, dof, deviation);
-    const std::vector<double> predicted = predict(model, tried);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < predicted.size(); ++i) squares += std::pow(segment.measured[i] - predicted[i], 2);
-    if (squares < least) {
-      least = squares;
-      best = deviation;
-    }
+    const double here = squares(smoothed_alike(segment, dof, deviation));
+    if (here < best.squares) best = {deviation, here};
   }
+  return best;
+}
+
+Segment smoothed_by(const SiteModel& model, const Segment& segment, const DofRecording& dof, double best) {
   const double deviation = tuning::kSmoothingNextStep * best;
   Segment smooth = smoothed_alike(segment, dof, deviation);
   smooth.smoothing_error = smoothing_error(model, smooth, dof, deviation);
   return smooth;
 }
 
+Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
+  const Deviation best = best_deviation(
+      segment, dof, [&](const Segment& tried) { return squared_difference(segment.measured, predict(model, tried)); });
+  return smoothed_by(model, segment, dof, best.value);
+}
+
+/// What a mass and, without it, a spring and a damper beside the model leave of the recorded force, with the motion of
+/// a tried segment.
+struct LeftByMass {
+  double without = 0.0;
+  double with = 0.0;
+};
+
+LeftByMass left_by_mass(const SiteModel& model, const Segment& segment, const Segment& tried) {
+  const auto judged = static_cast<Eigen::Index>(segment.measured.size() - 2 * tried.unjudged);
+  if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return {};
+  const std::vector<double> predicted = predict(model, tried);
+  Eigen::MatrixXd columns(judged, 5);
+  Eigen::VectorXd force_n(judged);
+  for (Eigen::Index row = 0; row < judged; ++row) {
+    const auto i = static_cast<std::size_t>(row) + tried.unjudged;
+    const Motion& motion = tried.input[i];
+    columns.row(row) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0, motion.acceleration_m_per_s2;
+    force_n[row] = segment.measured[i];
+  }
+  const auto left = [&](Eigen::Index count) {
+    const Eigen::MatrixXd used = columns.leftCols(count);
+    return (force_n - used * used.colPivHouseholderQr().solve(force_n)).squaredNorm();
+  };
+  return {.without = left(4), .with = left(5)};
+}
+
+/// Smoothed alike where a mass that the model lacks explains more than half of what is left: the noise of an
+/// acceleration that is not smoothed hides most of such a mass.
+std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
+  const Deviation best =
+      best_deviation(segment, dof, [&](const Segment& tried) { return left_by_mass(model, segment, tried).with; });
+  if (!(best.value > 0.0)) return {};
+  const LeftByMass left = left_by_mass(model, segment, smoothed_alike(segment, dof, best.value));
+  if (left.with > tuning::kMainShare * left.without) return {};
+  return smoothed_by(model, segment, dof, best.value);
+}
+
 }  // namespace
 
 std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
                                        std::size_t position) {
+  return modelled_segments(model, recording, dof, position, model);
+}
+
+std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
+                                       std::size_t position, const SiteModel& completed) {
   std::vector<Segment> segments;
   for (Segment& segment : segments_of(recording, dof, position)) {
     if (!is_modelled(model, segment)) continue;
-    const bool is_smoothed =
-        segment.to == Channel::measured_force && !segment.is_quasi_static && follows_derivatives(model);
-    segments.push_back(is_smoothed ? best_smoothed(model, segment, recording.dofs[dof]) : std::move(segment));
+    const bool can_be_smoothed = segment.to == Channel::measured_force && !segment.is_quasi_static;
+    if (can_be_smoothed && follows_derivatives(completed)) {
+      segments.push_back(best_smoothed(completed, segment, recording.dofs[dof]));
+      continue;
+    }
+    std::optional<Segment> smooth;
+    if (can_be_smoothed) smooth = smoothed_for_mass(model, segment, recording.dofs[dof]);
+    segments.push_back(smooth ? std::move(*smooth) : std::move(segment));
   }
   return segments;
 }

@@ -72,12 +72,22 @@ std::string remainder(const DiagnosisReport& report) {
                      shrink.nrmse_after / shrink.floor_nrmse);
 }
 
+/// Of a smaller cause, which effect it is.
+std::string in_doubt(const DiagnosisReport& report) {
+  std::vector<const RankedCause*> alike;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_indistinguishable) alike.push_back(&cause);
+  }
+  if (report.verdict != Verdict::named || alike.size() < 2) return {};
+  return fmt::format(" These recordings cannot distinguish {}.", joined(in_words(alike)));
+}
+
 std::string named_sentence(const DiagnosisReport& report) {
   const std::vector<std::string> names = causes(report);
   std::string text =
       where_it_lies(report) + (names.size() > 1 ? "; its causes are " : "; its cause is ") + joined(names);
   if (names.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
-  return text + removal(report);
+  return text + removal(report) + in_doubt(report);
 }
 
 std::string set_sentence(const DiagnosisReport& report) {

@@ -44,17 +44,15 @@ double nats_that_decide(double probability) noexcept {
 
 namespace {
 
-/// The most probable candidates, until their sum of probabilities is large enough; and those that the data alone cannot
-/// tell from the first one, with no more parameters, however rare they are.
+/// The most probable candidates, until their sum of probabilities is large enough; and those of the same signature as
+/// the first one, with no more parameters, however rare they are.
 std::vector<std::size_t> credible(const Selection& selection, double probability) {
-  const double within = nats_that_decide(probability);
   const Candidate& first = selection.library.front();
   std::vector<std::size_t> members;
   double sum = 0.0;
   for (std::size_t i = 0; i < selection.library.size(); ++i) {
     const Candidate& candidate = selection.library[i];
-    const bool is_alike = candidate.parameters <= first.parameters &&
-                          (candidate.held_out > first.held_out - within || are_alike(first.fit, candidate.fit));
+    const bool is_alike = candidate.parameters <= first.parameters && are_alike(first.fit, candidate.fit);
     if (i == 0 || sum < probability || is_alike) members.push_back(i);
     sum += selection.probabilities[i];
   }
@@ -78,7 +76,10 @@ std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, cons
     const ModelNumber number = effect.type->traits.number;
     const bool is_number = number != ModelNumber::none || place_of(problem.model, *effect.type) != nullptr;
     if (!is_number || number == ModelNumber::offset || number == ModelNumber::damping) continue;
-    if (changes_at_most(problem, effect, share)) corrections.push_back(i);
+    // An output follows a gain, a stiffness or a strength in proportion. A delay and a bandwidth that are as much off
+    // change it by less.
+    const bool is_timing = number == ModelNumber::delay || number == ModelNumber::bandwidth;
+    if (changes_at_most(problem, effect, is_timing ? 0.5 * share : share)) corrections.push_back(i);
   }
   return corrections;
 }
@@ -267,6 +268,16 @@ Verdict verdict_of(std::span<const Judgement> judgements) {
   if (count(Verdict::unknown) == gaps) return Verdict::unknown;
   if (count(Verdict::unknown) + count(Verdict::partial) > 0) return Verdict::partial;
   return count(Verdict::set) > 0 ? Verdict::set : Verdict::named;
+}
+
+void settle_set(report::DiagnosisReport& report) {
+  if (report.verdict != Verdict::set || report.ranking.empty() || report.ranking.front().is_indistinguishable) return;
+  report.verdict = Verdict::named;
+  for (report::RankedCause& cause : report.ranking) {
+    // What was chosen has a share.
+    if (cause.is_indistinguishable && cause.share == 0.0) cause.is_cause = false;
+  }
+  put_causes_first(report.ranking);
 }
 
 Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts) {

@@ -56,6 +56,10 @@ void settle_corrections(std::span<Judgement* const> judgements);
 /// Sorts the causes to the front, larger share first; the other candidates keep their order.
 void put_causes_first(std::vector<report::RankedCause>& ranking);
 
+/// A set is the verdict on the whole only where it is in doubt which effect has the largest share. Beside a cause that
+/// is certain, the effects that cannot be told from a smaller one are alternatives.
+void settle_set(report::DiagnosisReport& report);
+
 /// Multiplies the share of every interface by this factor.
 void scale_shares(std::vector<report::InterfaceGap>& where, double kept);
 

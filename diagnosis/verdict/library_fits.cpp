@@ -198,15 +198,14 @@ std::optional<Candidate> refine(const IdentificationProblem& problem, const Cand
   return {};
 }
 
-/// Effects fitted together, the one in question told by its type.
+}  // namespace
+
 std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
                                       const std::vector<EffectSetting>& start, decltype(refit_effects)& fit) try {
   return scored(problem, {.type = type, .fit = fit(problem, start, false)});
 } catch (const ConfigError&) {
   return {};
 }
-
-}  // namespace
 
 void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
                           const FitProgress& progress) {
@@ -259,14 +258,13 @@ std::vector<std::size_t> longest_first(const IdentificationProblem& problem,
   return order;
 }
 
-/// A stiffness or strength of the specimen's law. A law in place of the specimen's own has its own.
-bool is_of_law(const EffectType& effect) {
+}  // namespace
+
+bool is_of_law(const EffectType& effect) noexcept {
   const ModelNumber number = effect.traits.number;
   return effect.interface == EffectInterface::specimen &&
          (number == ModelNumber::stiffness || number == ModelNumber::strength);
 }
-
-}  // namespace
 
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
   std::vector<EffectSetting> numbers;

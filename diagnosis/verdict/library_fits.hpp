@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -81,6 +82,14 @@ void score_again(const IdentificationProblem& problem, std::vector<Candidate>& c
 [[nodiscard]] bool are_alike(const FitOutcome& first, const FitOutcome& second);
 
 [[nodiscard]] bool is_of_sensor(const EffectType& effect) noexcept;
+
+/// A stiffness or strength of the specimen's law. A law in place of the specimen's own has its own.
+[[nodiscard]] bool is_of_law(const EffectType& effect) noexcept;
+
+/// Effects fitted together, the one in question told by its type; nothing where they cannot be the cause.
+[[nodiscard]] std::optional<Candidate> fit_together(const IdentificationProblem& problem, const EffectType* type,
+                                                    const std::vector<EffectSetting>& start,
+                                                    decltype(refit_effects)& fit);
 
 /// Where a sensor's effect leads, and one of a stage changes the prediction alike, the stage's comes first.
 void put_stage_before_sensor(std::vector<Candidate>& candidates);

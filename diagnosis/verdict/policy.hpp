@@ -13,8 +13,8 @@ struct VerdictPolicy {
   /// Probability of a set of effects, above 0.5 and below 1.
   double credible = tuning::kCredible;
   /// Numbers of the model that are off and change the output by at most this share [rms over rms] are corrected, but
-  /// are no cause. 0: each is a cause.
-  double numbers_within = tuning::kNumbersWithin;
+  /// are no cause: two standard deviations. A delay or a bandwidth: half of it. 0: each is a cause.
+  double numbers_within = 2.0 * tuning::kNumbersWithin;
 
   /// @param left         share of the gap that is left [variance].
   /// @param over_floor   the residual over the floor and what no model is expected to reproduce [rms over rms].

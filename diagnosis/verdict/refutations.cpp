@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,6 +33,9 @@ struct Suspect {
   [[nodiscard]] const ParameterEstimate& parameter(std::string_view name) const {
     const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
     return estimates[static_cast<std::size_t>(found - effect.type->parameters.begin())];
+  }
+  [[nodiscard]] const Eigen::MatrixXd& covariance() const {
+    return outcome.covariances[static_cast<std::size_t>(&effect - outcome.effects.data())];
   }
   [[nodiscard]] std::string name() const {
     return report::plain(effect.type->name) + " of the " + report::plain(name_of(effect.type->interface));
@@ -273,8 +277,27 @@ constexpr std::array kChecks{
     Check{specimen, "stribeck_friction", friction_refuted},
 };
 
-/// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter: an
-/// interval beside a shape that makes up for the size says nothing of absence.
+/// What is not known of a parameter while the others of its effect are as they were found, over what is not known of it
+/// while they are free.
+double doubt_with_shape_held(const Eigen::MatrixXd& covariance, std::size_t parameter) {
+  std::vector<Eigen::Index> free;
+  Eigen::Index own = 0;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    if (!(covariance(i, i) > 0.0)) continue;
+    if (i == static_cast<Eigen::Index>(parameter)) own = static_cast<Eigen::Index>(free.size());
+    free.push_back(i);
+  }
+  if (free.size() < 2) return 1.0;
+  Eigen::MatrixXd correlation = covariance(free, free);
+  const Eigen::VectorXd deviations = correlation.diagonal().cwiseSqrt();
+  correlation = deviations.cwiseInverse().asDiagonal() * correlation * deviations.cwiseInverse().asDiagonal();
+  correlation.diagonal().array() += tuning::kCovarianceRidge;
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(correlation.rows(), own);
+  return 1.0 / std::sqrt(std::max(1.0, unit.dot(correlation.ldlt().solve(unit))));
+}
+
+/// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter. Where
+/// it is absent its shape means nothing: a shape that makes up for the size says nothing of absence, and is held.
 /// What a model lacks besides other effects has to be seen in the interval that is reported, every
 /// number of the model in doubt. An effect that the model has is none where it may be as it is there.
 std::string absence_not_excluded(const Suspect& suspect) {
@@ -298,7 +321,8 @@ std::string absence_not_excluded(const Suspect& suspect) {
     if (!can_be_absent || (free > 1 && !parameter.is_linear) ||
         is_fixed(suspect.problem, *suspect.effect.type, parameter))
       continue;
-    if (std::abs(estimate.value - parameter.neutral) > half_width(estimate)) continue;
+    const double shape_held = doubt_with_shape_held(suspect.covariance(), i);
+    if (std::abs(estimate.value - parameter.neutral) > shape_held * half_width(estimate)) continue;
     return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), parameter.name);
   }
   return {};
@@ -308,10 +332,6 @@ std::string absence_not_excluded(const Suspect& suspect) {
 
 bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   return slides_as_in_model(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});
-}
-
-bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
-  return !absence_not_excluded({problem, fit, fit.effects[position], fit.parameters[position]}).empty();
 }
 
 bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
@@ -333,18 +353,34 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
   return false;
 }
 
+namespace {
+
+/// What the recordings say against an effect by themselves.
+std::string contradiction(const Suspect& suspect) {
+  const EffectType& type = *suspect.effect.type;
+  for (const Check& check : kChecks) {
+    if (check.interface != type.interface || check.effect != type.name) continue;
+    if (std::string why = check.refuted(suspect); !why.empty()) return why;
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const Suspect suspect{problem, fit, fit.effects[position], fit.parameters[position]};
+  return !absence_not_excluded(suspect).empty() || !contradiction(suspect).empty();
+}
+
 std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
+    // Effects found before may be needless beside this one: that is asked when all are known, see is_needless().
+    if (candidate.fit.effects[i].type != candidate.type) continue;
     const Suspect suspect{problem, candidate.fit, candidate.fit.effects[i], candidate.fit.parameters[i]};
-    // Effects found before were needed without this one; beside it their intervals may be wide.
-    std::string why = suspect.effect.type == candidate.type ? absence_not_excluded(suspect) : std::string{};
-    for (const Check& check : kChecks) {
-      const EffectType& type = *suspect.effect.type;
-      if (why.empty() && check.interface == type.interface && check.effect == type.name) why = check.refuted(suspect);
-    }
+    std::string why = absence_not_excluded(suspect);
+    if (why.empty()) why = contradiction(suspect);
     // A single effect may be larger than the library expects; one beside others may then be anything.
-    const bool is_further = candidate.fit.effects.size() > 1 && suspect.effect.type == candidate.type;
-    if (why.empty() && is_further && is_cut_off(problem, candidate.fit, i)) {
+    if (why.empty() && candidate.fit.effects.size() > 1 && is_cut_off(problem, candidate.fit, i)) {
       why = suspect.name() + ": a parameter is at the limit of its search range";
     }
     if (!why.empty()) return why;

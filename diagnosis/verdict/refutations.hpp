@@ -7,11 +7,12 @@
 
 namespace hybridtest {
 
-/// Whether the 95 % interval of what an effect is proportional to, or of its only parameter, holds the value at which
-/// it is absent: of what a model lacks besides other effects the interval that is reported, else the
-/// one beside numbers of the model that are right.
+/// Whether an effect fitted together with others may as well be absent, or the recordings refute it by themselves. It
+/// may be absent where the 95 % interval of what it is proportional to, or of its only parameter, holds the value at
+/// which it is: of what a model lacks besides other effects the interval that is reported, else the one beside numbers
+/// of the model that are right.
 /// @param position   in the fit's effects.
-[[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
+[[nodiscard]] bool is_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
 /// Whether a friction that the model has slides no later than it does there. What the user calls a friction is one,
 /// however late it slides.
@@ -19,8 +20,8 @@ namespace hybridtest {
 [[nodiscard]] bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit,
                                       std::size_t position);
 
-/// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves, or an effect
-/// that was fitted together with it. In words, with values; empty when nothing speaks against it. Refuted are
+/// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves. In words, with
+/// values; empty when nothing speaks against it. Refuted are
 ///
 /// - a limit of a load cell, of stroke or of velocity that readings pass, or that none comes near;
 /// - a bias or drift of a sensor, when readings at rest are nearer to none than to that one;

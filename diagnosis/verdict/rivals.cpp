@@ -202,7 +202,7 @@ bool is_rival(const IdentificationProblem& problem, const VerdictPolicy& policy,
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     if (estimates[i].at_bound && estimates[i].value != rival.type->parameters[i].fallback) return false;
   }
-  return are_slight(problem, place, rival.fit, policy.numbers_within) &&
+  return are_slight(problem, place, rival.fit, tuning::kNumbersWithin) &&
          free_parameters(problem, rival.fit, 0) <= free_parameters(problem, *place.chosen, place.position) &&
          !is_refuted(problem, place, rival);
 }

@@ -143,7 +143,7 @@ void prune(const IdentificationProblem& problem, const FitOutcome& baseline, Fit
     for (std::size_t i = 0; i < fit.effects.size(); ++i) {
       FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
       const EffectType& type = *fit.effects[i].type;
-      if (!may_be_absent(problem, fit, i) && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit}))
+      if (!is_needless(problem, fit, i) && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit}))
         continue;
       if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
     }
@@ -181,26 +181,65 @@ double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
   return held_out_score(problem, fit) + prior(problem, fit);
 }
 
-/// The chosen law among all laws, beside the effects that were found with it.
-void settle_form(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
-  const auto law = std::ranges::find_if(
-      growth.fit.effects, [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
-  if (law == growth.fit.effects.end() || growth.fit.effects.size() == 1) return;
-  const std::ptrdiff_t position = law - growth.fit.effects.begin();
-  std::vector<EffectSetting> effects = growth.fit.effects;
-  FitOutcome best = growth.fit;
-  double score = score_of(problem, best);
+/// Other effects in the place of one: a candidate with what it needs beside it, and what was found beside the one. The
+/// numbers of a law that another law replaces go with it. Empty where the candidate is found already.
+std::vector<EffectSetting> with_instead(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects,
+                                        std::size_t position, const Candidate& candidate) {
+  const auto is_found = [&](const EffectType* type) {
+    return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
+  };
+  if (is_found(candidate.type)) return {};
+  std::vector<EffectSetting> rest = without(effects, position);
+  const bool is_law = candidate.type->replacement != nullptr;
+  if (is_law) std::erase_if(rest, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
+  std::vector<EffectSetting> instead = candidate.fit.effects;
+  if (candidate.fit.with_nuisance)
+    std::ranges::copy(wrong_numbers(problem, candidate.fit), std::back_inserter(instead));
+  const bool law_stays =
+      std::ranges::any_of(rest, [](const EffectSetting& e) { return e.type->replacement != nullptr; });
+  if (law_stays && is_law) return {};
+  std::erase_if(instead, [&](const EffectSetting& effect) {
+    return effect.type != candidate.type && (is_found(effect.type) || (law_stays && is_of_law(*effect.type)));
+  });
+  instead.insert(instead.end(), rest.begin(), rest.end());
+  return instead;
+}
+
+/// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
+/// judged without them. Of a law all laws are tried, and of everything the best few.
+/// @return whether another one is better.
+bool exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
+  const std::vector<EffectSetting> effects = growth.fit.effects;
+  const bool is_law = effects[position].type->replacement != nullptr;
+  std::vector<double> scores{score_of(problem, growth.fit)};
+  std::optional<Candidate> best;
+  double highest = scores.front();
+  std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
-    const EffectSetting& other = candidate.fit.effects.front();
-    if (other.type->replacement == nullptr || other.type == law->type) continue;
-    effects[static_cast<std::size_t>(position)] = other;
-    FitOutcome fit = refit_effects(problem, effects, false);
-    const double its_score = score_of(problem, fit);
-    if (its_score <= score) continue;
-    score = its_score;
-    best = std::move(fit);
+    const bool is_other_form = is_law && candidate.type->replacement != nullptr;
+    if (!is_other_form && others >= tuning::kRefittedPairs) continue;
+    const std::vector<EffectSetting> start = with_instead(problem, effects, position, candidate);
+    if (start.empty()) continue;
+    if (!is_other_form) ++others;
+    std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
+    if (!instead || !refutation(problem, *instead).empty()) continue;
+    scores.push_back(score_of(problem, instead->fit));
+    if (scores.back() <= highest) continue;
+    highest = scores.back();
+    best = std::move(instead);
   }
-  growth.fit = std::move(best);
+  if (!best) return false;
+  const auto place = std::ranges::max_element(scores) - scores.begin();
+  growth.accepted.push_back({best->type, softmax(scores)[static_cast<std::size_t>(place)]});
+  growth.fit = std::move(best->fit);
+  return true;
+}
+
+/// Each chosen effect in turn.
+void settle_effects(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
+  for (std::size_t position = 0; position < growth.fit.effects.size() && growth.fit.effects.size() > 1; ++position) {
+    exchange(problem, selection, position, growth);
+  }
 }
 
 /// With the round's best, if it is accepted.
@@ -228,15 +267,14 @@ void grow_further(const IdentificationProblem& problem, const IdentificationProb
   }
 }
 
-/// The form of a law and which effects are needed, when all are known: compared at the lower rate, at a fraction of the
-/// cost.
+/// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost.
 /// @return whether an effect was dropped.
 bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
             Growth& growth) {
   const std::size_t count = growth.fit.effects.size();
   if (count < 2) return false;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
-  settle_form(coarse, selection, growth);
+  settle_effects(coarse, selection, growth);
   prune(coarse, fit_nothing(coarse, false), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   return growth.fit.effects.size() < count;

@@ -25,6 +25,8 @@ BoucWen::BoucWen(const Parameters& parameters, double substeps_per_length)
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
   // 2^-20 where there are 64.
   first_substep_ = std::exp2(-std::log2(substeps_per_length) * 10.0 / 3.0);
+  const double share = std::abs(unloading_);
+  unloading_substep_ = 1.0 / (substeps_per_length * std::max(1.0, share > 1.0 ? share : std::pow(share, 0.2)));
   is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
 }
 
@@ -47,7 +49,9 @@ double BoucWen::trial(double displacement_m, double /*velocity_m_per_s*/) noexce
 // equation loses all but two of its parameters: dw/ds = 1 - c |w|^n, where c is 1 while
 // loading (w > 0) and (gamma - beta) / (gamma + beta) while unloading.
 double BoucWen::slope(double w) const noexcept {
-  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(w), parameters_.n);
+  // The usual exponent is one, and a power costs more than all the rest.
+  const double power = parameters_.n == 1.0 ? std::abs(w) : std::pow(std::abs(w), parameters_.n);
+  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * power;
 }
 
 double BoucWen::carried_along(double w, double path) const noexcept {
@@ -67,6 +71,7 @@ double BoucWen::carried_along(double w, double path) const noexcept {
 
 double BoucWen::substep(double w) const noexcept {
   const double n = parameters_.n;
+  if (n == 1.0) return w < 0.0 ? unloading_substep_ : 1.0 / substeps_per_length_;
   const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
   const double share = (w < 0.0 ? std::abs(unloading_) : 1.0) * std::pow(largest, n - 1.0);
   // n * share is the derivative of the slope; its own derivatives grow n times each, so that a

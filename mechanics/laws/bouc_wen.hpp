@@ -67,6 +67,7 @@ class BoucWen final : public Law {
   double first_substep_;
   double ultimate_m_;
   double unloading_;          // (gamma - beta) / (gamma + beta)
+  double unloading_substep_;  // where n is one: the same everywhere
   bool is_singular_at_zero_;  // high derivatives of |z|^n
   State committed_;
   State trial_;

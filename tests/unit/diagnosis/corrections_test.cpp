@@ -129,7 +129,7 @@ TEST(Corrections, DampingThatTheModelLacksIsACause) {
 TEST(Corrections, WrongGainOfTheActuatorEarnsASensorNothing) {
   // A lag of the transducer looks like this damping in the force. It must not lead for the wrong gain and delay of the
   // actuator, numbers that a fit of the transducer's lag may correct besides.
-  const auto moved_m = [](double t) { return 0.96 * made_motion_m(t - 0.0005); };
+  const auto moved_m = [](double t) { return 0.94 * made_motion_m(t - 0.0005); };
   const Recording recording = made_recording(
       moved_m, [&](double t) { return kMadeStiffness_n_per_m * moved_m(t) + 1.0e4 * slope(moved_m, t); });
   const Diagnosis diagnosis = diagnosis_of(recording);

@@ -37,6 +37,8 @@ Candidate fit_of(EffectInterface interface, std::string_view effect, const std::
   for (const double value : values) {
     candidate.fit.parameters.back().push_back({.value = value, .standard_error = error});
   }
+  const auto count = static_cast<Eigen::Index>(values.size());
+  candidate.fit.covariances.emplace_back(error * error * Eigen::MatrixXd::Identity(count, count));
   return candidate;
 }
 
@@ -104,6 +106,7 @@ TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   Candidate pair = fit_of(specimen, "viscous_damping", {100.0}, 40.0);
   pair.fit.effects.push_back({find_effect(specimen, "inertia"), {5.0}});
   pair.fit.parameters.push_back({{.value = 5.0, .standard_error = 4.0, .beside_wrong_numbers = 4.0}});
+  pair.fit.covariances.emplace_back(Eigen::MatrixXd::Constant(1, 1, 16.0));
   EXPECT_THAT(refutation(problem, pair), IsEmpty());
   pair.type = find_effect(specimen, "inertia");
   EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
@@ -118,6 +121,7 @@ TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {
   Candidate further = lag;
   further.fit.effects.push_back({find_effect(transfer_system, "gain"), {0.02}});
   further.fit.parameters.push_back({{.value = 0.02, .standard_error = 1e-9}});
+  further.fit.covariances.emplace_back(Eigen::MatrixXd::Constant(1, 1, 1e-18));
   EXPECT_THAT(refutation(problem, further), HasSubstr("at the limit of its search range"));
 
   lag.fit.effects[0].values[1] = lag.fit.parameters[0][1].value = 0.0;  // one pole: no limit that was chosen
