@@ -239,6 +239,19 @@ SiteModel with_effects(SiteModel model, std::span<const EffectSetting> effects) 
   return model;
 }
 
+/// Of causes_of(), see Diagnosis::doubts. What shows in digits is counted, not fitted.
+std::vector<Eigen::MatrixXd> doubts_of(std::span<const Stage> stages, std::span<const Trace> traces) {
+  std::vector<Eigen::MatrixXd> doubts;
+  for (const Stage& stage : stages) {
+    if (stage.changes_model()) doubts.push_back(covariance_for_draws(stage.selection.chosen));
+  }
+  for (const Trace& trace : traces) {
+    const auto count = std::ssize(trace.effect.values);
+    doubts.emplace_back(Eigen::MatrixXd::Zero(count, count));
+  }
+  return doubts;
+}
+
 /// The segments like those in which the fit found a gap. A channel that a cause also changes, but that is within its
 /// noise floor with and without the cause, does not show how much of the gap is removed.
 std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments) {
@@ -447,6 +460,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);
   }
   diagnosis.causes = causes_of(stages, traces);
+  diagnosis.doubts = doubts_of(stages, traces);
   if (!diagnosis.causes.empty()) {
     report.interface_shrink = shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed);
     if (held_out.empty()) {

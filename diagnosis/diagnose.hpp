@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -40,6 +41,8 @@ struct Diagnosis {
   report::DiagnosisReport report;
   std::vector<GapPlace> places;
   std::vector<EffectSetting> causes;  // to be added to the model, in this order
+  // Covariances of their parameters in the same order, one for each channel: see covariance_for_draws().
+  std::vector<Eigen::MatrixXd> doubts;
 };
 
 /// Finds where a model and recordings of the real site differ, which effect of the library causes it, and how much

@@ -31,6 +31,18 @@ double over(double error, double whole) noexcept { return whole > 0.0 ? error / 
 
 }  // namespace
 
+Eigen::VectorXd peaks_m(const TestResponse& response, Eigen::Index steps) {
+  const Eigen::Index kept = std::min(steps, response.steps());
+  if (kept == 0) return Eigen::VectorXd::Zero(response.displacement_m.rows());
+  return response.displacement_m.leftCols(kept).cwiseAbs().rowwise().maxCoeff();
+}
+
+double energy_taken_j(const TestResponse& response, Eigen::Index steps) {
+  return work_of(response.restoring_force_n, response.velocity_m_per_s, std::min(steps, response.steps()),
+                 response.step_s)
+      .last_j;
+}
+
 ResponseError response_error(const TestResponse& recorded, const TestResponse& simulated) {
   HYBRIDTEST_ASSERT(recorded.displacement_m.rows() == simulated.displacement_m.rows());
   const Eigen::Index steps = std::min(recorded.steps(), simulated.steps());
@@ -38,17 +50,15 @@ ResponseError response_error(const TestResponse& recorded, const TestResponse& s
   const auto model_m = simulated.displacement_m.leftCols(steps);
   ResponseError error;
   error.nrmse = over((model_m - real_m).norm(), real_m.norm());
-  for (Eigen::Index dof = 0; steps > 0 && dof < real_m.rows(); ++dof) {
-    const double peak_m = real_m.row(dof).cwiseAbs().maxCoeff();
-    const double off_m = std::abs(model_m.row(dof).cwiseAbs().maxCoeff() - peak_m);
-    error.peak_error = std::max(error.peak_error, over(off_m, peak_m));
+  const Eigen::VectorXd real_peaks_m = peaks_m(recorded, steps);
+  const Eigen::VectorXd model_peaks_m = peaks_m(simulated, steps);
+  for (Eigen::Index dof = 0; dof < real_peaks_m.size(); ++dof) {
+    const double off_m = std::abs(model_peaks_m[dof] - real_peaks_m[dof]);
+    error.peak_error = std::max(error.peak_error, over(off_m, real_peaks_m[dof]));
   }
-  const auto taken_j = [&](const TestResponse& response) {
-    return work_of(response.restoring_force_n, response.velocity_m_per_s, steps, response.step_s).last_j;
-  };
   const double put_in_j =
       work_of(recorded.applied_force_n, recorded.velocity_m_per_s, steps, recorded.step_s).largest_j;
-  error.energy_error = over(std::abs(taken_j(simulated) - taken_j(recorded)), put_in_j);
+  error.energy_error = over(std::abs(energy_taken_j(simulated, steps) - energy_taken_j(recorded, steps)), put_in_j);
   return error;
 }
 

@@ -29,4 +29,9 @@ struct ResponseError {
 /// @param recorded, simulated   of the same degrees of freedom and step.
 [[nodiscard]] ResponseError response_error(const TestResponse& recorded, const TestResponse& simulated);
 
+/// Largest |displacement| of each degree of freedom over the first so many steps, at most all [m].
+[[nodiscard]] Eigen::VectorXd peaks_m(const TestResponse& response, Eigen::Index steps);
+/// What the substructures have taken by the last of these steps [J].
+[[nodiscard]] double energy_taken_j(const TestResponse& response, Eigen::Index steps);
+
 }  // namespace hybridtest

@@ -161,7 +161,8 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
 struct Doubt {
   Eigen::VectorXd variances;   // beside a model whose numbers are right
   Eigen::MatrixXd covariance;  // beside one whose numbers are slightly wrong
-  double freedom = 1.0;        // degrees of freedom of both
+  Eigen::MatrixXd predicting;  // of what they predict beside the model's numbers as they are
+  double freedom = 1.0;        // degrees of freedom of all
 };
 
 /// What a block pulls at the parameters, as if it had not pulled the fit towards itself: its residual over one minus
@@ -331,7 +332,9 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
   }
   Sandwich right{own, Eigen::VectorXd::Zero(count)};
   Sandwich wrong{all, precision};
+  Sandwich predicting = right;
   Eigen::VectorXd by_noise = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd by_noise_alone = by_noise;
   double blocks = 0.0;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
@@ -339,12 +342,15 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
     for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b, blocks += 1.0) {
       const Eigen::Index rows = fit.block_begins[b + 1] - fit.block_begins[b];
       right.add_block(residual, begin + fit.block_begins[b], rows);
+      predicting.add_block(residual, begin + fit.block_begins[b], rows);
       wrong.add_block(residual, begin + fit.block_begins[b], rows);
     }
     const Eigen::Index rows = fit.measured.size();
     by_noise += variances_of_sums(residual.segment(begin, rows), wrong.weights(begin, rows).leftCols(count));
+    by_noise_alone += variances_of_sums(residual.segment(begin, rows), right.weights(begin, rows));
   }
   wrong.widen_to(by_noise);
+  predicting.widen_to(by_noise_alone);
   wrong.add_prior(noise * precision);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
@@ -352,12 +358,15 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
     const Eigen::Index rows = fit.measured.size();
     const double repeatable = fit.discrepancy->repeatable(residual.segment(begin, rows));
     right.add_pull(fit.discrepancy->pull(repeatable, right.weights(begin, rows)));
-    wrong.add_pull(fit.discrepancy->pull(std::max(repeatable, allowed_energy(fit)), wrong.weights(begin, rows)));
+    const double at_least = std::max(repeatable, allowed_energy(fit));
+    wrong.add_pull(fit.discrepancy->pull(at_least, wrong.weights(begin, rows)));
+    predicting.add_pull(fit.discrepancy->pull(at_least, predicting.weights(begin, rows)));
   }
   const auto unit = size.head(count).cwiseInverse().asDiagonal();
+  const double scale = tuning::kIntervalScale * tuning::kIntervalScale;
   return {.variances = (unit * right.covariance() * unit).diagonal(),
-          .covariance = tuning::kIntervalScale * tuning::kIntervalScale *
-                        (unit * wrong.covariance().topLeftCorner(count, count) * unit),
+          .covariance = scale * (unit * wrong.covariance().topLeftCorner(count, count) * unit),
+          .predicting = scale * (unit * predicting.covariance() * unit),
           .freedom = std::max(1.0, blocks - 1.0)};
 }
 
@@ -387,13 +396,19 @@ std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen:
 void estimate(const VariableProjection& projection, const IdentificationProblem& problem, const Eigen::VectorXd& places,
               const Projected& solution, const Linearisation& linear, FitOutcome& outcome) {
   std::vector<std::vector<ParameterEstimate>>& result = outcome.parameters;
+  std::vector<Eigen::Index> begins{0};  // of each effect's parameters among all
   for (const EffectSetting& effect : outcome.effects) {
-    const auto count = static_cast<Eigen::Index>(effect.values.size());
-    outcome.covariances.emplace_back(Eigen::MatrixXd::Zero(count, count));
+    begins.push_back(begins.back() + std::ssize(effect.values));
     result.emplace_back();
     for (const double value : effect.values) result.back().push_back({.value = value});
   }
   const Doubt doubt = doubt_of(projection, problem, linear, solution.residual, outcome);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(begins.back(), begins.back());
+  outcome.predicting = covariance;
+  outcome.freedom = doubt.freedom;
+  const auto place_of = [&](const FreeParameter& one) {
+    return begins[one.effect] + static_cast<Eigen::Index>(one.parameter);
+  };
   const SearchPlan& plan = projection.plan();
   std::vector<std::optional<FreeParameter>> free;
   for (const std::size_t index : linear.free) free.push_back(free_parameter(plan, places, index));
@@ -413,11 +428,16 @@ void estimate(const VariableProjection& projection, const IdentificationProblem&
     }
     for (std::size_t j = 0; j < free.size(); ++j) {
       const std::optional<FreeParameter>& there = free[j];
-      if (!there || there->effect != here->effect) continue;
-      outcome.covariances[here->effect](static_cast<Eigen::Index>(here->parameter),
-                                        static_cast<Eigen::Index>(there->parameter)) =
-          here->unit * there->unit * doubt.covariance(row, static_cast<Eigen::Index>(j));
+      if (!there) continue;
+      const auto column = static_cast<Eigen::Index>(j);
+      const double unit = here->unit * there->unit;
+      covariance(place_of(*here), place_of(*there)) = unit * doubt.covariance(row, column);
+      outcome.predicting(place_of(*here), place_of(*there)) = unit * doubt.predicting(row, column);
     }
+  }
+  for (std::size_t i = 0; i < outcome.effects.size(); ++i) {
+    const Eigen::Index size = begins[i + 1] - begins[i];
+    outcome.covariances.emplace_back(covariance.block(begins[i], begins[i], size, size));
   }
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
     const double place = places[static_cast<Eigen::Index>(i)];
@@ -552,6 +572,10 @@ double half_width_95(const ParameterEstimate& estimate) noexcept {
 
 double half_interval_95(const ParameterEstimate& estimate) noexcept {
   return quantile_95(estimate.freedom) * estimate.beside_wrong_numbers;
+}
+
+Eigen::MatrixXd covariance_for_draws(const FitOutcome& fit) {
+  return std::pow(quantile_95(fit.freedom) / tuning::kTwoSided95, 2) * fit.predicting;
 }
 
 double SegmentResult::held_out_mean_square(const FitSegment& segment) const {

@@ -43,11 +43,18 @@ struct FitOutcome {
   std::vector<std::vector<ParameterEstimate>> parameters;  // per effect
   std::vector<Eigen::MatrixXd> covariances;                // per effect, of its parameters; the root of a diagonal is
                                                            // ParameterEstimate::beside_wrong_numbers
+  // Of all parameters together, effect by effect, for what they predict: beside the numbers of the model as they are.
+  // A wrong gain of a load cell makes a stiffness doubtful, but not the force that the two predict together.
+  Eigen::MatrixXd predicting;
+  double freedom = std::numeric_limits<double>::infinity();  // as ParameterEstimate::freedom
   bool with_nuisance = false;
   std::vector<double> nuisance;         // coefficients of the touched segments' columns, one behind the other
   double cost_of_numbers = 0.0;         // of the free ones, beside these effects [nats]
   std::vector<SegmentResult> segments;  // as in the problem
 };
+
+/// FitOutcome::predicting, widened for normal draws: the normal quantile times a deviation is half of a 95 % interval.
+[[nodiscard]] Eigen::MatrixXd covariance_for_draws(const FitOutcome& fit);
 
 /// Fits `effects` together to every segment they change, in free simulation. Linear parameters are solved by
 /// least squares (variable projection; Golub and Pereyra, 1973), the others by a bounded

@@ -87,6 +87,15 @@ Json sensor_entry(const report::SensorFacts& facts) {
   return entry;
 }
 
+Json predicted_entry(const report::PredictedNumber& number, std::string_view unit) {
+  Json entry = Json::object();
+  if (!number.of.empty()) entry["dof"] = number.of;
+  entry["recorded_" + std::string{unit}] = number.recorded;
+  entry["predicted_" + std::string{unit}] = number.predicted;
+  entry["ci95"] = interval(number.ci95);
+  return entry;
+}
+
 Json response_entry(const report::ResponseShrink& shrink) {
   Json entry{{"recording", shrink.recording},
              {"nrmse_before", shrink.nrmse_before},
@@ -95,6 +104,15 @@ Json response_entry(const report::ResponseShrink& shrink) {
              {"peak_error_after", shrink.peak_error_after}};
   if (shrink.energy_error_before) entry["energy_error_before"] = *shrink.energy_error_before;
   if (shrink.energy_error_after) entry["energy_error_after"] = *shrink.energy_error_after;
+  if (shrink.floor_nrmse) entry["floor_nrmse"] = *shrink.floor_nrmse;
+  entry["variance_removed"] = shrink.variance_removed;
+  if (shrink.ci95) entry["ci95"] = interval(*shrink.ci95);
+  if (shrink.nrmse_after_ci95) entry["nrmse_after_ci95"] = interval(*shrink.nrmse_after_ci95);
+  if (shrink.explainable_fraction) entry["explainable_fraction"] = *shrink.explainable_fraction;
+  if (shrink.unknown_share) entry["unknown_share"] = *shrink.unknown_share;
+  entry["peaks"] = Json::array();
+  for (const report::PredictedNumber& peak : shrink.peaks) entry["peaks"].push_back(predicted_entry(peak, "m"));
+  if (shrink.energy_taken) entry["energy_taken"] = predicted_entry(*shrink.energy_taken, "j");
   return entry;
 }
 

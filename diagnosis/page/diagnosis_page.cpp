@@ -253,6 +253,41 @@ std::string before_after(std::string_view what, double before, double after) {
       what, percent(before), 100.0 * before / widest, 100.0 * after / widest, percent(after));
 }
 
+/// What of the response is removed, what is unknown, and the floor.
+std::string response_sentence(const ResponseShrink& response) {
+  if (!response.floor_nrmse || !response.unknown_share) return "";
+  std::string html =
+      fmt::format("<p>Of the response of the whole test, <b>{}</b> removed", percent(response.variance_removed));
+  if (response.ci95) html += fmt::format(" (95 % in a repetition of the test: {})", between_percent(*response.ci95));
+  if (response.explainable_fraction) {
+    html += fmt::format(", {} of what a perfect model could remove", percent(*response.explainable_fraction));
+  }
+  html += fmt::format("; {} is repeatable and unexplained. NRMSE {} after", percent(*response.unknown_share),
+                      percent(response.nrmse_after));
+  if (response.nrmse_after_ci95) html += fmt::format(" (95 %: {})", between_percent(*response.nrmse_after_ci95));
+  return html + fmt::format(", noise floor {}.</p>\n", percent(*response.floor_nrmse));
+}
+
+std::string predicted_row(const PredictedNumber& number, std::string_view what, std::string_view unit) {
+  const bool is_inside = number.recorded >= number.ci95.low && number.recorded <= number.ci95.high;
+  return fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td{}>{}</td></tr>\n", escaped(what),
+                     quantity(number.recorded, unit), quantity(number.predicted, unit), between(number.ci95, unit),
+                     is_inside ? "" : " class=\"warn\"", is_inside ? "" : "the recorded one lies outside");
+}
+
+/// Peaks and energy of the whole test, as the completed model predicts them.
+std::string predicted_table(const ResponseShrink& response) {
+  if (response.peaks.empty()) return "";
+  std::string html =
+      "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>whole test</th><th>recorded</th><th>predicted with the "
+      "causes</th><th>95 %</th><th></th></tr>\n";
+  for (const PredictedNumber& peak : response.peaks) html += predicted_row(peak, "peak of " + peak.of, "m");
+  if (response.energy_taken) {
+    html += predicted_row(*response.energy_taken, "energy taken by the substructures", "J");
+  }
+  return html + "</table></div>\n";
+}
+
 std::string response_rows(const ResponseShrink& response) {
   std::string rows = before_after("response of the whole test, NRMSE", response.nrmse_before, response.nrmse_after) +
                      before_after("response, peak error", response.peak_error_before, response.peak_error_after);
@@ -277,13 +312,15 @@ std::string shrink_part(const DiagnosisReport& report) {
   if (shrink.explainable_fraction)
     html += fmt::format(", {} of what a perfect model could remove", percent(*shrink.explainable_fraction));
   html += ".</p>\n" + energy_bar(shrink);
+  if (report.response_shrink) html += response_sentence(*report.response_shrink);
   html +=
       "<div class=\"scroll\" tabindex=\"0\"><table "
       "class=\"shrink\"><tr><th></th><th>before</th><th></th><th>after</th></tr>\n";
   html += before_after("at the interface, NRMSE", shrink.nrmse_before, shrink.nrmse_after);
   if (report.response_shrink) html += response_rows(*report.response_shrink);
-  html +=
-      "</table></div>\n<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
+  html += "</table></div>\n";
+  if (report.response_shrink) html += predicted_table(*report.response_shrink);
+  html += "<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
   if (!report.response_shrink && !report.why_no_response.empty()) {
     html += " Response of the whole test not compared: " + escaped(report.why_no_response) + ".";
   }

@@ -118,6 +118,14 @@ struct Shrink {
   double unknown_share = 0.0;                    // of the gap before: repeatable and unexplained
 };
 
+/// A number of the whole test, as recorded and as the completed model predicts it.
+struct PredictedNumber {
+  std::string of;  // the degree of freedom; empty: of the whole structure
+  double recorded = 0.0;
+  double predicted = 0.0;
+  Interval ci95{};  // of the number that such a test would have, see response_shrink()
+};
+
 /// The same in the response of a whole hybrid test.
 struct ResponseShrink {
   std::string recording{};  // the run directory whose test was run again
@@ -127,6 +135,15 @@ struct ResponseShrink {
   double peak_error_after = 0.0;
   std::optional<double> energy_error_before{};  // in the substructures, over the input of the ground motion
   std::optional<double> energy_error_after{};
+  // What follows is known where the test was also run with drawn noise and drawn parameters.
+  std::optional<double> floor_nrmse{};           // what a right model leaves, because of the noise in the recorded test
+  double variance_removed = 0.0;                 // at most 1; negative where the causes make the response worse
+  std::optional<Interval> ci95{};                // of it, in a repetition of this test
+  std::optional<Interval> nrmse_after_ci95{};    // likewise
+  std::optional<double> explainable_fraction{};  // as Shrink
+  std::optional<double> unknown_share{};         // as Shrink
+  std::vector<PredictedNumber> peaks{};          // [m] of |displacement|, one per degree of freedom
+  std::optional<PredictedNumber> energy_taken{};  // [J] by the substructures, by the end
 };
 
 /// Input and output of one interface, recorded and modelled: the curves of the page.

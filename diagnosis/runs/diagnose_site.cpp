@@ -111,6 +111,15 @@ std::string response_in_words(const report::ResponseShrink& response) {
   if (response.energy_error_before && response.energy_error_after) {
     add("energy error", *response.energy_error_before, *response.energy_error_after);
   }
+  if (!response.floor_nrmse || !response.unknown_share || !response.ci95) return text;
+  text += fmt::format("    {:<22} {:.4f}\n", "noise floor, NRMSE", *response.floor_nrmse);
+  text += fmt::format("    {:<22} {:.2f} % [{:.2f}, {:.2f}], unknown {:.2f} %\n", "variance removed",
+                      100.0 * response.variance_removed, 100.0 * response.ci95->low, 100.0 * response.ci95->high,
+                      100.0 * *response.unknown_share);
+  for (const report::PredictedNumber& peak : response.peaks) {
+    text += fmt::format("    {:<22} {:.5g} m recorded, {:.5g} [{:.5g}, {:.5g}] predicted\n", "peak of " + peak.of,
+                        peak.recorded, peak.predicted, peak.ci95.low, peak.ci95.high);
+  }
   return text;
 }
 
@@ -123,6 +132,12 @@ std::vector<ListedEffect> SiteDiagnosis::listed_causes(const SiteModelFile& mode
   }
   listed.insert(listed.end(), other_causes.begin(), other_causes.end());
   return listed;
+}
+
+std::vector<Eigen::MatrixXd> SiteDiagnosis::doubts() const {
+  std::vector<Eigen::MatrixXd> all = diagnosis.doubts;
+  all.insert(all.end(), other_doubts.begin(), other_doubts.end());
+  return all;
 }
 
 TimeBase time_base_of(const SiteModelFile& model) noexcept {
@@ -164,7 +179,7 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     settings.dof = dof;
     settings.progress = whole.round(dof, dofs);
-    all.push_back({diagnose(model.dofs[dof], recordings, settings), dof, {}, {}});
+    all.push_back({diagnose(model.dofs[dof], recordings, settings), dof, {}, {}, {}});
   }
   const auto gap_of = [](const SiteDiagnosis& one) { return largest_gap(one.diagnosis); };
   const auto largest = std::ranges::max_element(all, {}, gap_of);
@@ -178,6 +193,7 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
   for (const SiteDiagnosis& other : all) {
     if (std::string text = other_dof_in_words(other); !text.empty()) notes.push_back(std::move(text));
     std::ranges::move(other.listed_causes(model), std::back_inserter(worst.other_causes));
+    std::ranges::move(other.doubts(), std::back_inserter(worst.other_doubts));
   }
   if (model.compensators_were_given) {
     worst.diagnosis.report.notes.emplace_back("The model names no compensator. That of the run was used.");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -18,9 +19,12 @@ struct SiteDiagnosis {
   std::size_t dof = 0;                          // 0-based
   std::vector<EffectSetting> structure_causes;  // effects of the scenario, not of the site's model
   std::vector<ListedEffect> other_causes;       // of the site's other degrees of freedom
+  std::vector<Eigen::MatrixXd> other_doubts;    // of these, as Diagnosis::doubts
 
   /// The causes as the model's file lists them.
   [[nodiscard]] std::vector<ListedEffect> listed_causes(const SiteModelFile& model) const;
+  /// Of listed_causes(), as Diagnosis::doubts.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> doubts() const;
 };
 
 /// How the time stamps of recordings are read beside this model.

@@ -3,14 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "core/config/section.hpp"
 #include "core/config_error.hpp"
+#include "core/random.hpp"
+#include "core/text/scalar.hpp"
+#include "diagnosis/response_shrink.hpp"
 #include "diagnosis/runs/run_records.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/test_response.hpp"
+#include "diagnosis/verdict/drawn_causes.hpp"
 #include "recording/error.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/simulation.hpp"
@@ -43,7 +50,18 @@ struct SimulatedTest {
   StopReason reason = StopReason::none;
 };
 
-SimulatedTest simulated_test(const Scenario& scenario, const PartProgress& progress) {
+/// A test that ends later than the recorded one is compared up to its end.
+TestResponse first_steps(TestResponse response, Eigen::Index steps) {
+  if (response.steps() <= steps) return response;
+  for (Eigen::MatrixXd* signal :
+       {&response.displacement_m, &response.velocity_m_per_s, &response.restoring_force_n, &response.applied_force_n}) {
+    *signal = Eigen::MatrixXd{signal->leftCols(steps)};
+  }
+  return response;
+}
+
+/// @param steps_most   of the response.
+SimulatedTest simulated_test(const Scenario& scenario, Eigen::Index steps_most, const PartProgress& progress) {
   StepsTable steps{CoordinatorParticipant::tables(scenario).front()};
   NoRecord nothing;
   SimulationObserver observer;
@@ -61,8 +79,8 @@ SimulatedTest simulated_test(const Scenario& scenario, const PartProgress& progr
   SimulationSettings settings;
   settings.network.latency = std::chrono::microseconds{tuning::kRerunLatency_us};
   const SimulationResult result = simulate(scenario, settings, observer);
-  return {response_of_steps(scenario, [&](const std::string& name) { return steps.column(name); }),
-          result.coordinator.reason};
+  TestResponse response = response_of_steps(scenario, [&](const std::string& name) { return steps.column(name); });
+  return {first_steps(std::move(response), steps_most), result.coordinator.reason};
 }
 
 /// The list `effects` of the scenario with the causes added.
@@ -79,13 +97,15 @@ std::string longer_effects(const std::filesystem::path& file, std::span<const Ef
 
 /// The scenario with compensator and rig of the site replaced by those of the model, effects of the structure added,
 /// and the laboratory rigs of other sites replaced by their models. The compensator is the model's because causes
-/// found beside it correct it.
+/// found beside it correct it. Its sensors have this noise and no other: that of the recorded test is in the recording.
 Scenario scenario_with(const std::filesystem::path& file, const std::string& site, const SiteModelText& model,
-                       std::span<const EffectSetting> structure_causes) {
+                       std::span<const EffectSetting> structure_causes, const SensorNoise& noise) {
   const std::string place = "substructures[" + site + "].";
   std::vector<std::string> overrides{
       place + "compensator=" + (model.compensators.empty() ? "{type: none}" : "\n" + model.compensators),
-      place + "rig=" + model.rig};
+      place + "rig=" + model.rig,
+      place + fmt::format("rig.sensors={{displacement_noise_m: {}, force_noise_n: {}, seed: {}}}",
+                          written_number(noise.displacement_noise_m), written_number(noise.force_noise_n), noise.seed)};
   if (!structure_causes.empty()) overrides.push_back("effects=\n" + longer_effects(file, structure_causes));
   for (const SubstructureScenario& other : read_scenario(file, {}).substructures) {
     if (other.id == site || !other.site.rig_is_elsewhere) continue;
@@ -116,16 +136,80 @@ void note_early_end(std::string_view which, const SimulatedTest& test, const Tes
   if (test.response.steps() < recorded.steps()) notes.push_back(early_end(which, test, recorded.steps()));
 }
 
-report::ResponseShrink shrink_of(const TestResponse& recorded, const TestResponse& model,
-                                 const TestResponse& augmented) {
-  const ResponseError before = response_error(recorded, model);
-  const ResponseError after = response_error(recorded, augmented);
-  return {.nrmse_before = before.nrmse,
-          .nrmse_after = after.nrmse,
-          .peak_error_before = before.peak_error,
-          .peak_error_after = after.peak_error,
-          .energy_error_before = before.energy_error,
-          .energy_error_after = after.energy_error};
+/// White noise of the site's sensors in its recording: what enters the structure with the measured force, and the
+/// compensators with the measured displacement. Of several degrees of freedom the root mean square.
+SensorNoise noise_of(const Recording& recording) {
+  const auto level = [&](Channel channel) {
+    double squares = 0.0;
+    for (const DofRecording& dof : recording.dofs) {
+      if (dof.has(channel)) squares += std::pow(typical_white_noise(dof.of(channel)), 2);
+    }
+    return std::sqrt(squares / static_cast<double>(recording.dofs.size()));
+  };
+  return {.displacement_noise_m = level(Channel::measured_displacement),
+          .force_noise_n = level(Channel::measured_force)};
+}
+
+/// The test of a run directory, to be simulated with other models of the site.
+class RepeatedTest {
+ public:
+  RepeatedTest(const SiteModelFile& model, const SiteDiagnosis& diagnosis, std::filesystem::path scenario,
+               std::string site)
+      : model_{model},
+        scenario_{std::move(scenario)},
+        site_{std::move(site)},
+        listed_{diagnosis.listed_causes(model)},
+        structure_causes_{diagnosis.structure_causes} {}
+
+  [[nodiscard]] Scenario as_given() const { return scenario_with(scenario_, site_, model_, {}, {}); }
+
+  /// @param deviation   of the parameters of the causes; empty: none.
+  [[nodiscard]] Scenario completed(const Eigen::VectorXd& deviation, const SensorNoise& noise) const {
+    std::vector<EffectSetting> causes;
+    std::ranges::transform(listed_, std::back_inserter(causes), &ListedEffect::setting);
+    causes = moved_causes(causes, deviation);
+    std::vector<ListedEffect> moved = listed_;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i].setting = causes[i];
+    return scenario_with(scenario_, site_, model_.with_effects(moved), structure_causes_, noise);
+  }
+
+  /// With parameters that the model refuses mirrored at those found, or else with those found.
+  [[nodiscard]] Scenario possible(const Eigen::VectorXd& deviation, const SensorNoise& noise) const {
+    for (const double sign : {1.0, -1.0}) {
+      try {
+        return completed(sign * deviation, noise);
+      } catch (const ConfigError&) {
+        continue;
+      }
+    }
+    return completed({}, noise);
+  }
+
+ private:
+  const SiteModelFile& model_;
+  std::filesystem::path scenario_;
+  std::string site_;
+  std::vector<ListedEffect> listed_;
+  std::vector<EffectSetting> structure_causes_;
+};
+
+/// Runs the completed test with drawn noise, and with drawn noise and parameters.
+PossibleTests possible_tests(const RepeatedTest& test, std::span<const Eigen::MatrixXd> doubts, SensorNoise noise,
+                             const TestResponse& completed, const PartProgress& progress) {
+  PossibleTests possible;
+  Random random{tuning::kNoiseSeed};
+  std::size_t round = 0;
+  const auto add_to = [&](std::vector<PossibleTest>& tests, const Eigen::VectorXd& deviation) {
+    ++noise.seed;
+    const SimulatedTest drawn =
+        simulated_test(test.possible(deviation, noise), completed.steps(), progress.round(round++, 2 * draws_for_95()));
+    tests.push_back(possible_test(drawn.response, completed));
+  };
+  for (std::size_t i = 0; i < draws_for_95(); ++i) {
+    add_to(possible.of_noise, {});
+    add_to(possible.of_both, drawn_deviation(doubts, random));
+  }
+  return possible;
 }
 
 }  // namespace
@@ -133,21 +217,25 @@ report::ResponseShrink shrink_of(const TestResponse& recorded, const TestRespons
 void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const std::filesystem::path& run,
                   std::string_view site, const std::filesystem::path& scenario, const PartProgress& progress) {
   report::DiagnosisReport& report = diagnosis.diagnosis.report;
-  const std::vector<ListedEffect> causes = diagnosis.listed_causes(model);
-  if (causes.empty() && diagnosis.structure_causes.empty()) {
+  if (diagnosis.listed_causes(model).empty() && diagnosis.structure_causes.empty()) {
     report.why_no_response = "nothing was added to the model";
     return;
   }
   try {
     const std::string id = site_of_run(run, site);
-    const Scenario before = scenario_with(scenario, id, model, {});
-    const Scenario after = scenario_with(scenario, id, model.with_effects(causes), diagnosis.structure_causes);
+    const RepeatedTest test{model, diagnosis, scenario, id};
+    const Scenario before = test.as_given();
     const TestResponse recorded = recorded_response(run, before);
-    const SimulatedTest as_given = simulated_test(before, progress.round(0, 2));
-    const SimulatedTest augmented = simulated_test(after, progress.round(1, 2));
+    const SensorNoise noise = noise_of(read_recording(run, RecordingRole::fit, id));
+    const std::size_t rounds = 2 + 2 * draws_for_95();
+    const SimulatedTest as_given = simulated_test(before, recorded.steps(), progress.round(0, rounds));
+    const SimulatedTest completed = simulated_test(test.completed({}, {}), recorded.steps(), progress.round(1, rounds));
     note_early_end("as given", as_given, recorded, report.notes);
-    note_early_end("with the causes added", augmented, recorded, report.notes);
-    report.response_shrink = shrink_of(recorded, as_given.response, augmented.response);
+    note_early_end("with the causes added", completed, recorded, report.notes);
+    const PossibleTests possible = possible_tests(test, diagnosis.doubts(), noise, completed.response,
+                                                  progress.part(2.0 / static_cast<double>(rounds), 1.0));
+    report.response_shrink =
+        response_shrink(recorded, as_given.response, completed.response, possible, before.recorded_names());
     report.response_shrink->recording = run.string();
     report.why_no_response.clear();
   } catch (const ConfigError& error) {

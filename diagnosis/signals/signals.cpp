@@ -167,6 +167,16 @@ double white_noise_level(std::span<const double> values) {
   return std::sqrt(implied_variance(values, LocalPolynomial::kHalfWidthMin));
 }
 
+double typical_white_noise(std::span<const double> values) {
+  const LocalPolynomial polynomial{LocalPolynomial::kHalfWidthMin, 1.0};
+  std::vector<double> left = polynomial.smooth(values);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = std::abs(values[i] - left[i]);
+  const auto middle = left.begin() + std::ssize(left) / 2;
+  std::ranges::nth_element(left, middle);
+  // The median of the magnitude of a standard normal variable is 0.6745.
+  return *middle / (0.6745 * std::sqrt(1.0 - polynomial.noise_share()));
+}
+
 std::size_t widest_faithful_half_width(std::span<const double> values) {
   const double allowed = tuning::kSmoothingLeaves * implied_variance(values, tuning::kSmoothingHalfWidths.front()) +
                          tuning::kRoundingVariance * mean_square(values);

@@ -87,6 +87,10 @@ class LocalPolynomial {
 /// @param values   at least 7 samples.
 [[nodiscard]] double white_noise_level(std::span<const double> values);
 
+/// The same by the median of what the polynomial leaves: jumps of the signal, as of a dry friction at its reversals, do
+/// not count. Of a signal that stands still over most samples it is 0.
+[[nodiscard]] double typical_white_noise(std::span<const double> values);
+
 /// The widest window whose polynomials still leave no more than white noise of that level, so that
 /// derivatives have as little noise as the motion allows.
 [[nodiscard]] std::size_t widest_faithful_half_width(std::span<const double> values);

@@ -108,6 +108,30 @@ TEST(DiagnosisPage, IsSelfContainedAndSmall) {
   EXPECT_EQ(first_imbalance("<p><b></p>"), "</p> closes b") << "control";
 }
 
+TEST(DiagnosisPage, ShowsResponseWithFloorAndIntervals) {
+  DiagnosisReport report = example();
+  ResponseShrink response{.recording = "run", .nrmse_before = 0.08, .nrmse_after = 0.004};
+  report.response_shrink = response;
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("Of the response of the whole test"))) << "nothing was drawn";
+  response.floor_nrmse = 0.003;
+  response.variance_removed = 0.75;
+  response.ci95 = {0.71, 0.78};
+  response.nrmse_after_ci95 = {0.0031, 0.0052};
+  response.explainable_fraction = 0.82;
+  response.unknown_share = 0.16;
+  response.peaks = {{.of = "floor <1>", .recorded = 0.0511, .predicted = 0.0512, .ci95 = {0.0508, 0.0515}}};
+  response.energy_taken = PredictedNumber{.of = {}, .recorded = 1300.0, .predicted = 1230.0, .ci95 = {1210.0, 1260.0}};
+  report.response_shrink = response;
+  const std::string page = diagnosis_page(report);
+  EXPECT_THAT(page, HasSubstr("<b>75 %</b> removed (95 % in a repetition of the test: 71 % to 78 %), "
+                              "82 % of what a perfect model could remove; 16 % is repeatable"));
+  EXPECT_THAT(page, HasSubstr("noise floor 0.30 %"));
+  EXPECT_THAT(page, HasSubstr("<th>peak of floor &lt;1&gt;</th><td>51.1 mm</td><td>51.2 mm</td>"
+                              "<td>50.8 mm to 51.5 mm</td><td></td>"));
+  EXPECT_THAT(page, HasSubstr("1.21 kJ to 1.26 kJ</td><td class=\"warn\">the recorded one lies outside"));
+  EXPECT_EQ(first_imbalance(page), "");
+}
+
 TEST(DiagnosisPage, NumbersSlightlyOffAreNotTheNoise) {
   DiagnosisReport report = example();
   report.where.front().is_at_fault = false;
