@@ -271,6 +271,7 @@ constexpr std::array kChecks{
     Check{specimen, "fracture", instant_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
+    Check{specimen, "friction_with_input", friction_refuted},
 };
 
 /// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter: an
