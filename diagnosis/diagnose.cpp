@@ -384,6 +384,27 @@ void add_continuation_notes(std::span<const Recording> recordings, std::size_t d
   }
 }
 
+/// Where an effect of a recorded input cannot be judged.
+void add_input_notes(const IdentificationProblem& problem, std::span<const Recording> recordings,
+                     std::vector<std::string>& notes) {
+  for (const InputRange& input : problem.inputs) {
+    const std::string column = std::string{kInputPrefix} + input.name;
+    if (!input.varies) {
+      notes.push_back(column +
+                      " hardly changes while the specimen is loaded: no effect of it was searched. Record tests "
+                      "at different values of it.");
+      continue;
+    }
+    std::vector<std::string> without;
+    for (const Recording& recording : recordings) {
+      if (!recording.has_input(input.name)) without.push_back(recording.file);
+    }
+    if (without.empty()) continue;
+    notes.push_back("Without the column " + column + ": " + report::joined(without) +
+                    ". Whether the force depends on it cannot be judged there.");
+  }
+}
+
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -523,6 +544,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   report.why_no_response = "it needs a run directory; these recordings contain only the site, not the structure";
   add_quasi_static_notes(model, recordings, report.notes);
   add_continuation_notes(recordings, settings.dof, report.notes);
+  add_input_notes(problem, recordings, report.notes);
   add_notes(diagnosis, segments);
   add_findings(findings, report);
   return diagnosis;

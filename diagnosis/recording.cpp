@@ -1,5 +1,7 @@
 #include "diagnosis/recording.hpp"
 
+#include <algorithm>
+
 namespace hybridtest {
 
 std::string_view column_name(Channel channel) noexcept {
@@ -12,6 +14,10 @@ std::string_view column_name(Channel channel) noexcept {
     case Channel::measured_force: return "measured_force_n";
   }
   return "";
+}
+
+bool Recording::has_input(std::string_view name) const noexcept {
+  return std::ranges::find(inputs, name, &RecordedChannel::name) != inputs.end();
 }
 
 }  // namespace hybridtest

@@ -34,6 +34,14 @@ struct DofRecording {
   [[nodiscard]] bool has(Channel channel) const noexcept { return !of(channel).empty(); }
 };
 
+/// What was recorded beside the motion of a site: the current of a damper, a temperature. It belongs to all of its
+/// degrees of freedom, in any unit.
+struct RecordedChannel {
+  std::string name;  // `current_a`; its column is `input_current_a`
+  std::vector<double> samples;
+};
+inline constexpr std::string_view kInputPrefix = "input_";
+
 /// The stamps that number the rows of a file, time or steps.
 struct RowStamps {
   std::string column;  // `time_s` or `step`
@@ -59,6 +67,9 @@ struct Recording {
   std::optional<RowStamps> stamps{};  // none where rows have neither time nor step
   std::size_t first_row = 1;          // row number of the first sample in findings: its line in a CSV file
   std::vector<DofRecording> dofs;
+  std::vector<RecordedChannel> inputs{};  // in the order of their names
+
+  [[nodiscard]] bool has_input(std::string_view name) const noexcept;
 };
 
 }  // namespace hybridtest

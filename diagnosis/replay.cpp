@@ -59,6 +59,9 @@ std::vector<CsvColumn> columns_of(const Recording& recording,
       columns.push_back({std::string{column_name(channel)} + suffix(dof), &recording.dofs[dof].of(channel)});
     }
   }
+  for (const RecordedChannel& input : recording.inputs) {
+    columns.push_back({std::string{kInputPrefix} + input.name, &input.samples});
+  }
   for (std::size_t dof = 0; dof < replays.size(); ++dof) {
     for (const ReplayedChannel& channel : replays[dof]) {
       columns.push_back({"predicted_" + std::string{column_name(channel.to)} + suffix(dof), &channel.predicted});

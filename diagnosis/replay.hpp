@@ -32,6 +32,7 @@ struct ReplayedChannel {
                                                   const Recording* before = nullptr);
 
 /// A recording with what was predicted of it, as CSV: `time_s` (`step` of a quasi-static one), the recorded channels,
+/// the inputs beside the motion,
 /// then `predicted_<channel>`; suffixes `_1`, `_2` … where there are several degrees of freedom. It is a recording
 /// itself, which the intake takes.
 /// @param replays   one list per degree of freedom.

@@ -445,4 +445,12 @@ void require_stable_test(const Scenario& scenario, bool even_if_unstable) {
   fmt::print(stderr, "warning: {}; `hybridtest check` says what to change\n", found);
 }
 
+void say_nominal_inputs(const Scenario& scenario) {
+  for (const SubstructureScenario& each : scenario.substructures) {
+    for (const std::string& input : each.site.nominal_inputs) {
+      fmt::print(stderr, "note: {}: a simulated rig records no inputs: {}, its nominal_input\n", each.id, input);
+    }
+  }
+}
+
 }  // namespace hybridtest

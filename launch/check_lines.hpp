@@ -24,4 +24,7 @@ void check_peaks(const Scenario& scenario, CheckReport& report, std::FILE* out);
 /// @throws ConfigError for an unstable test with such a rig, unless it is allowed.
 void require_stable_test(const Scenario& scenario, bool even_if_unstable);
 
+/// Says on standard error which inputs of effects have their nominal value, because a simulated rig records none.
+void say_nominal_inputs(const Scenario& scenario);
+
 }  // namespace hybridtest

@@ -176,6 +176,7 @@ bool was_not_resumed(const std::vector<ProcessEnd>& ends) {
 void prepare(RunOptions& options, const Scenario& scenario) {
   if (options.diagnose) require_models(scenario);
   require_stable_test(scenario, options.even_if_unstable);
+  say_nominal_inputs(scenario);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name);
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);

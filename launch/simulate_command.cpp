@@ -291,6 +291,7 @@ int simulate_scenario(SimulateOptions options) {
   require_simulable(scenario);
   if (options.diagnose) require_models(scenario);
   require_stable_test(scenario, true);
+  say_nominal_inputs(scenario);
   if (options.directory.empty()) options.directory = default_run_directory(scenario.name + "_simulated");
   require_new_run(options.directory, kCoordinatorId);
   prepare_run_directory(options.directory, scenario);

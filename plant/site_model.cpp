@@ -36,6 +36,10 @@ StageEffects effects_at(const SiteModel& model, EffectInterface interface, doubl
   for (const EffectSetting& effect : model.effects) {
     if (effect.type->interface == interface && effect.type->make != nullptr && effect.type != in_setting) {
       made.push_back(effect.type->make(effect.values, sample_period_s));
+      const auto input = std::ranges::find(model.inputs, effect.type->input);
+      if (input != model.inputs.end()) {
+        made.back()->follow_input(static_cast<std::size_t>(input - model.inputs.begin()));
+      }
     }
   }
   return StageEffects{std::move(made)};

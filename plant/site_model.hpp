@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "compensation/compensator.hpp"
@@ -40,6 +41,8 @@ struct SiteModel {
   DelaySetting compensator_delay = {};
   SensorNoise noise;
   std::vector<EffectSetting> effects;
+  // Names of StageSample::inputs, in their order. Empty: nothing is recorded beside the motion, as in a simulated rig.
+  std::vector<std::string> inputs;
 };
 
 /// The effect of `model` in whose place an added one of this type comes; null: an added one stands behind those there.

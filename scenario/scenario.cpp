@@ -285,6 +285,7 @@ void read_site(Section& section, const Scenario& scenario, const std::filesystem
   site.rating = rig.rating;
   site.displacement_noise_m = rig.displacement_noise_m;
   site.force_noise_n = rig.force_noise_n;
+  site.nominal_inputs = std::move(rig.nominal_inputs);
   if (rig.keeps_time && time.mode == CouplingMode::lockstep) {
     section.error("rig",
                   "this rig keeps time by a clock of its own, which the mode `lockstep` does not; use `paced` or "

@@ -78,11 +78,12 @@ struct SiteScenario {
   bool rig_is_elsewhere = false;        // outside the site's process: not under simulated time
   std::vector<TableLayout> rig_tables;  // that the rig records by itself
   RigRating rating;
-  double displacement_noise_m = 0.0;  // standard deviations of the readings, where they are known
-  double force_noise_n = 0.0;         // likewise
-  bool has_model = false;             // of the site, beside its rig: what a diagnosis of the run compares with
-  std::vector<ForceDelay> delays;     // one per interface degree of freedom
-  bool has_estimator = false;         // a delay is estimated within bounds
+  double displacement_noise_m = 0.0;        // standard deviations of the readings, where they are known
+  double force_noise_n = 0.0;               // likewise
+  std::vector<std::string> nominal_inputs;  // of a simulated rig, see RigReading
+  bool has_model = false;                   // of the site, beside its rig: what a diagnosis of the run compares with
+  std::vector<ForceDelay> delays;           // one per interface degree of freedom
+  bool has_estimator = false;               // a delay is estimated within bounds
   /// Stiffness of a simulated specimen over the interface, see RigReading. Empty when it is not known.
   std::function<Eigen::MatrixXd(double displacement_m)> specimen_stiffness_n_per_m;
 };

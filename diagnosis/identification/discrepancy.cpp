@@ -81,13 +81,31 @@ std::vector<Column> hats_over(const Column& values, std::size_t knots) {
   return hats;
 }
 
+/// Inputs beside the motion in averaged samples, each from its mean and over its own level; those that never change
+/// left out.
+std::vector<Column> scaled_inputs(const FitSegment& fit) {
+  const InputTable& inputs = fit.segment.inputs;
+  std::vector<Column> scaled;
+  for (std::size_t column = 0; column < inputs.names.size(); ++column) {
+    std::vector<double> values(fit.segment.input.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = inputs.at(i)[column];
+    if (std::ranges::count(values, values.front()) == static_cast<std::ptrdiff_t>(values.size())) continue;
+    Column input = fit.average(values).array();
+    input -= input.mean();
+    const double level = level_of(input);
+    if (level > 0.0) scaled.emplace_back(input / level);
+  }
+  return scaled;
+}
+
 /// The features in three nested sets.
 struct FeatureSets {
   std::vector<Column> columns;
   std::vector<std::size_t> ends;
 };
 
-FeatureSets features_of(const ScaledMotion& motion, const std::vector<Column>& of_model) {
+FeatureSets features_of(const ScaledMotion& motion, const std::vector<Column>& of_model,
+                        const std::vector<Column>& inputs) {
   const Column& x = motion.displacement;
   const Column& v = motion.velocity;
   const Column direction = v / (v.square() + tuning::kDirectionWidth * tuning::kDirectionWidth).sqrt();
@@ -122,6 +140,9 @@ FeatureSets features_of(const ScaledMotion& motion, const std::vector<Column>& o
   const Column largest = largest_so_far(x);
   all.push_back(largest);
   all.push_back(x * largest);
+  for (const Column& input : inputs) {
+    for (const Column& column : first) all.push_back(input * column);
+  }
   sets.ends.push_back(all.size());
   for (const Column& hat : hats_over(path, tuning::kPathKnots)) {
     for (const Column& column : first) all.push_back(hat * column);
@@ -192,8 +213,9 @@ Discrepancy::Discrepancy(const FitSegment& fit) {
   }
   std::vector<Column> of_model{fit.baseline.array()};
   for (Eigen::Index i = 0; i < fit.nuisance.cols(); ++i) of_model.emplace_back(fit.nuisance.col(i).array());
-  const FeatureSets clean = features_of(motion, of_model);
-  const FeatureSets noisy = noise.displacement.size() > 0 ? features_of(noise, of_model) : FeatureSets{};
+  const std::vector<Column> inputs = scaled_inputs(fit);
+  const FeatureSets clean = features_of(motion, of_model, inputs);
+  const FeatureSets noisy = noise.displacement.size() > 0 ? features_of(noise, of_model, inputs) : FeatureSets{};
   std::vector<Column> kept;
   std::size_t set = 0;
   for (std::size_t i = 0; i < clean.columns.size(); ++i) {

@@ -113,6 +113,12 @@ class DisplacementChain {
   std::optional<TransferStage> transfer_;
 };
 
+/// What was recorded beside the motion of a part, in the order of the last one's inputs; null, which stands for nominal
+/// values, where an earlier part has other ones.
+const double* inputs_at(const Segment& part, const Segment& last, std::size_t sample) noexcept {
+  return part.inputs.names == last.inputs.names ? part.inputs.at(sample) : nullptr;
+}
+
 /// Calls `step(sample, part, i)` for each sample of a segment and of the parts before it, after the rest before the
 /// first one.
 /// @return the time at its end.
@@ -157,6 +163,7 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   drive(segment, [&](StageSample sample, const Segment& part, std::size_t i) {
     sample.motion = inverse.step(sample);
     sample.force_n = force_n;
+    sample.inputs = inputs_at(part, segment, i);
     const double read_n = specimen.step(sample);
     if (&part == &segment) predicted[i] = read_n;
     force_n = specimen.force_n();
@@ -184,6 +191,7 @@ std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& 
 
 std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
   SiteModel extended = model;
+  extended.inputs = segment.inputs.names;
   if (segment.is_quasi_static) {
     std::erase_if(extended.effects, [](const EffectSetting& effect) { return effect.type->traits.needs_time; });
   }

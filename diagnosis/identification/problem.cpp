@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/config_error.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/tuning.hpp"
+#include "plant/effects/recorded_input.hpp"
 
 namespace hybridtest {
 
@@ -56,6 +58,79 @@ SignalScales scales_of(std::span<const Segment> segments) {
     for (const double force_n : segment.measured) scales.force_n = std::max(scales.force_n, std::abs(force_n));
   }
   return scales;
+}
+
+namespace {
+
+/// Where the effects of the model that follow this input are absent; nothing without any.
+std::optional<double> reference_of(const SiteModel& model, std::string_view input) {
+  for (const EffectSetting& effect : model.effects) {
+    if (effect.type->input != input) continue;
+    const auto reference = std::ranges::find(effect.type->parameters, kReferenceInput.name, &EffectParameter::name);
+    return effect.values[static_cast<std::size_t>(reference - effect.type->parameters.begin())];
+  }
+  return {};
+}
+
+/// Marks the segments in which the input stays at its reference.
+void mark_at_reference(const InputRange& input, std::vector<Segment>& segments) {
+  for (Segment& segment : segments) {
+    InputTable& inputs = segment.inputs;
+    if (!inputs.has(input.name)) continue;
+    const auto column = std::ranges::find(inputs.names, input.name) - inputs.names.begin();
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < segment.input.size(); ++i) {
+      farthest = std::max(farthest, std::abs(inputs.at(i)[column] - input.reference));
+    }
+    if (farthest <= tuning::kSameInput * input.span) inputs.at_reference.push_back(input.name);
+  }
+}
+
+/// Moments of one input, each sample weighted by the energy of its force.
+struct LoadedInput {
+  double samples = 0.0;
+  double energy = 0.0;
+  double first = 0.0;   // of the distance from its reference
+  double second = 0.0;  // of its square
+};
+
+void add_input(const Segment& segment, std::size_t column, InputRange& range, LoadedInput& loaded) {
+  for (std::size_t i = 0; i < segment.measured.size(); ++i) {
+    const double off = segment.inputs.at(i)[column] - range.reference;
+    const double energy = segment.measured[i] * segment.measured[i];
+    loaded.samples += 1.0;
+    loaded.energy += energy;
+    loaded.first += energy * off;
+    loaded.second += energy * off * off;
+    range.mean += (range.reference + off - range.mean) / loaded.samples;
+    range.span = std::max(range.span, std::abs(off));
+  }
+}
+
+}  // namespace
+
+std::vector<InputRange> input_ranges_of(const SiteModel& model, std::span<const Segment> segments) {
+  std::vector<InputRange> ranges;
+  std::vector<LoadedInput> loaded;
+  for (const Segment& segment : segments) {
+    const InputTable& inputs = segment.inputs;
+    for (std::size_t column = 0; column < inputs.names.size(); ++column) {
+      auto range = std::ranges::find(ranges, inputs.names[column], &InputRange::name);
+      if (range == ranges.end()) {
+        range = ranges.insert(ranges.end(),
+                              {.name = inputs.names[column],
+                               .reference = reference_of(model, inputs.names[column]).value_or(inputs.values[column])});
+        loaded.emplace_back();
+      }
+      add_input(segment, column, *range, loaded[static_cast<std::size_t>(range - ranges.begin())]);
+    }
+  }
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    // The cosine between what is proportional to the input and what is always there.
+    const double along = loaded[i].first * loaded[i].first;
+    ranges[i].varies = along < std::pow(tuning::kSameSignature, 2) * loaded[i].energy * loaded[i].second;
+  }
+  return ranges;
 }
 
 namespace {
@@ -313,6 +388,8 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   IdentificationProblem problem;
   problem.model = model;
   problem.scales = scales_of(segments);
+  problem.inputs = input_ranges_of(model, segments);
+  for (const InputRange& input : problem.inputs) mark_at_reference(input, segments);
   problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
   for (Segment& segment : segments)
     problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));

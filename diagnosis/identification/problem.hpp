@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "diagnosis/identification/remembered_law.hpp"
@@ -28,6 +29,20 @@ struct SignalScales {
 };
 
 [[nodiscard]] SignalScales scales_of(std::span<const Segment> segments);
+
+/// What the recordings show of one input beside the motion.
+struct InputRange {
+  std::string name;
+  // Where the model is taken to be right: what an effect of it that follows the same input says, else where the first
+  // recording begins.
+  double reference = 0.0;
+  double mean = 0.0;
+  double span = 0.0;  // how far it goes from there
+  // Its size differs while the specimen is loaded; else what grows with it cannot be told from what is always there.
+  bool varies = false;
+};
+
+[[nodiscard]] std::vector<InputRange> input_ranges_of(const SiteModel& model, std::span<const Segment> segments);
 
 /// Numbers of the model that are free in a segment, along orthogonal directions of the output; see judged_at().
 struct FreeNumbers {
@@ -79,6 +94,7 @@ struct IdentificationProblem {
   SiteModel model;
   std::vector<FitSegment> segments;
   SignalScales scales;
+  std::vector<InputRange> inputs;
   bool law_is_spring = false;  // linear in the range of the recordings, or there is no law
   PartProgress progress;       // told of every prediction, so that no fit is silent, however long it takes
 };

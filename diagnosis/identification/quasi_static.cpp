@@ -65,6 +65,7 @@ std::vector<Segment> quasi_static_segments(const Recording& recording, const Dof
   segment.period_s = recording.sample_period_s;
   segment.is_quasi_static = true;
   segment.input = motion_without_rate(displacement_m);
+  segment.inputs = inputs_of(recording);
   segment.measured = dof.of(Channel::measured_force);
   segment.measured_noise = noise_along_path(displacement_m, segment.measured);
   segment.step_noise = steps_of_readings(segment.measured).step / std::sqrt(12.0);

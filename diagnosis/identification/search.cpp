@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/config_error.hpp"
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
+#include "plant/effects/recorded_input.hpp"
 
 namespace hybridtest {
 
@@ -84,7 +86,30 @@ bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, co
   return range == nullptr || range->restriction.beside == other || (has_none && !problem.model.has_bandwidth);
 }
 
+namespace {
+
+/// An effect is absent at the input's reference. Where none is recorded, a rig takes what it was on average.
+std::optional<double> number_of_input(const IdentificationProblem& problem, const EffectType& effect,
+                                      std::string_view parameter) {
+  const auto range = std::ranges::find(problem.inputs, effect.input, &InputRange::name);
+  if (range == problem.inputs.end()) return {};
+  if (parameter == kReferenceInput.name) return range->reference;
+  if (parameter == kNominalInput.name) return range->mean;
+  return {};
+}
+
+/// The scale of a search range, per unit of the input where the range is.
+double scale_of(const IdentificationProblem& problem, const EffectType& effect, const SearchRange& range) {
+  const double scale = problem.scales.of(range.scale);
+  const auto input = std::ranges::find(problem.inputs, effect.input, &InputRange::name);
+  const bool is_per_input = range.restriction.per_input && input != problem.inputs.end() && input->span > 0.0;
+  return is_per_input ? scale / input->span : scale;
+}
+
+}  // namespace
+
 double left_out(const IdentificationProblem& problem, const EffectType& effect, std::size_t parameter) {
+  if (const auto number = number_of_input(problem, effect, effect.parameters[parameter].name)) return *number;
   const EffectSetting* const own = place_of(problem.model, effect);
   return own == nullptr ? effect.parameters[parameter].fallback : own->values[parameter];
 }
@@ -119,7 +144,7 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
       const SearchRange& range = *range_of(effect, parameter);
       if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        const double unit = 0.5 * range.high * problem.scales.of(range.scale);
+        const double unit = 0.5 * range.high * scale_of(problem, effect, range);
         const double low = least_of(problem, effect, j, range);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral, is_of_model});
         // Without its stiffness a law has no force, nor has a model without what it has: neither is the baseline.
@@ -190,7 +215,8 @@ VariableProjection::VariableProjection(const IdentificationProblem& problem, Sea
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const bool touches = plan_.neutral.empty() || std::ranges::any_of(plan_.neutral, [&](const EffectSetting& effect) {
-                           return fit.segment.touched_by(*effect.type);
+                           // What is wrong at the reference of an input is not what follows the input.
+                           return fit.segment.touched_by(*effect.type) || fit.segment.is_reference_of(*effect.type);
                          });
     if (!touches) continue;
     touched_.push_back(i);

@@ -45,6 +45,8 @@ struct SearchRestriction {
   // The value of the real site cannot be negative: the search removes at most the model's own value.
   bool is_amount = false;
   SearchLimit limit = SearchLimit::none;
+  // Per unit of the input that the effect follows: over how far that input goes (InputRange::span).
+  bool per_input = false;
 };
 
 /// The search range of one parameter of one effect.
@@ -65,7 +67,8 @@ using enum EffectInterface;
 using Scale = ParameterScale;
 
 /// Every parameter that is searched, in the order of the effect library. A parameter without a row keeps its fallback:
-/// a seed cannot be found, and the exponent of the Bouc-Wen law is held at 1.
+/// a seed cannot be found, and the exponent of the Bouc-Wen law is held at 1. Reference and nominal value of an input
+/// come from the recordings (left_out()).
 ///
 /// The ranges are chosen: from an effect that is absent, or too small to see, to several times what a test would
 /// survive. A limit (stroke, velocity, saturation) ends just above the recorded peak, where it no longer acts.
@@ -165,6 +168,17 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, 1.1, 30.0},
     SearchRange{specimen, "fracture", "lost_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "fracture", "instant_s", Scale::duration_s, 0.02, 0.98},
+    SearchRange{specimen, "force_with_input", "force_ratio_per_unit", Scale::one, -2.0, 2.0, {.per_input = true}},
+    SearchRange{
+        specimen, "friction_with_input", "friction_force_n_per_unit", Scale::force_n, -1.5, 1.5, {.per_input = true}},
+    SearchRange{specimen, "friction_with_input", "presliding_displacement_m", Scale::displacement_m, 1e-4, 0.5},
+    SearchRange{specimen,
+                "damping_with_input",
+                "damping_n_s_per_m_per_unit",
+                Scale::damping_n_s_per_m,
+                -2.0,
+                2.0,
+                {.per_input = true}},
     SearchRange{force_sensor, "gain", "gain_error", Scale::one, -0.5, 0.5},
     SearchRange{force_sensor, "bias", "bias_n", Scale::force_n, -0.5, 0.5},
     SearchRange{force_sensor, "drift", "drift_n_per_s", Scale::force_n, -0.2, 0.2},

@@ -95,6 +95,7 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     segment.input_noise = white_noise_level(dof.of(from));
     segment.input_step = steps_of_readings(dof.of(from)).step;
     smooth_input(segment, dof.of(from), half_width);
+    segment.inputs = inputs_of(recording);
   }
   segment.measured_noise = white_noise_level(segment.measured);
   if (to >= Channel::measured_displacement) {
@@ -119,12 +120,52 @@ bool passes(const Segment& segment, EffectInterface stage) noexcept {
   return false;
 }
 
+InputTable smooth_inputs(const FlatSmoother& smoother, InputTable inputs) {
+  const std::size_t columns = inputs.names.size();
+  for (std::size_t column = 0; column < columns; ++column) {
+    std::vector<double> values;
+    for (std::size_t i = column; i < inputs.values.size(); i += columns) values.push_back(inputs.values[i]);
+    values = smoother.smooth(values);
+    for (std::size_t i = 0; i < values.size(); ++i) inputs.values[i * columns + column] = values[i];
+  }
+  return inputs;
+}
+
 }  // namespace
 
-bool Segment::touched_by(const EffectType& effect) const noexcept {
-  if (!passes(*this, effect.interface) || (is_quasi_static && effect.traits.needs_time)) return false;
-  return effect.interface != displacement_sensor || to == Channel::measured_displacement ||
+InputTable inputs_of(const Recording& recording) {
+  InputTable table;
+  for (const RecordedChannel& input : recording.inputs) table.names.push_back(input.name);
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    for (const RecordedChannel& input : recording.inputs) table.values.push_back(input.samples[i]);
+  }
+  return table;
+}
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, std::string_view name) noexcept {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Whatever its input does.
+bool can_be_touched(const Segment& segment, const EffectType& effect) noexcept {
+  if (!passes(segment, effect.interface) || (segment.is_quasi_static && effect.traits.needs_time)) return false;
+  return effect.interface != displacement_sensor || segment.to == Channel::measured_displacement ||
          effect.make_inverse != nullptr;
+}
+
+}  // namespace
+
+bool InputTable::has(std::string_view name) const noexcept { return contains(names, name); }
+
+bool Segment::touched_by(const EffectType& effect) const noexcept {
+  if (!can_be_touched(*this, effect)) return false;
+  return effect.input.empty() || (inputs.has(effect.input) && !contains(inputs.at_reference, effect.input));
+}
+
+bool Segment::is_reference_of(const EffectType& effect) const noexcept {
+  return can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
 
 Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation) {
@@ -136,6 +177,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.noise = smooth_motion(smoother, narrowest.motion(error));
   result.narrow_input.clear();
   result.narrow_noise.clear();
+  result.inputs = smooth_inputs(smoother, segment.inputs);
   result.measured = smoother.smooth(dof.of(segment.to));
   result.unjudged = std::min(smoother.reach() + LocalPolynomial::kHalfWidthMin, result.measured.size() / 2);
   result.is_smoothed = deviation > 0.0;
@@ -162,6 +204,10 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.noise = every(segment.noise);
   result.narrow_input = every(segment.narrow_input);
   result.narrow_noise = every(segment.narrow_noise);
+  result.inputs.values.clear();
+  for (std::size_t i = 0; i < segment.input.size() && !segment.inputs.names.empty(); i += stride) {
+    result.inputs.values.insert(result.inputs.values.end(), segment.inputs.at(i), segment.inputs.at(i + 1));
+  }
   result.measured = every(segment.measured);
   if (segment.history) result.history = std::make_shared<const Segment>(thinned(*segment.history, rate_hz));
   return result;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,20 @@
 #include "plant/site_model.hpp"
 
 namespace hybridtest {
+
+/// Inputs beside the motion (Recording::inputs), sample after sample.
+struct InputTable {
+  std::vector<std::string> names;
+  std::vector<double> values;  // one row of them per sample
+  // Of them, those that stay where the model is right: what follows them does not act here.
+  std::vector<std::string> at_reference{};
+
+  [[nodiscard]] bool has(std::string_view name) const noexcept;
+  /// null without any.
+  [[nodiscard]] const double* at(std::size_t sample) const noexcept {
+    return names.empty() ? nullptr : values.data() + sample * names.size();
+  }
+};
 
 /// The part of the chain between two consecutive recorded channels of one degree of freedom. Its input is the
 /// measured one, so that an error does not propagate to the next segment.
@@ -25,6 +40,7 @@ struct Segment {
   bool is_quasi_static = false;  // see Recording; the velocity of `input` is a sign, its acceleration zero
   std::vector<Motion> input;     // motion of `from` without its noise, one per sample
   std::vector<double> load_n;    // measured force without its noise, of which a stage has that before; empty: unknown
+  InputTable inputs;             // beside the motion, of the specimen's segment; smoothed as `measured`
   std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
   double input_step = 0.0;       // of the converter of the sensor [m]; 0: none found
@@ -48,9 +64,15 @@ struct Segment {
   // The segment that this one goes on from, whose history the stages of a model have when it begins; may be null.
   std::shared_ptr<const Segment> history;
 
-  /// An effect at that interface changes what this segment predicts. One that needs time changes no quasi-static one.
+  /// An effect at that interface changes what this segment predicts. One that needs time changes no quasi-static one,
+  /// one that follows an input only one where that acts.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
+  /// It would, but its input stays at its reference here: this segment shows the model without the effect.
+  [[nodiscard]] bool is_reference_of(const EffectType& effect) const noexcept;
 };
+
+/// The inputs that were recorded beside the motion.
+[[nodiscard]] InputTable inputs_of(const Recording& recording);
 
 /// All segments of the chain that one degree of freedom of a recording contains; of a quasi-static one, that of the
 /// specimen (quasi_static_segment()).

@@ -11,6 +11,7 @@
 #include "diagnosis/intake/units.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
+#include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
 
@@ -89,6 +90,10 @@ std::optional<ChannelColumn> channel_of_header(std::string_view header) {
   return {};
 }
 
+bool is_input_header(std::string_view header) noexcept {
+  return header.starts_with(kInputPrefix) && is_input_name(header.substr(kInputPrefix.size()));
+}
+
 bool is_left_aside(std::string_view header) {
   if (header.starts_with(kPredicted)) return true;
   return std::ranges::any_of(kLeftAside, [&](std::string_view name) {
@@ -100,7 +105,8 @@ std::string unknown_column_advice(std::string_view header) {
   std::vector<std::string> known{std::string{kTimeColumn}, std::string{kStepColumn}};
   for (std::size_t i = 0; i < kChannels; ++i) known.emplace_back(column_name(channel_at(i)));
   return "unknown column" + name_advice(header, known, "known here") +
-         "; with several degrees of freedom, add _1, _2, ... to the name";
+         "; with several degrees of freedom, add _1, _2, ... to the name. An input beside the motion is headed input_ "
+         "and its name, such as input_current_a";
 }
 
 namespace {
@@ -302,6 +308,10 @@ Recording taken(RawRecording raw, double period_s) {
   recording.first_row = raw.first_row;
   recording.dofs.resize(dof_count(raw));
   for (RawColumn& column : raw.columns) recording.dofs[column.dof].of(column.channel) = std::move(column.values);
+  for (RawInput& input : raw.inputs) {
+    recording.inputs.push_back({input.column.substr(kInputPrefix.size()), std::move(input.values)});
+  }
+  std::ranges::sort(recording.inputs, {}, &RecordedChannel::name);
   return recording;
 }
 
@@ -313,6 +323,7 @@ Intake check_recording(RawRecording raw, TimeBase time) {
   check_columns(raw, findings);
   check_finite(raw, std::string{kTimeColumn}, raw.time_s, findings);
   for (const RawColumn& column : raw.columns) check_finite(raw, column.name, column.values, findings);
+  for (const RawInput& input : raw.inputs) check_finite(raw, input.column, input.values, findings);
   check_finite(raw, std::string{kStepColumn}, raw.step, findings);
   if (raw.samples() < tuning::kSamplesMin) {
     findings.add(0, {}, {}, fmt::format("{} rows of data; expected at least {}", raw.samples(), tuning::kSamplesMin));

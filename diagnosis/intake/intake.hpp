@@ -45,6 +45,12 @@ struct RawColumn {
   std::vector<double> values;
 };
 
+/// An input beside the motion as it was read.
+struct RawInput {
+  std::string column;  // as headed: `input_current_a`
+  std::vector<double> values;
+};
+
 /// What time stamps mean: time as recorded, or nothing, because the test is slow and they were invented.
 enum class TimeBase : std::uint8_t { recorded, quasi_static };
 
@@ -56,6 +62,7 @@ struct RawRecording {
   std::vector<double> step;        // numbers of its points; may be empty
   double time_resolution_s = 0.0;  // of the last digit of the time stamps; 0 when they are not rounded
   std::vector<RawColumn> columns;
+  std::vector<RawInput> inputs{};
 
   [[nodiscard]] std::size_t samples() const noexcept;
 };
@@ -72,6 +79,9 @@ inline constexpr std::string_view kStepColumn = "step";
 /// Channel and degree of freedom that a header names: `measured_force_n` or `measured_force_n_2`, counted from 1.
 /// @return nothing for a header that names no channel.
 [[nodiscard]] std::optional<ChannelColumn> channel_of_header(std::string_view header);
+
+/// Whether a header names an input beside the motion: `input_` and a name in lower-case letters, digits and `_`.
+[[nodiscard]] bool is_input_header(std::string_view header) noexcept;
 
 /// Whether it is a known column of run tables or replays that the diagnosis does not use.
 [[nodiscard]] bool is_left_aside(std::string_view header);
@@ -101,8 +111,8 @@ struct Intake {
 };
 
 /// Reads a recording from CSV: a header of names and units (`time_s`, and any of column_name(), with
-/// `_1`, `_2` … for several degrees of freedom), one row per sample, SI. Without `time_s`, or with `step` in its place,
-/// it is quasi-static.
+/// `_1`, `_2` … for several degrees of freedom, and inputs beside the motion), one row per sample, SI. Without
+/// `time_s`, or with `step` in its place, it is quasi-static.
 ///
 /// Columns of run tables that are not channels are ignored; any other unknown column is a finding.
 /// All findings of check_recording() are added.

@@ -67,6 +67,7 @@ class CsvReader {
   static constexpr std::size_t kTime = std::numeric_limits<std::size_t>::max() - 1;
   static constexpr std::size_t kStep = std::numeric_limits<std::size_t>::max() - 2;
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kFirstInput = kNone / 2;  // and those after it: the inputs of raw_
 
   void read_header() {
     const std::string_view line = cut(rest_, '\n');
@@ -91,6 +92,7 @@ class CsvReader {
   void place(const std::string& name, const std::vector<std::string_view>& names) {
     names_.push_back(name);
     const auto channel = channel_of_header(name);
+    if (is_input_header(name)) return place_input(name);
     const bool is_order = name == kTimeColumn || name == kStepColumn;
     target_.push_back(name == kTimeColumn ? kTime : is_order ? kStep : channel ? raw_.columns.size() : kNone);
     if (!is_order && !channel && !is_left_aside(name)) {
@@ -110,6 +112,12 @@ class CsvReader {
     raw_.columns.push_back({name, channel->channel, channel->dof, {}});
   }
 
+  void place_input(const std::string& name) {
+    target_.push_back(kFirstInput + raw_.inputs.size());
+    if (std::ranges::find(raw_.inputs, name, &RawInput::column) != raw_.inputs.end()) return twice(name);
+    raw_.inputs.push_back({name, {}});
+  }
+
   void twice(const std::string& name) {
     findings_.add(kHeaderRow, name, {}, "two columns have this name; remove or rename one");
   }
@@ -124,6 +132,7 @@ class CsvReader {
     }
     raw_.time_s.reserve(expected);
     for (RawColumn& column : raw_.columns) column.values.reserve(expected);
+    for (RawInput& input : raw_.inputs) input.values.reserve(expected);
     for (std::size_t row = kHeaderRow + 1; !rest_.empty(); ++row) {
       const std::string_view line = cut(rest_, '\n');
       if (!trimmed(line).empty()) {
@@ -156,6 +165,8 @@ class CsvReader {
         if (raw_.time_s.size() == 1 || resolution_s < raw_.time_resolution_s) raw_.time_resolution_s = resolution_s;
       } else if (target_[i] == kStep) {
         raw_.step.push_back(value);
+      } else if (target_[i] >= kFirstInput) {
+        raw_.inputs[target_[i] - kFirstInput].values.push_back(value);
       } else {
         raw_.columns[target_[i]].values.push_back(value);
       }
@@ -185,7 +196,7 @@ class CsvReader {
   std::size_t rows_ = 0;
   RawRecording raw_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> target_;  // per column of the file: its place in raw_, kTime, kStep or kNone
+  std::vector<std::size_t> target_;  // per column of the file: its place in raw_, an input, kTime, kStep or kNone
   FindingList findings_;
 };
 

@@ -76,7 +76,8 @@ std::string parameter_text(const ReportedParameter& parameter) {
 
 /// With the law that stands in place of the specimen's.
 std::string name_of(const RankedCause& cause) {
-  return plain(cause.effect) + (cause.law.empty() ? "" : ": " + plain(cause.law));
+  const std::string& detail = cause.law.empty() ? cause.input : cause.law;
+  return plain(cause.effect) + (detail.empty() ? "" : ": " + (cause.law.empty() ? detail : plain(detail)));
 }
 
 /// No number of these recordings makes sure.

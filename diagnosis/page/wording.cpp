@@ -33,7 +33,7 @@ std::string three_digits(double value) {
 }
 
 std::string in_words(const RankedCause& cause) {
-  return plain(cause.effect) + law_in_words(cause) + corrected_in_words(cause);
+  return plain(cause.effect) + law_in_words(cause) + input_in_words(cause) + corrected_in_words(cause);
 }
 
 std::vector<std::string> causes(const DiagnosisReport& report) {
@@ -139,6 +139,19 @@ std::string law_in_words(const RankedCause& cause) {
           ? ""
           : fmt::format(", and has lost {} of its stiffness by the end", percent(cause.lost_stiffness));
   return fmt::format(" ({}: the specimen {}{})", plain(cause.law), cause.in_words, lost);
+}
+
+std::string input_in_words(const RankedCause& cause) {
+  if (cause.input.empty() || cause.parameters.empty()) return {};
+  const ReportedParameter& slope = cause.parameters.front();  // of what it does per unit of the input
+  constexpr std::string_view kPerUnit = "per unit";
+  std::string_view unit = slope.unit;
+  unit.remove_suffix(std::min(kPerUnit.size(), unit.size()));
+  const bool is_share = unit.empty();
+  std::string what = is_share ? "force" : plain_parameter(slope.name, slope.unit);
+  const double size = std::abs(slope.value);
+  return fmt::format(" (the {} {} by {} per unit of {})", what, slope.value < 0.0 ? "falls" : "grows",
+                     is_share ? percent(size) : quantity(size, unit.substr(0, unit.size() - 1)), cause.input);
 }
 
 bool is_corrected(const ReportedParameter& parameter) {

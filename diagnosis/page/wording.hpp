@@ -34,6 +34,9 @@ namespace hybridtest::report {
 [[nodiscard]] std::vector<std::string> in_words(std::span<const RankedCause* const> members);
 /// ` (takeda: the specimen …)` for a law in place of the specimen's own; empty for an effect.
 [[nodiscard]] std::string law_in_words(const RankedCause& cause);
+/// ` (the friction force grows by 500 N per unit of current_a)` for an effect that follows a recorded input; empty for
+/// one that follows none.
+[[nodiscard]] std::string input_in_words(const RankedCause& cause);
 /// The model's own value of a parameter lies outside of its interval.
 [[nodiscard]] bool is_corrected(const ReportedParameter& parameter);
 /// ` (friction force 0 N instead of 2.00 kN)` for an effect that the model has; empty for one that it lacks.

@@ -98,6 +98,7 @@ struct RankedCause {
   std::string law{};                  // `bouc_wen`: in place of the specimen's own; empty for an effect beside it
   std::string in_words{};             // of a law: what such a specimen does
   double lost_stiffness = 0.0;        // of a law: share of its stiffness that is gone by the end, 0 to 1
+  std::string input{};                // the recorded input that it follows, `current_a`; empty: none
   std::string equation{};             // one line, from the library
   double probability = 0.0;           // 0 to 1
   double share = 0.0;                 // of what all causes explain; 0 for an alternative

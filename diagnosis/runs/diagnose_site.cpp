@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "core/config_error.hpp"
@@ -42,6 +44,11 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
                       ": this file cannot be written; check the permissions and the free space of the folder"};
 }
 
+/// The law of a cause that is one, and what an effect does that follows a recorded input.
+std::string detail_of(const report::RankedCause& cause) {
+  return report::law_in_words(cause) + report::input_in_words(cause);
+}
+
 /// Of a degree of freedom beside the one that the report is about; empty if it has no gap.
 std::string other_dof_in_words(const SiteDiagnosis& other) {
   const report::DiagnosisReport& report = other.diagnosis.report;
@@ -49,7 +56,7 @@ std::string other_dof_in_words(const SiteDiagnosis& other) {
   std::vector<std::string> causes;
   for (const report::RankedCause& cause : report.ranking) {
     if (!cause.is_cause) continue;
-    causes.push_back(fmt::format("{}: {}{}", cause.interface, cause.effect, report::law_in_words(cause)));
+    causes.push_back(fmt::format("{}: {}{}", cause.interface, cause.effect, detail_of(cause)));
     if (cause.parameters.empty()) continue;
     const report::ReportedParameter& first = cause.parameters.front();
     causes.back() += fmt::format(" ({} {:.5g})", first.name, first.value);
@@ -144,6 +151,22 @@ TimeBase time_base_of(const SiteModelFile& model) noexcept {
   return model.is_quasi_static ? TimeBase::quasi_static : TimeBase::recorded;
 }
 
+namespace {
+
+/// Inputs that effects of the model follow and that a recording lacks.
+std::vector<std::string> missing_inputs(const SiteModelFile& model, const Recording& recording) {
+  std::set<std::string> missing;
+  for (const SiteModel& dof : model.dofs) {
+    for (const EffectSetting& effect : dof.effects) {
+      const std::string_view input = effect.type->input;
+      if (!input.empty() && !recording.has_input(input)) missing.emplace(input);
+    }
+  }
+  return {missing.begin(), missing.end()};
+}
+
+}  // namespace
+
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings) {
   std::vector<ConfigIssue> issues;
   for (const Recording& recording : recordings) {
@@ -157,7 +180,15 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
                                recording.file, recording.dofs.size(), model.file.string(), model.dofs.size())});
       continue;
     }
-    for (std::size_t dof = 0; dof < model.dofs.size(); ++dof) {
+    const std::vector<std::string> missing = missing_inputs(model, recording);
+    for (const std::string& input : missing) {
+      issues.push_back(
+          {.file = {},
+           .what = fmt::format("{} has no column {}{}, and an effect of the model {} follows the input {}; "
+                               "expected the column in each recording",
+                               recording.file, kInputPrefix, input, model.file.string(), input)});
+    }
+    for (std::size_t dof = 0; dof < model.dofs.size() && missing.empty(); ++dof) {
       for (const IntakeFinding& finding : check_units_against(model.dofs[dof], recording, dof)) {
         issues.push_back({.file = {}, .what = finding.text(recording.file)});
       }
@@ -255,8 +286,8 @@ std::string summary_of(const SiteDiagnosis& site) {
       causes = false;
     }
     if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
-    text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect,
-                        report::law_in_words(cause), cause.probability);
+    text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect, detail_of(cause),
+                        cause.probability);
     if (cause.is_cause) text += parameters_in_words(cause);
   }
   if (!report.corrections.empty()) text += "\n  " + report::corrections_sentence(report) + "\n";

@@ -30,8 +30,9 @@ struct SiteDiagnosis {
 /// How the time stamps of recordings are read beside this model.
 [[nodiscard]] TimeBase time_base_of(const SiteModelFile& model) noexcept;
 
-/// @throws ConfigError for each recording whose number of degrees of freedom differs from the model, and for each
-///         column whose unit seems wrong compared with the prediction of the model.
+/// @throws ConfigError for each recording whose number of degrees of freedom differs from the model or that lacks an
+///         input of an effect in the model, and for each column whose unit seems wrong compared with the prediction of
+///         the model.
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
 /// Diagnoses every degree of freedom; returns the diagnosis with the largest gap. A note tells of each other degree of

@@ -207,6 +207,7 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   cause.interface = name_of(effect.type->interface);
   cause.effect = effect.type->name;
   cause.equation = effect.type->equation;
+  cause.input = effect.type->input;
   if (effect.type->replacement != nullptr) {
     cause.law = effect.type->replacement->law;
     cause.in_words = effect.type->replacement->in_words;

@@ -127,6 +127,12 @@ std::string experiment_that_splits(const std::vector<const EffectType*>& effects
     return [family](const EffectType* effect) { return effect->traits.family == family; };
   };
   const auto any_of = [&](EffectFamily family) { return std::ranges::any_of(effects, is_of(family)); };
+  const auto follows_input = [](const EffectType* effect) { return !effect->input.empty(); };
+  const auto of_input = std::ranges::find_if(effects, follows_input);
+  if (of_input != effects.end() && !std::ranges::all_of(effects, follows_input)) {
+    return "Repeat the test with " + std::string{(*of_input)->input} +
+           " held constant, and once more at another value: only what follows it changes between the two.";
+  }
   if (any_of(EffectFamily::mass)) {
     return "Air run: the same motion without the specimen. Inertia forces and load cell errors remain; the forces of "
            "the specimen are zero.";

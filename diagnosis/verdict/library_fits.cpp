@@ -303,9 +303,15 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   std::vector<const EffectType*> effects;
   // A specimen that yields is another law, with all its numbers free.
   const EffectType* const part_that_yields = find_effect(EffectInterface::specimen, "yielding");
+  const auto add = [&](const EffectType& effect) {
+    if (touches_a_gap(problem, effect) && is_searched(problem, effect)) effects.push_back(&effect);
+  };
   for (const EffectType& effect : effect_library()) {
     if (effect.make == nullptr || shows_in_digits(effect) || &effect == part_that_yields) continue;
-    if (touches_a_gap(problem, effect) && is_searched(problem, effect)) effects.push_back(&effect);
+    if (!effect.traits.takes_input) add(effect);
+    for (const InputRange& input : problem.inputs) {
+      if (effect.traits.takes_input && input.varies) add(with_input(effect, input.name));
+    }
   }
   for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
     if (law.refines == nullptr && touches_a_gap(problem, law.type)) effects.push_back(&law.type);

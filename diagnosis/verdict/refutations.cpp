@@ -275,6 +275,7 @@ constexpr std::array kChecks{
     Check{specimen, "fracture", instant_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
+    Check{specimen, "friction_with_input", friction_refuted},
 };
 
 /// What is not known of a parameter while the others of its effect are as they were found, over what is not known of it

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace hybridtest {
 
 /// Motion of one degree of freedom.
@@ -14,6 +16,8 @@ struct StageSample {
   double time_s = 0.0;   // since the beginning of the record or since arming
   Motion motion;         // into the stage: command (transfer system) or actuator motion (the others)
   double force_n = 0.0;  // force of the specimen at the sample before; what loads the actuator
+  // What was recorded beside the motion (current, temperature), in the order of SiteModel::inputs; null: nothing.
+  const double* inputs = nullptr;
 };
 
 /// An effect of the real world on one stage of a simulated site: command -> actuator (transfer
@@ -33,6 +37,9 @@ class Effect {
   /// [N], positive when it resists a positive displacement, of a specimen or force sensor.
   /// The motion is the one that the base was given.
   virtual void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& /*output*/) noexcept {}
+  /// Told once, before the first sample, which of StageSample::inputs it follows. Without that, or without inputs, an
+  /// effect that follows one takes its nominal value.
+  virtual void follow_input(std::size_t /*position*/) noexcept {}
   /// As new.
   virtual void reset() noexcept = 0;
 };

@@ -1,7 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
 
+#include "core/assert.hpp"
 #include "plant/effects/compensator/bias.hpp"
 #include "plant/effects/compensator/setting_mismatch.hpp"
 #include "plant/effects/effect_type.hpp"
@@ -23,7 +28,10 @@
 #include "plant/effects/specimen/contact.hpp"
 #include "plant/effects/specimen/coulomb_friction.hpp"
 #include "plant/effects/specimen/cubic_stiffness.hpp"
+#include "plant/effects/specimen/damping_with_input.hpp"
+#include "plant/effects/specimen/force_with_input.hpp"
 #include "plant/effects/specimen/fracture.hpp"
+#include "plant/effects/specimen/friction_with_input.hpp"
 #include "plant/effects/specimen/gap.hpp"
 #include "plant/effects/specimen/geometric_stiffness.hpp"
 #include "plant/effects/specimen/inertia.hpp"
@@ -156,6 +164,9 @@ std::span<const EffectType> effect_library() noexcept {
       entry<Inertia>(At::specimen, "inertia"),
       entry<GeometricStiffness>(At::specimen, "geometric_stiffness"),
       entry<Fracture>(At::specimen, "fracture"),
+      entry<ForceWithInput>(At::specimen, "force_with_input"),
+      entry<FrictionWithInput>(At::specimen, "friction_with_input"),
+      entry<DampingWithInput>(At::specimen, "damping_with_input"),
       entry<SensorGain>(At::force_sensor, "gain"),
       entry<ForceBias>(At::force_sensor, "bias"),
       entry<ForceDrift>(At::force_sensor, "drift"),
@@ -183,6 +194,23 @@ const EffectType* find_effect(EffectInterface interface, ModelNumber number) noe
 const EffectType* find_effect(EffectInterface interface, DigitTrace digits) noexcept {
   if (digits == DigitTrace::none) return nullptr;
   return first_at(interface, [digits](const EffectType& type) { return type.traits.digits == digits; });
+}
+
+const EffectType& with_input(const EffectType& type, std::string_view input) {
+  HYBRIDTEST_ASSERT(type.traits.takes_input);
+  static std::mutex mutex;
+  static std::map<std::pair<std::string_view, std::string>, EffectType>
+      types;  // no two effects with an input share a name
+  const std::scoped_lock lock{mutex};
+  const auto [place, is_new] = types.try_emplace({type.name, std::string{input}}, type);
+  if (is_new) place->second.input = place->first.second;
+  return place->second;
+}
+
+bool is_input_name(std::string_view name) noexcept {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && is_letter(name.front()) &&
+         std::ranges::all_of(name, [&](char c) { return is_letter(c) || c == '_' || (c >= '0' && c <= '9'); });
 }
 
 }  // namespace hybridtest

@@ -65,6 +65,7 @@ struct EffectTraits {
   bool follows_derivatives = false;  // its force follows velocity or acceleration
   bool needs_time = false;           // it follows rate, time or acceleration: without time it has no meaning
   bool takes_place = false;          // beside one that the model has, it takes its place; see add_effect()
+  bool takes_input = false;          // it follows a recorded input beside the motion; see with_input()
 };
 
 struct EffectParameter {
@@ -116,6 +117,8 @@ struct EffectType {
   std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
   /// Set for a law in place of the specimen's own; it has no make(). The effect library has none of these.
   const LawReplacement* replacement = nullptr;
+  /// The recorded input that it follows, `current_a`; empty in the library, and of effects that follow none.
+  std::string_view input{};
 };
 
 /// Every effect there is, in the order of the interfaces.
@@ -126,5 +129,12 @@ struct EffectType {
 /// The effect that corrects that number of the model, or leaves that trace; nullptr when there is none.
 [[nodiscard]] const EffectType* find_effect(EffectInterface interface, ModelNumber number) noexcept;
 [[nodiscard]] const EffectType* find_effect(EffectInterface interface, DigitTrace digits) noexcept;
+
+/// An effect of the library that takes an input, following the input of that name: a type of its own, so that two
+/// inputs are two effects. The same one for the same names, for as long as the program runs. Any thread.
+[[nodiscard]] const EffectType& with_input(const EffectType& type, std::string_view input);
+
+/// Whether an input may have this name: lower-case letters, digits and `_`, a letter first.
+[[nodiscard]] bool is_input_name(std::string_view name) noexcept;
 
 }  // namespace hybridtest

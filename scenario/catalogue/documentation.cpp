@@ -21,6 +21,9 @@ namespace {
 
 std::string text(std::string_view words) { return std::string{words}; }
 
+constexpr std::string_view kInputKey =
+    "u, the recorded input that it follows: current_a for the column input_current_a";
+
 /// `0 to 10`, without ends that only sense bounds.
 std::string values_of(const EffectParameter& parameter) {
   const bool has_low = parameter.low > -kUnbounded;
@@ -42,6 +45,7 @@ std::string effects_text() {
   for (const EffectType& type : effect_library()) {
     out += text(name_of(type.interface)) + " " + text(type.name) + "\n";
     out += "    " + text(type.equation) + "   [" + text(type.source) + "]\n";
+    if (type.traits.takes_input) out += "    input: " + text(kInputKey) + "\n";
     for (const EffectParameter& parameter : type.parameters) {
       out += "    " + text(parameter.name) + ": " + text(parameter.what) + "; " + values_of(parameter) +
              (parameter.unit.empty() ? "" : " " + text(parameter.unit));
@@ -67,6 +71,7 @@ std::string effects_markdown() {
              cell(parameter.what) + " | " + values_of(parameter) + " | " + default_of(parameter) + " |\n";
       first = " | ";
     }
+    if (type.traits.takes_input) out += "| " + first + " | `input` |  | " + text(kInputKey) + " | name | — |\n";
   }
   return out;
 }

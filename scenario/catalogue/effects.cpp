@@ -22,6 +22,16 @@ std::vector<std::string> effect_names(EffectInterface interface) {
   return names;
 }
 
+/// The type that follows the input that the section names.
+const EffectType* following_input(const EffectType& type, Section& section) {
+  const std::string input = section.text("input");
+  if (is_input_name(input)) return &with_input(type, input);
+  section.error("input", "'" + input +
+                             "' is no name of a recorded input; expected lower-case letters, digits and '_', a letter "
+                             "first, such as current_a for the column input_current_a");
+  return &type;
+}
+
 ListedEffect read_effect(Section section, const std::vector<EffectInterface>& interfaces, int dofs) {
   std::vector<std::string> interface_names;
   for (const EffectInterface interface : interfaces) interface_names.emplace_back(name_of(interface));
@@ -29,6 +39,7 @@ ListedEffect read_effect(Section section, const std::vector<EffectInterface>& in
   const std::vector<std::string> names = effect_names(interface);
   ListedEffect effect;
   effect.setting.type = find_effect(interface, names[section.choice("effect", names)]);
+  if (effect.setting.type->traits.takes_input) effect.setting.type = following_input(*effect.setting.type, section);
   for (const EffectParameter& parameter : effect.setting.type->parameters) {
     effect.setting.values.push_back(
         section.number(parameter.name, {.low = parameter.low, .high = parameter.high}, fallback_of(parameter)));
@@ -60,6 +71,7 @@ std::string written_effect(const ListedEffect& effect) {
   const EffectType& type = *effect.setting.type;
   std::string text = "  - interface: " + std::string{name_of(type.interface)} + "\n";
   text += "    effect: " + std::string{type.name} + "\n";
+  if (!type.input.empty()) text += "    input: " + std::string{type.input} + "\n";
   for (std::size_t i = 0; i < type.parameters.size(); ++i) {
     text += "    " + std::string{type.parameters[i].name} + ": " + written_number(effect.setting.values[i]) + "\n";
   }

@@ -39,7 +39,9 @@ struct RigReading {
   bool force_always_varies = true;         // false: a sound reading may be the same to the last bit during motion
   bool is_elsewhere = false;               // outside the process that makes it: not under simulated time
   bool keeps_time = false;                 // by a clock of its own: not in lockstep
-  std::vector<TableLayout> tables;         // that it records by itself, see Rig::record_to()
+  // Of effects that follow an input, which a simulated rig does not have: `current_a at 1`.
+  std::vector<std::string> nominal_inputs;
+  std::vector<TableLayout> tables;  // that it records by itself, see Rig::record_to()
 };
 
 /// @param directory   where files that it names are looked for.

@@ -7,10 +7,12 @@
 #include <string>
 #include <utility>
 
+#include "core/text/scalar.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "numerical_substructure/elastic_matrix.hpp"
 #include "numerical_substructure/spring_network.hpp"
+#include "plant/effects/recorded_input.hpp"
 #include "plant/specimens/elastic_specimen.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/specimens/specimen_in_transfer_system.hpp"
@@ -135,6 +137,21 @@ double reading_step(const SimulatedSiteReading& site, EffectInterface sensor) {
   return step;
 }
 
+/// Inputs that effects follow, each at the value that stands for it in a rig.
+std::vector<std::string> nominal_inputs(const SimulatedSiteReading& site) {
+  std::vector<std::string> inputs;
+  for (const SiteModel& dof : site.dofs) {
+    for (const EffectSetting& effect : dof.effects) {
+      if (effect.type->input.empty()) continue;
+      const auto nominal = std::ranges::find(effect.type->parameters, kNominalInput.name, &EffectParameter::name);
+      const double value = effect.values[static_cast<std::size_t>(nominal - effect.type->parameters.begin())];
+      std::string text = std::string{effect.type->input} + " at " + written_number(value);
+      if (std::ranges::find(inputs, text) == inputs.end()) inputs.push_back(std::move(text));
+    }
+  }
+  return inputs;
+}
+
 /// A force without noise reads the same on a plateau, in a gap and without a specimen.
 bool force_always_varies(const SimulatedSiteReading& site) {
   return site.dofs.front().noise.force_noise_n > 0.0 && reading_step(site, EffectInterface::force_sensor) == 0.0;
@@ -212,6 +229,7 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
   reading.force_noise_n = site.dofs.front().noise.force_noise_n;
   reading.displacement_resolution_m = reading_step(site, EffectInterface::displacement_sensor);
   reading.force_always_varies = force_always_varies(site);
+  reading.nominal_inputs = nominal_inputs(site);
   if (has_whole_specimen(site)) {
     reading.stiffness_n_per_m = [site](double displacement_m) {
       return secant_stiffness(*make_specimen(site), displacement_m);

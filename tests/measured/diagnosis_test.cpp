@@ -156,6 +156,25 @@ SiteModel unpowered_damper() {
   return model;
 }
 
+/// The damper without and with current, which was recorded beside the motion: friction and damping grow with it.
+TEST(MagnetorheologicalDamper, FollowsItsRecordedCurrent) {
+  HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_0A"));
+  std::vector<Recording> recordings{measured("servo_hydraulic_mr_damper_0A"), measured("servo_hydraulic_mr_damper_1A")};
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    recordings[i].inputs = {{"current_a", std::vector<double>(recordings[i].samples, static_cast<double>(i))}};
+  }
+  const Diagnosis diagnosis = answer(unpowered_damper(), recordings);
+  EXPECT_TRUE(names(diagnosis, "specimen", "friction_with_input"));
+  EXPECT_TRUE(names(diagnosis, "specimen", "damping_with_input"));
+  for (const EffectSetting& cause : diagnosis.causes) {
+    if (cause.type->interface == EffectInterface::specimen) {
+      EXPECT_EQ(cause.type->input, "current_a");
+      EXPECT_GT(cause.values[0], 0.0);
+    }
+  }
+  EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.8);
+}
+
 TEST(MagnetorheologicalDamper, LocatesCurrentEffectAtSpecimen) {
   HYBRIDTEST_NEEDS_DATA(measured_file("servo_hydraulic_mr_damper_1A"));
   const Diagnosis diagnosis = answer(unpowered_damper(), {measured("servo_hydraulic_mr_damper_1A")});

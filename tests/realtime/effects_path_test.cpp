@@ -24,7 +24,9 @@ EffectSetting some_setting(const EffectType& type) {
   for (const EffectParameter& parameter : type.parameters) {
     const bool has_to_be_given = std::isnan(parameter.fallback);
     const SearchRange* const range = search_range(type, parameter);
-    setting.values.push_back(has_to_be_given ? 0.5 * (range->low + range->high) : parameter.fallback);
+    // The nominal value of an input comes from a recording.
+    const double searched = range == nullptr ? 1.0 : 0.5 * (range->low + range->high);
+    setting.values.push_back(has_to_be_given ? searched : parameter.fallback);
   }
   return setting;
 }

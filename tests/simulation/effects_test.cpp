@@ -63,6 +63,7 @@ std::string written(const EffectType& type) {
     const double value = std::clamp(scale_of(*range) * share, parameter.low, parameter.high);
     text += ", " + std::string{parameter.name} + ": " + written_number(value);
   }
+  if (type.traits.takes_input) text += ", input: current_a, nominal_input: 0.05";
   return text + "}]";
 }
 

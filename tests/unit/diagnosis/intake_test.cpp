@@ -67,6 +67,45 @@ TEST(CsvRecording, HoldsTheValuesOfTheFile) {
   EXPECT_NEAR(recording.dofs[0].of(Channel::measured_force)[99], 1900.0 * std::sin(5.74), 0.5e-3);
 }
 
+std::string with_inputs(const std::string& names, const std::string& cells) {
+  std::string text = "time_s,measured_force_n," + names + "\n";
+  for (int i = 0; i < 20; ++i) text += fmt::format("{},{},{}\n", 0.01 * i, i, cells);
+  return text;
+}
+
+TEST(CsvRecording, ReadsInputsBesideTheMotionInAnyUnit) {
+  const Intake intake = read_csv_recording(with_inputs("input_temperature_c,input_current_a", "-20,1e9"), "a.csv");
+  ASSERT_TRUE(intake.recording.has_value()) << intake.findings.front().text("a.csv");
+  ASSERT_THAT(intake.recording->inputs, SizeIs(2));  // constant ones are allowed
+  EXPECT_EQ(intake.recording->inputs[0].name, "current_a");
+  EXPECT_EQ(intake.recording->inputs[0].samples, std::vector<double>(20, 1e9));
+  EXPECT_EQ(intake.recording->inputs[1].name, "temperature_c");
+  EXPECT_TRUE(intake.recording->has_input("temperature_c"));
+  EXPECT_FALSE(intake.recording->has_input("input_temperature_c"));
+}
+
+TEST(CsvRecording, FindsWhatIsWrongWithAnInputByRow) {
+  std::string text = with_inputs("input_current_a", "1.0");
+  text.replace(text.find("0.03,3,1.0"), 10, "0.03,3,nan");
+  text.replace(text.find("0.05,5,1.0"), 10, "0.05,5,");
+  const std::vector<std::string> complaints = ExampleCsv::complaints_about(text);
+  ASSERT_THAT(complaints, SizeIs(2));
+  EXPECT_THAT(complaints[0], HasSubstr("a.csv:5: column 'input_current_a': 'nan': not a finite number"));
+  EXPECT_THAT(complaints[1], HasSubstr("a.csv:7: column 'input_current_a': empty cell"));
+}
+
+TEST(CsvRecording, RefusesInputsTwiceAndWithoutAPlainName) {
+  const std::vector<std::string> twice = ExampleCsv::complaints_about(with_inputs("input_a,input_a", "1,2"));
+  ASSERT_THAT(twice, SizeIs(1));
+  EXPECT_THAT(twice[0], HasSubstr("column 'input_a': two columns have this name"));
+  for (const std::string name : {"input_", "input_Current", "input_2", "current_a"}) {
+    const std::vector<std::string> unknown = ExampleCsv::complaints_about(with_inputs(name, "1"));
+    ASSERT_THAT(unknown, SizeIs(1)) << name;
+    EXPECT_THAT(unknown[0], HasSubstr("unknown column"));
+    EXPECT_THAT(unknown[0], HasSubstr("headed input_"));
+  }
+}
+
 TEST(CsvRecording, ReadsDofSuffixesAndExportedTables) {
   std::string text =
       "sample,time_s,model_time_s,target_displacement_m_1,measured_force_n_1,compensated_force_n_1,"

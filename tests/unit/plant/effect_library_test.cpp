@@ -29,7 +29,11 @@ std::vector<double> some_values(const EffectType& type) {
     const bool is_last = values.size() + 1 == type.parameters.size();
     const bool is_left_out = !std::isnan(parameter.fallback) && (has_to_be_given || !is_last);
     const SearchRange* const range = search_range(type, parameter);
-    values.push_back(is_left_out || range == nullptr ? parameter.fallback : 0.25 * range->low + 0.75 * range->high);
+    if (range == nullptr && std::isnan(parameter.fallback)) {
+      values.push_back(1.0);  // comes from a recording: the nominal value of an input
+    } else {
+      values.push_back(is_left_out || range == nullptr ? parameter.fallback : 0.25 * range->low + 0.75 * range->high);
+    }
   }
   return values;
 }
@@ -159,6 +163,17 @@ TEST(EffectLibrary, ParametersHaveValidRanges) {
       }
     }
   }
+}
+
+TEST(EffectLibrary, EachInputMakesATypeOfItsOwn) {
+  const EffectType& type = *find_effect(EffectInterface::specimen, "friction_with_input");
+  const EffectType& current = with_input(type, "current_a");
+  EXPECT_EQ(&with_input(type, std::string{"current_a"}), &current);
+  EXPECT_NE(&with_input(type, "temperature_c"), &current);
+  EXPECT_NE(&with_input(*find_effect(EffectInterface::specimen, "damping_with_input"), "current_a"), &current);
+  EXPECT_EQ(current.input, "current_a");
+  EXPECT_EQ(current.name, type.name);
+  EXPECT_EQ(type.input, "");
 }
 
 class EveryEffect : public testing::TestWithParam<const EffectType*> {};

@@ -55,6 +55,19 @@ TEST_F(RigsTest, UdpRigRequiresAddressAndPace) {
       << "shorter than two control periods";
 }
 
+TEST_F(RigsTest, InputsHaveTheirNominalValueInASimulatedRig) {
+  const auto nominal_of = [&](const std::string& effects) {
+    const std::string parts =
+        "{type: simulated, transfer_system: {type: ideal}, specimen: {type: elastic, stiffness_n_per_m: 4.0e6}";
+    return read(parts + effects + "}").substructures[0].site.nominal_inputs;
+  };
+  EXPECT_THAT(nominal_of(""), IsEmpty());
+  EXPECT_THAT(nominal_of(", effects: [{interface: specimen, effect: force_with_input, input: current_a, "
+                         "force_ratio_per_unit: 0.1, nominal_input: 2.5}, {interface: specimen, effect: "
+                         "damping_with_input, input: current_a, damping_n_s_per_m_per_unit: 1.0, nominal_input: 2.5}]"),
+              ElementsAre("current_a at 2.5"));
+}
+
 TEST_F(RigsTest, LinearServoHydraulicBringsItsSpecimen) {
   const Scenario scenario = read("{type: simulated, transfer_system: {type: linear_servo_hydraulic}}");
   const SiteScenario& site = scenario.substructures[0].site;

@@ -96,6 +96,54 @@ TEST_F(SiteFile, WrongSettingIsCorrectedInTheCompensator) {
   }
 }
 
+TEST_F(SiteFile, EffectFollowsARecordedInputAndIsWrittenAgain) {
+  const SiteModelFile site = read(
+      "specimen: {type: elastic, stiffness_n_per_m: 100.0}\n"
+      "effects: [{interface: specimen, effect: force_with_input, input: current_a, force_ratio_per_unit: 0.5, "
+      "reference_input: 1.0, nominal_input: 3.0}]\n");
+  const EffectType& type = with_input(*find_effect(EffectInterface::specimen, "force_with_input"), "current_a");
+  ASSERT_EQ(site.dofs[0].effects.size(), 1U);
+  EXPECT_EQ(site.dofs[0].effects[0].type, &type);
+  EXPECT_EQ(force_at(site.dofs[0], {.displacement_m = 1.0}), 200.0);  // nothing is recorded: nominal
+  const EffectType& damping = with_input(*find_effect(EffectInterface::specimen, "damping_with_input"), "speed_rpm");
+  const std::vector<ListedEffect> added{{{&damping, {7.0, 0.0, 2.0}}, {}}};
+  const SiteModelFile again = read(site.with_effects(added).text);
+  ASSERT_EQ(again.dofs[0].effects.size(), 2U) << again.text;
+  EXPECT_EQ(again.dofs[0].effects[0].type, &type);
+  EXPECT_EQ(again.dofs[0].effects[1].type, &damping);
+  EXPECT_EQ(again.dofs[0].effects[1].values, added[0].setting.values);
+}
+
+TEST_F(SiteFile, InputNeedsAPlainNameAndANominalValue) {
+  const auto error_with = [&](const std::string& keys) {
+    return error_of("effects: [{interface: specimen, effect: damping_with_input, damping_n_s_per_m_per_unit: 1.0, " +
+                    keys + "}]\n");
+  };
+  EXPECT_EQ(error_with("input: current_a, nominal_input: 1.0"), "");
+  EXPECT_THAT(error_with("nominal_input: 1.0"), testing::HasSubstr("site.yaml:1:"));
+  EXPECT_THAT(error_with("nominal_input: 1.0"), testing::HasSubstr("input"));
+  EXPECT_THAT(error_with("input: current_a"), testing::HasSubstr("nominal_input"));
+  EXPECT_THAT(error_with("input: Current A, nominal_input: 1.0"),
+              testing::HasSubstr("'Current A' is no name of a recorded input"));
+  EXPECT_THAT(error_of("effects: [{interface: specimen, effect: inertia, mass_kg: 1.0, input: current_a}]\n"),
+              testing::HasSubstr("input"));
+}
+
+TEST_F(SiteFile, RecordingWithoutAnInputOfTheModelIsRefused) {
+  const SiteModelFile site = read(
+      "effects: [{interface: specimen, effect: damping_with_input, input: current_a, damping_n_s_per_m_per_unit: 1.0, "
+      "nominal_input: 1.0}]\n");
+  Recording recording;
+  recording.file = "plain.csv";
+  recording.dofs.resize(1);
+  try {
+    require_match(site, {&recording, 1});
+    FAIL() << "was accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("plain.csv has no column input_current_a"));
+  }
+}
+
 TEST_F(SiteFile, SaysThatItsRecordingsAreQuasiStatic) {
   const std::string parts = "specimen: {type: elastic, stiffness_n_per_m: 1.0}\n";
   EXPECT_FALSE(read(parts).is_quasi_static);
