@@ -235,8 +235,6 @@ inline constexpr double kBlocksMax = 12.0;
 /// A law is a spring when its force at these shares of the peak is proportional, within this share.
 inline constexpr std::array kSpringProbes{-1.0, -0.4, 0.3, 0.7};
 inline constexpr double kSpringRounding = 1e-9;
-/// Step of the slope over a wrong stiffness ratio.
-inline constexpr double kStiffnessStep = 1e-3;
 
 // Search: its limits.
 
@@ -252,20 +250,18 @@ inline constexpr double kLogarithmicFactor = 10.0;
 inline constexpr int kInstantStarts = 6;
 inline constexpr double kInstantStepMax = 1e-2;
 inline constexpr double kInstantStepMin = 1e-5;
-/// Step of the numeric derivatives, as a share of the range: what the smoothest effects need is smaller, but a
-/// clearance or a friction has to move over several samples to be felt. In the search, and at the optimum.
-inline constexpr double kDifferenceStep = 1e-3;
-inline constexpr double kSlopeStep = 1e-3;
-/// A parameter nearer than this share of its range to the limit counts as at the limit.
-inline constexpr double kAtBound = 1e-3;
+/// What a search resolves, as a share of a parameter's range, of a ratio or of a residual. Step of the numeric
+/// derivatives: what the smoothest effects need is smaller, but a clearance or a friction has to move over several
+/// samples to be felt. A parameter this near to a limit is at it, and a ratio this near to its fallback is left out.
+/// Several effects are linear together when their prediction equals the sum of their columns to this share of the
+/// residual.
+inline constexpr double kResolution = 1e-3;
 /// Shares added to the diagonal of normal equations: in the projection, where columns that are almost multiples of each
 /// other would cancel in huge numbers, and in the covariance.
 inline constexpr double kProjectionRidge = 1e-10;
 inline constexpr double kCovarianceRidge = 1e-9;
-/// Several effects count as linear together when their prediction equals the sum of their columns, within this share
-/// of the residual. Otherwise they are linearised again at their present values, at most so many times. The step is in
-/// units of the parameter.
-inline constexpr double kAsGoodAsLinear = 1e-3;
+/// Effects that are not linear together are linearised again at their present values, at most so many times; a step of
+/// a fit without a block is halved as often. The step is in units of the parameter.
 inline constexpr int kRelinearisations = 3;
 inline constexpr double kCoefficientStep = 1e-2;
 
@@ -285,9 +281,6 @@ inline constexpr double kParameterPrior = 2.5;
 /// of both, from which on the two are a specimen that yields and hardens: a hundredth is what a fit does not resolve.
 inline constexpr double kPreslidingMax = 0.02;
 inline constexpr double kHardeningMin = 0.01;
-/// A ratio that differs from its fallback by less than this share of its range counts as left out. The search has no
-/// finer resolution.
-inline constexpr double kRangeUnresolved = 1e-3;
 /// An effect that is worse than the best one by more than this on the coarse record is not fitted again and not
 /// paired [nats].
 inline constexpr double kFarBehind = 25.0;
@@ -311,11 +304,9 @@ inline constexpr double kHeightOverStroke = 10.0;
 
 // Which effects are chosen.
 
-/// Gain over the unchanged model above which there is a gap to explain [nats].
-inline constexpr double kDetectionGain = 5.0;
-/// A further effect is accepted when it gains at least this much [nats] and leaves less than this share of the
-/// remaining gap in the median recording.
-inline constexpr double kAnotherEffectGain = 6.0;
+/// Rate at which an effect is taken where there is nothing to explain, of all candidates together; see decisive_gain().
+inline constexpr double kFalseAlarms = 0.05;
+/// A further effect is accepted when it also leaves less than this share of the remaining gap in the median recording.
 inline constexpr double kAnotherEffectLeaves = 0.6;
 /// Share of the whole gap of that recording [variance] that it must explain, unless it is a wrong parameter of the
 /// model.
@@ -360,7 +351,7 @@ inline constexpr int kSilence_s = 1;
 /// A gap below this share of its floor [rms over rms] is none.
 inline constexpr double kGapOverFloor = 0.3;
 /// Residual over the floor [rms over rms] up to which nothing of a gap is left to explain, and a cause is named; above,
-/// a gap that nothing reduces is unknown.
+/// a gap that nothing reduces is unknown. When one gap is larger than that, gaps below it count as none.
 inline constexpr double kNearFloor = 2.0;
 /// A signal smaller than this multiple of its noise [standard deviations] cannot show a gap, so that an absent gap is
 /// no evidence. At the larger multiple an effect of a tenth of the signal is as visible.
@@ -368,8 +359,6 @@ inline constexpr double kExcitedOverNoise = 3.0;
 inline constexpr double kWellExcitedOverNoise = 30.0;
 /// An interface is at fault when its residual exceeds its floor by this factor.
 inline constexpr double kFaultOverFloor = 1.15;
-/// When one gap exceeds its floor by more than this factor, gaps below this factor count as none.
-inline constexpr double kSuspectOverFloor = 2.0;
 /// Share of the repeatable gap [variance] up to which its cause is named in part.
 inline constexpr double kPartialLeaves = 0.3;
 /// Share of the gap [variance] that hardly matters: a tenth of its amplitude.

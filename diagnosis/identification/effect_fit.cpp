@@ -33,10 +33,10 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, solution) : Eigen::VectorXd{};
   for (Eigen::Index i = 0; i < searched; ++i) {
     Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? tuning::kSlopeStep : -tuning::kSlopeStep;
+    const double step = places[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
     moved[i] += step;
     result.columns.col(i) = (projection.predicted(moved, solution) - here) / step;
-    const bool at_bound = places[i] < tuning::kAtBound || places[i] > 1.0 - tuning::kAtBound;
+    const bool at_bound = places[i] < tuning::kResolution || places[i] > 1.0 - tuning::kResolution;
     if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
   }
   result.columns.rightCols(solution.columns.cols()) = solution.columns;
@@ -118,7 +118,7 @@ double squares_without(const Eigen::VectorXd& residual, Eigen::Index first, Eige
 /// way for linear parameters; otherwise it is halved until it improves that fit, or not taken.
 Eigen::VectorXd left_out(const MovedFit& fit, const Eigen::VectorXd& residual, const Eigen::MatrixXd& inside,
                          const Eigen::VectorXd& step, Eigen::Index first) {
-  const Eigen::VectorXd block = residual.segment(first, inside.rows());
+  Eigen::VectorXd block = residual.segment(first, inside.rows());
   if (fit.is_linear()) return block - inside * step;
   const double before = squares_without(residual, first, inside.rows());
   double share = 1.0;
@@ -382,9 +382,9 @@ std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen:
   if (index < plan.searched.size()) {
     const SearchedParameter& searched = plan.searched[index];
     const double place = places[static_cast<Eigen::Index>(index)];
-    const double per_place = (searched.at(std::min(1.0, place + tuning::kSlopeStep)) -
-                              searched.at(std::max(0.0, place - tuning::kSlopeStep))) /
-                             (2.0 * tuning::kSlopeStep);
+    const double per_place = (searched.at(std::min(1.0, place + tuning::kResolution)) -
+                              searched.at(std::max(0.0, place - tuning::kResolution))) /
+                             (2.0 * tuning::kResolution);
     return FreeParameter{searched.effect, searched.parameter, std::abs(per_place)};
   }
   if (index - plan.searched.size() >= plan.linear.size()) return {};
@@ -442,7 +442,7 @@ void estimate(const VariableProjection& projection, const IdentificationProblem&
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
     const double place = places[static_cast<Eigen::Index>(i)];
     result[plan.searched[i].effect][plan.searched[i].parameter].at_bound =
-        place < tuning::kAtBound || place > 1.0 - tuning::kAtBound;
+        place < tuning::kResolution || place > 1.0 - tuning::kResolution;
   }
   for (std::size_t i = 0; i < plan.linear.size(); ++i) {
     result[plan.linear[i].effect][plan.linear[i].parameter].at_bound = solution.held[i];

@@ -175,7 +175,7 @@ void add_nuisance(FitSegment& fit, EffectInterface interface, ModelNumber number
 /// Change of the prediction per unit of a wrong stiffness: of a spring beside another, or of the ratio of a law's.
 Eigen::VectorXd stiffness_slope(const SiteModel& model, bool law_is_spring, const FitSegment& fit,
                                 const EffectType& stiffness) {
-  const double step = law_is_spring ? 1.0 : tuning::kStiffnessStep;  // the former's change is proportional to it
+  const double step = law_is_spring ? 1.0 : tuning::kResolution;  // the former's change is proportional to it
   const EffectSetting setting{.type = &stiffness, .values = {law_is_spring ? 0.0 : step, law_is_spring ? step : 0.0}};
   return (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
 }
@@ -213,7 +213,7 @@ void add_number_slopes(const SiteModel& model, FitSegment& fit) {
   fit.number_types = fit.nuisance_types;
   if (!fit.segment.is_quasi_static) add_number_slope(model, find_effect(specimen, ModelNumber::damping), 1.0, fit);
   if (model.has_bandwidth) {
-    add_number_slope(model, find_effect(transfer_system, ModelNumber::bandwidth), tuning::kStiffnessStep, fit);
+    add_number_slope(model, find_effect(transfer_system, ModelNumber::bandwidth), tuning::kResolution, fit);
   }
 }
 
@@ -367,7 +367,7 @@ bool is_spring(const SiteModel& model, double largest_m) {
 
 /// A floor is an estimate: a small excess does not count as a gap beside a clear one.
 bool is_clear(const FitSegment& fit) {
-  return root_mean_square(fit.measured - fit.baseline) > tuning::kSuspectOverFloor / fit.weight;
+  return root_mean_square(fit.measured - fit.baseline) > tuning::kNearFloor / fit.weight;
 }
 
 void mark_suspects(std::vector<FitSegment>& segments) {
@@ -451,6 +451,7 @@ IdentificationProblem judged_at(const IdentificationProblem& problem, Channel ou
       std::ranges::any_of(part.segments, [&](const FitSegment& fit) { return is_here(fit) && is_clear(fit); });
   for (FitSegment& fit : part.segments) {
     fit.is_suspect = is_here(fit) && (!any_clear || is_clear(fit));
+    fit.is_settled = fit.segment.to < output;
     if (!is_here(fit)) free_numbers(problem.model, fit);
   }
   return part;

@@ -82,6 +82,8 @@ struct FitSegment {
   std::shared_ptr<const Discrepancy> discrepancy;
   // Whether its residual counts as part of the gap: it is well above the floor, or no residual is.
   bool is_suspect = true;
+  // Whether it was judged before: what is left of its gap earns nothing any more.
+  bool is_settled = false;
   std::shared_ptr<const LawMemory> law;  // of the specimen, along the recorded motion; null where there is none
   FreeNumbers numbers;
   std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
@@ -117,7 +119,7 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
 /// The same problem with the gap of one channel to explain. The other segments stay: an effect of a displacement sensor
 /// shows in force and motion alike. So one interface never hides what is wrong at another. In the other segments the
-/// numbers of the model are free.
+/// numbers of the model are free; those of channels in front of this one were judged before.
 [[nodiscard]] IdentificationProblem judged_at(const IdentificationProblem& problem, Channel output);
 
 /// A slightly wrong number of the user's model.

@@ -284,7 +284,7 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
   const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
   Eigen::VectorXd here = predicted(places, solution);
   const Eigen::VectorXd off = measured_ - here - solution.residual;
-  if (off.norm() <= tuning::kAsGoodAsLinear * solution.residual.norm()) return solution;
+  if (off.norm() <= tuning::kResolution * solution.residual.norm()) return solution;
   solution.residual = measured_ - here;
   Projected best = solution;
   for (int pass = 0; pass < tuning::kRelinearisations; ++pass) {
@@ -301,7 +301,7 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
     const double before = best.residual.squaredNorm();
     const double after = solution.residual.squaredNorm();
     if (after < before) best = solution;
-    if (after > (1.0 - tuning::kAsGoodAsLinear) * before) break;
+    if (after > (1.0 - tuning::kResolution) * before) break;
   }
   return best;
 }
@@ -359,7 +359,7 @@ class ProjectedResidual final : public ceres::CostFunction {
     Slopes slopes(residual_.size(), places_.size());
     for (Eigen::Index i = 0; i < places_.size(); ++i) {
       Eigen::VectorXd moved = places_;
-      const double step = places_[i] < 0.5 ? tuning::kDifferenceStep : -tuning::kDifferenceStep;
+      const double step = places_[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
       moved[i] += step;
       slopes.col(i) = (projection_.solve(moved).residual - residual_) / step;
     }

@@ -245,6 +245,10 @@ bool follows_derivatives(const SiteModel& model) {
   });
 }
 
+bool can_be_smoothed(const Segment& segment) {
+  return segment.to == Channel::measured_force && !segment.is_quasi_static;
+}
+
 /// See Segment::smoothing_error.
 double smoothing_error(const SiteModel& model, const Segment& smooth, const DofRecording& dof, double deviation) {
   Segment plain = smooth;
@@ -295,41 +299,40 @@ Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofR
   return smoothed_by(model, segment, dof, best.value);
 }
 
-/// What a mass and, without it, a spring and a damper beside the model leave of the recorded force, with the motion of
-/// a tried segment.
-struct LeftByMass {
-  double without = 0.0;
-  double with = 0.0;
-};
-
-LeftByMass left_by_mass(const SiteModel& model, const Segment& segment, const Segment& tried) {
-  const auto judged = static_cast<Eigen::Index>(segment.measured.size() - 2 * tried.unjudged);
-  if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return {};
-  const std::vector<double> predicted = predict(model, tried);
-  Eigen::MatrixXd columns(judged, 5);
-  Eigen::VectorXd force_n(judged);
+/// What a spring and a damper beside the model, and with them perhaps a mass, leave of a force along the motion of a
+/// smoothed segment [mean square].
+double left_beside(const SiteModel& model, const std::vector<double>& force_n, const Segment& smooth, bool with_mass) {
+  const auto judged = static_cast<Eigen::Index>(force_n.size() - 2 * smooth.unjudged);
+  if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return std::numeric_limits<double>::infinity();
+  const std::vector<double> predicted = predict(model, smooth);
+  Eigen::MatrixXd columns(judged, with_mass ? 5 : 4);
+  Eigen::VectorXd right(judged);
   for (Eigen::Index row = 0; row < judged; ++row) {
-    const auto i = static_cast<std::size_t>(row) + tried.unjudged;
-    const Motion& motion = tried.input[i];
-    columns.row(row) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0, motion.acceleration_m_per_s2;
-    force_n[row] = segment.measured[i];
+    const auto i = static_cast<std::size_t>(row) + smooth.unjudged;
+    const Motion& motion = smooth.input[i];
+    columns.row(row).head(4) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0;
+    if (with_mass) columns(row, 4) = motion.acceleration_m_per_s2;
+    right[row] = force_n[i];
   }
-  const auto left = [&](Eigen::Index count) {
-    const Eigen::MatrixXd used = columns.leftCols(count);
-    return (force_n - used * used.colPivHouseholderQr().solve(force_n)).squaredNorm();
-  };
-  return {.without = left(4), .with = left(5)};
+  return (right - columns * columns.colPivHouseholderQr().solve(right)).squaredNorm() / static_cast<double>(judged);
 }
 
-/// Smoothed alike where a mass that the model lacks explains more than half of what is left: the noise of an
+/// Smoothed alike where there is a gap of which a mass that the model lacks explains more than half: the noise of an
 /// acceleration that is not smoothed hides most of such a mass.
 std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
-  const Deviation best =
-      best_deviation(segment, dof, [&](const Segment& tried) { return left_by_mass(model, segment, tried).with; });
+  const Deviation best = best_deviation(
+      segment, dof, [&](const Segment& tried) { return left_beside(model, segment.measured, tried, true); });
   if (!(best.value > 0.0)) return {};
-  const LeftByMass left = left_by_mass(model, segment, smoothed_alike(segment, dof, best.value));
-  if (left.with > tuning::kMainShare * left.without) return {};
-  return smoothed_by(model, segment, dof, best.value);
+  Segment smooth = smoothed_by(model, segment, dof, best.value);
+  double output = 0.0;
+  for (const double force_n : segment.measured) output += force_n * force_n;
+  output /= static_cast<double>(segment.measured.size());
+  const double floor = std::hypot(smooth.measured_noise, tuning::kModelAllowance * std::sqrt(output));
+  // Force and motion are smoothed alike, so that what smoothing takes off the one does not look like a mass.
+  const double without = left_beside(model, smooth.measured, smooth, false);
+  const double with = left_beside(model, smooth.measured, smooth, true);
+  const bool explains_a_gap = without > std::pow(tuning::kNearFloor * floor, 2) && with < tuning::kMainShare * without;
+  return explains_a_gap ? std::optional{std::move(smooth)} : std::nullopt;
 }
 
 }  // namespace
@@ -344,14 +347,18 @@ std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& 
   std::vector<Segment> segments;
   for (Segment& segment : segments_of(recording, dof, position)) {
     if (!is_modelled(model, segment)) continue;
-    const bool can_be_smoothed = segment.to == Channel::measured_force && !segment.is_quasi_static;
-    if (can_be_smoothed && follows_derivatives(completed)) {
-      segments.push_back(best_smoothed(completed, segment, recording.dofs[dof]));
-      continue;
-    }
-    std::optional<Segment> smooth;
-    if (can_be_smoothed) smooth = smoothed_for_mass(model, segment, recording.dofs[dof]);
-    segments.push_back(smooth ? std::move(*smooth) : std::move(segment));
+    const bool is_smoothed = can_be_smoothed(segment) && follows_derivatives(completed);
+    segments.push_back(is_smoothed ? best_smoothed(completed, segment, recording.dofs[dof]) : std::move(segment));
+  }
+  return segments;
+}
+
+std::vector<Segment> segments_to_search(const SiteModel& model, const Recording& recording, std::size_t dof,
+                                        std::size_t position) {
+  std::vector<Segment> segments = modelled_segments(model, recording, dof, position);
+  for (Segment& segment : segments) {
+    if (!can_be_smoothed(segment) || follows_derivatives(model)) continue;
+    if (auto smooth = smoothed_for_mass(model, segment, recording.dofs[dof])) segment = std::move(*smooth);
   }
   return segments;
 }

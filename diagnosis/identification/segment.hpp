@@ -111,12 +111,16 @@ struct Segment {
 /// The segments of one degree of freedom that a model predicts, along the chain. If the modelled force depends on
 /// velocity or acceleration, which displacement sensors measure badly, force and motion are smoothed equally
 /// (smoothed_alike()). The deviation is chosen so that the prediction is nearest to the recorded force: less smoothing
-/// leaves noise in the derivatives, more smoothing reduces their peaks. So they are, too, where a mass that the model
-/// lacks would explain most of its residual.
+/// leaves noise in the derivatives, more smoothing reduces their peaks.
 /// @param completed   the model whose force decides on the smoothing: the same, or with the causes that were found.
 [[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
                                                      std::size_t dof, std::size_t position, const SiteModel& completed);
 [[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
                                                      std::size_t dof, std::size_t position);
+
+/// The same for a search of causes: force and motion are smoothed equally, too, where a mass that the model lacks would
+/// explain most of its residual.
+[[nodiscard]] std::vector<Segment> segments_to_search(const SiteModel& model, const Recording& recording,
+                                                      std::size_t dof, std::size_t position);
 
 }  // namespace hybridtest

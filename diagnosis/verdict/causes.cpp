@@ -135,7 +135,10 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   if (cause == nullptr) return judgement;
   if (selection.library.front().type == cause) {
     judgement.indistinguishable = credible(selection, policy.credible);
-  } else {
+  } else if (std::ranges::any_of(selection.alike, [&](const AlikeLeader& leader) {
+               return selection.library[leader.position].type == cause;
+             })) {
+    // The cause is one of the leaders still: none was exchanged for it.
     std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
   }
   if (judgement.may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;

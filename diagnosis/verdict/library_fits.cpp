@@ -22,7 +22,11 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double allowed = 1.0 / (fit.weight * fit.weight);
-    score -= 0.5 * fit.independent * std::log(outcome.segments[i].held_out_mean_square(fit) + allowed);
+    double left = outcome.segments[i].held_out_mean_square(fit);
+    if (fit.is_settled) {
+      left = std::max(left, (fit.measured - fit.baseline).squaredNorm() / static_cast<double>(fit.measured.size()));
+    }
+    score -= 0.5 * fit.independent * std::log(left + allowed);
   }
   return score;
 }
@@ -35,7 +39,7 @@ GapEnergy& GapEnergy::operator+=(const GapEnergy& other) noexcept {
 }
 
 bool GapEnergy::is_clear(double energy) const noexcept {
-  return energy > tuning::kSuspectOverFloor * tuning::kSuspectOverFloor * allowed;
+  return energy > tuning::kNearFloor * tuning::kNearFloor * allowed;
 }
 
 GapEnergy gap_energy(const FitSegment& segment, const SegmentResult& result) {
@@ -83,7 +87,7 @@ bool is_slightly_wrong(const IdentificationProblem& problem, const FitOutcome& f
 /// Whether a parameter may be left out and this fit is at what it then is; NaN where it has to be given.
 bool is_dispensable(double left_out, const SearchRange& range, const ParameterEstimate& estimate) {
   const double off = std::abs(estimate.value - left_out);
-  const double resolved = (range.high - range.low) * tuning::kRangeUnresolved;
+  const double resolved = (range.high - range.low) * tuning::kResolution;
   return off <= std::max(half_width_95(estimate), range.scale == ParameterScale::one ? resolved : 0.0);
 }
 
@@ -319,13 +323,17 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   return effects;
 }
 
+double decisive_gain(const IdentificationProblem& problem) {
+  return std::log(static_cast<double>(std::max<std::size_t>(1, judged_effects(problem).size())) / tuning::kFalseAlarms);
+}
+
 namespace {
 
 /// Fits the laws that refine a simpler one, from the simpler one's result, while the best candidate leaves something
 /// to explain.
 void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& candidates) {
   const FitOutcome baseline = fit_nothing(coarse, false);
-  if (candidates.front().score < held_out_score(coarse, baseline) + tuning::kDetectionGain) return;
+  if (candidates.front().score < held_out_score(coarse, baseline) + decisive_gain(coarse)) return;
   for (const LawCandidate& law : law_candidates(coarse.law_is_spring)) {
     if (law.refines == nullptr) continue;
     const auto simpler = std::ranges::find(candidates, law.refines, &Candidate::type);
@@ -468,11 +476,15 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
         together[i] = fit_together(coarse, promising[i].type, start, search_effects);
       },
       counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));
-  // Candidates with a much lower score on the coarse record are dropped.
+  // Candidates with a much lower score on the coarse record than one that may be the cause are dropped.
   promising = best_first(std::move(together));
-  std::erase_if(promising, [best = promising.empty() ? 0.0 : promising.front().score](const Candidate& candidate) {
-    return candidate.score < best - tuning::kFarBehind;
-  });
+  const auto first = std::ranges::find_if(
+      promising, [&](const Candidate& candidate) { return refutation(coarse, candidate).empty(); });
+  if (first != promising.end()) {
+    std::erase_if(promising, [best = first->score](const Candidate& candidate) {
+      return candidate.score < best - tuning::kFarBehind;
+    });
+  }
   std::vector<std::optional<Candidate>> refitted(promising.size());
   for_each_in_parallel(
       promising.size(), threads,

@@ -14,7 +14,8 @@ namespace hybridtest {
 ///
 /// Gaussian residuals with the variance of the held-out blocks. Neighbouring samples of a structured residual contain
 /// the same information: the number of independent ones is that of the segment's noise (FitSegment::independent), the
-/// same for all candidates. Wrong numbers of the model that are needed elsewhere cost what cost_of_numbers() says.
+/// same for all candidates. A channel that was judged before may lose by a candidate, and not gain. Wrong numbers of
+/// the model that are needed elsewhere cost what cost_of_numbers() says.
 [[nodiscard]] double held_out_score(const IdentificationProblem& problem, const FitOutcome& outcome);
 
 /// Number of parameters of an effect that the recordings need: an optional one at its default is none.
@@ -61,6 +62,12 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 
 /// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
+
+/// Gain of a candidate on held-out blocks above which it explains something [nats]: log(n / a) for n judged effects and
+/// the rate a of false alarms. By Markov's inequality a predictive density that is wrong exceeds the right one by the
+/// factor n / a with a probability of at most a / n, whatever the candidate (Vovk and Wang, Annals of Statistics 49,
+/// 2021: e-values).
+[[nodiscard]] double decisive_gain(const IdentificationProblem& problem);
 
 /// The wrong numbers of the model that a fit with nuisance parameters found at the suspect segments, as effects; of
 /// several recordings the mean. What it needs elsewhere is a matter of the channel there.

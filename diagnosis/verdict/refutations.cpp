@@ -312,9 +312,12 @@ std::string absence_not_excluded(const Suspect& suspect) {
     }
     return fmt::format("{}: the intervals hold what it is in the model", suspect.name());
   }
-  const auto free = std::ranges::count_if(suspect.effect.type->parameters, [&](const EffectParameter& parameter) {
-    return !is_fixed(suspect.problem, *suspect.effect.type, parameter);
-  });
+  // A parameter that may be left out and is, as the second pole of a lag, is none.
+  std::size_t free = 0;
+  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+    const bool is_left_out = suspect.estimates[i].value == left_out(suspect.problem, type, i);
+    if (!is_left_out && !is_fixed(suspect.problem, type, type.parameters[i])) ++free;
+  }
   for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
     const EffectParameter& parameter = suspect.effect.type->parameters[i];
     const ParameterEstimate& estimate = suspect.estimates[i];

@@ -90,7 +90,8 @@ bool is_number(const IdentificationProblem& problem, const EffectType& type) {
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
-  if (gain <= tuning::kAnotherEffectGain || is_number(problem, *with.type)) return gain > tuning::kAnotherEffectGain;
+  if (gain <= decisive_gain(problem)) return false;
+  if (is_number(problem, *with.type)) return true;
   const Typical change = typical(problem, baseline, without, with);
   const bool matters = change.explains > tuning::kAnotherEffectExplains || change.leaves < tuning::kSmallEffectLeaves;
   return change.leaves < tuning::kAnotherEffectLeaves && matters;
@@ -136,7 +137,7 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   return rest;
 }
 
-/// Drops what the other effects can do without, the least needed first, and what may as well be absent.
+/// Drops what the other effects can do without, the least needed first, and what is needless.
 void prune(const IdentificationProblem& problem, const FitOutcome& baseline, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
     std::optional<FitOutcome> best;
@@ -181,52 +182,57 @@ double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
   return held_out_score(problem, fit) + prior(problem, fit);
 }
 
-/// Other effects in the place of one: a candidate with what it needs beside it, and what was found beside the one. The
-/// numbers of a law that another law replaces go with it. Empty where the candidate is found already.
-std::vector<EffectSetting> with_instead(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects,
-                                        std::size_t position, const Candidate& candidate) {
+/// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
+/// model that it needed. The numbers of a law that another law replaces go with it. None where the candidate is found
+/// already.
+std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem& problem,
+                                                     const std::vector<EffectSetting>& effects, std::size_t position,
+                                                     const Candidate& candidate) {
   const auto is_found = [&](const EffectType* type) {
     return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
   };
-  if (is_found(candidate.type)) return {};
+  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
   std::vector<EffectSetting> rest = without(effects, position);
-  const bool is_law = candidate.type->replacement != nullptr;
-  if (is_law) std::erase_if(rest, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
+  const bool law_stays = std::ranges::any_of(rest, is_law);
+  const bool is_another_law = candidate.type->replacement != nullptr;
+  if (is_found(candidate.type) || (law_stays && (is_another_law || is_of_law(*candidate.type)))) return {};
+  if (is_another_law) std::erase_if(rest, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
   std::vector<EffectSetting> instead = candidate.fit.effects;
-  if (candidate.fit.with_nuisance)
-    std::ranges::copy(wrong_numbers(problem, candidate.fit), std::back_inserter(instead));
-  const bool law_stays =
-      std::ranges::any_of(rest, [](const EffectSetting& e) { return e.type->replacement != nullptr; });
-  if (law_stays && is_law) return {};
-  std::erase_if(instead, [&](const EffectSetting& effect) {
-    return effect.type != candidate.type && (is_found(effect.type) || (law_stays && is_of_law(*effect.type)));
-  });
+  std::erase_if(instead, [&](const EffectSetting& e) { return e.type != candidate.type && is_found(e.type); });
   instead.insert(instead.end(), rest.begin(), rest.end());
-  return instead;
+  std::vector<std::vector<EffectSetting>> starts{instead};
+  if (!candidate.fit.with_nuisance) return starts;
+  for (const EffectSetting& number : wrong_numbers(problem, candidate.fit)) {
+    const bool is_new = !is_found(number.type) && number.type != candidate.type;
+    if (is_new && !(law_stays && is_of_law(*number.type))) instead.push_back(number);
+  }
+  if (instead.size() > starts.front().size()) starts.push_back(std::move(instead));
+  return starts;
 }
 
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
-/// judged without them. Of a law all laws are tried, and of everything the best few.
-/// @return whether another one is better.
+/// judged without them. Of a law all laws and the numbers of the model's own are tried, and of everything the best few.
+/// @return whether another one is better by more than a parameter costs.
 bool exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
   std::vector<double> scores{score_of(problem, growth.fit)};
   std::optional<Candidate> best;
-  double highest = scores.front();
+  double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
   std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
-    const bool is_other_form = is_law && candidate.type->replacement != nullptr;
-    if (!is_other_form && others >= tuning::kRefittedPairs) continue;
-    const std::vector<EffectSetting> start = with_instead(problem, effects, position, candidate);
-    if (start.empty()) continue;
-    if (!is_other_form) ++others;
-    std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
-    if (!instead || !refutation(problem, *instead).empty()) continue;
-    scores.push_back(score_of(problem, instead->fit));
-    if (scores.back() <= highest) continue;
-    highest = scores.back();
-    best = std::move(instead);
+    const bool is_of_law_too = is_law && (candidate.type->replacement != nullptr || is_of_law(*candidate.type));
+    if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
+    const std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
+    if (!is_of_law_too && !starts.empty()) ++others;
+    for (const std::vector<EffectSetting>& start : starts) {
+      std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
+      if (!instead || !refutation(problem, *instead).empty()) continue;
+      scores.push_back(score_of(problem, instead->fit));
+      if (scores.back() <= highest) continue;
+      highest = scores.back();
+      best = std::move(instead);
+    }
   }
   if (!best) return false;
   const auto place = std::ranges::max_element(scores) - scores.begin();
@@ -422,7 +428,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
   selection.probabilities = softmax(scores_of(selection.library));
-  if (selection.library.front().score < held_out_score(problem, selection.baseline) + tuning::kDetectionGain) {
+  if (selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
     return selection;
   }
   Growth growth =

@@ -171,6 +171,27 @@ TEST(FitEffects, HeldOutBlocksAreNotFitted) {
   }
 }
 
+TEST(FitEffects, BlockWithoutWhichALimitIsUnknownIsPredicted) {
+  // One pulse alone reaches the stop. Without it the stop may be anywhere above the rest of the motion, and the block
+  // is predicted no worse than without a stop; along the slopes of the whole fit the stop would be moved anywhere.
+  const auto demand_m = [](double t) {
+    return 0.01 * std::sin(2.0 * std::numbers::pi * 0.9 * t) * (1.0 + 2.0 * std::exp(-std::pow(t - 6.4, 2)));
+  };
+  constexpr double kStop_m = 0.02;
+  Recording recording =
+      made_recording([&](double t) { return std::clamp(demand_m(t), -kStop_m, kStop_m); }, [](double) { return 0.0; });
+  std::vector<double>& command = recording.dofs[0].of(Channel::command_displacement);
+  for (std::size_t i = 0; i < command.size(); ++i) command[i] = demand_m(kSitePeriod_s * static_cast<double>(i));
+  const auto segments = segments_of(recording, 0, 0);
+  const auto problem = make_problem(made_model(), {segments.front()});
+  const FitOutcome fit = fit_effects(problem, {find_effect(transfer_system, "stroke_limit")}, false);
+  const FitOutcome nothing = fit_nothing(problem, false);
+  EXPECT_NEAR(fit.effects[0].values[0], kStop_m, 0.01 * kStop_m);
+  const double without = nothing.segments[0].mean_square;
+  EXPECT_LT(fit.segments[0].mean_square, 1e-3 * without);
+  EXPECT_LT(fit.segments[0].held_out_mean_square(problem.segments[0]), 1.01 * without);
+}
+
 TEST(FitEffects, RandomStretchesAreNotDetected) {
   const auto problem = problem_of(made_recording(made_motion_m, spring_n));
   const FitOutcome nothing = fit_nothing(problem, false);

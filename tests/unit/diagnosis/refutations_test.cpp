@@ -101,6 +101,21 @@ TEST(Refutation, IntervalThatHoldsNoEffect) {
   EXPECT_THAT(refutation(problem, fit_of(transfer_system, "bandwidth", {0.02, 0.1}, 0.02)), IsEmpty()) << "a shape";
 }
 
+TEST(Refutation, ShapeThatMakesUpForTheSizeIsHeld) {
+  // Of a tall column the load over the height is known to a hundredth, and each alone to a half.
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate column = fit_of(specimen, "geometric_stiffness", {1e5, 3.0});
+  column.fit.parameters[0][0].standard_error = column.fit.parameters[0][0].beside_wrong_numbers = 0.6e5;
+  column.fit.parameters[0][1].standard_error = column.fit.parameters[0][1].beside_wrong_numbers = 1.8;
+  const auto with_correlation = [&](double correlation) {
+    Candidate same = column;
+    same.fit.covariances[0] = Eigen::Matrix2d{{0.36e10, correlation * 1.08e5}, {correlation * 1.08e5, 3.24}};
+    return refutation(problem, same);
+  };
+  EXPECT_THAT(with_correlation(0.9999), IsEmpty());
+  EXPECT_THAT(with_correlation(0.0), HasSubstr("axial_force_n"));
+}
+
 TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   Candidate pair = fit_of(specimen, "viscous_damping", {100.0}, 40.0);
@@ -110,6 +125,20 @@ TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   EXPECT_THAT(refutation(problem, pair), IsEmpty());
   pair.type = find_effect(specimen, "inertia");
   EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
+}
+
+TEST(Refutation, EarlierEffectThatRestContradictsIsNeedless) {
+  // A bias that was needed before the damping was found: it does not speak against the damping, it goes.
+  const IdentificationProblem problem =
+      problem_of(made_recording(between_rests_m, [](double t) { return kMadeStiffness_n_per_m * between_rests_m(t); }));
+  Candidate pair = fit_of(force_sensor, "bias", {500.0});
+  pair.fit.effects.push_back({find_effect(specimen, "viscous_damping"), {100.0}});
+  pair.fit.parameters.push_back({{.value = 100.0, .standard_error = 1.0, .beside_wrong_numbers = 1.0}});
+  pair.fit.covariances.emplace_back(Eigen::MatrixXd::Constant(1, 1, 1.0));
+  pair.type = find_effect(specimen, "viscous_damping");
+  EXPECT_THAT(refutation(problem, pair), IsEmpty());
+  EXPECT_TRUE(is_needless(problem, pair.fit, 0));
+  EXPECT_FALSE(is_needless(problem, pair.fit, 1));
 }
 
 TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {

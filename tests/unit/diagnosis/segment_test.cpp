@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/identification/effect_fit.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -95,6 +96,33 @@ TEST(ModelledSegments, ConverterStepsAreSmoothed) {
   EXPECT_EQ(predict(coarse, smooth), predict(mass_only(), smooth));
   // Of an even error between half a step each way less than half is left.
   EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
+}
+
+TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {
+  // A transducer with noise, whose second derivative over windows that suit the displacement is mostly noise.
+  Random random{5};
+  const Recording recording = made_recording(
+      [&](double t) { return motion_m(t) + 2e-4 * random.normal(); },
+      [](double t) { return kMadeStiffness_n_per_m * motion_m(t) + 0.1 * kMass_kg * acceleration_m_per_s2(t); });
+  const auto segments = segments_to_search(made_model(), recording, 0, 0);
+  ASSERT_TRUE(of_force(segments).is_smoothed);
+  const FitOutcome fit = fit_effects(make_problem(made_model(), {of_force(segments)}),
+                                     {find_effect(EffectInterface::specimen, "inertia")}, false);
+  EXPECT_NEAR(fit.effects[0].values[0], 0.1 * kMass_kg, 0.02 * 0.1 * kMass_kg);
+}
+
+TEST(SegmentsToSearch, WithoutAMissingMassNothingIsSmoothed) {
+  const auto with_friction_n = [](double t) {
+    return 2e6 * motion_m(t) + 3e3 * std::tanh((motion_m(t + 1e-4) - motion_m(t - 1e-4)) / 2e-6);
+  };
+  for (const Recording& recording : {made_recording(motion_m, [](double t) { return 2e6 * motion_m(t); }),
+                                     made_recording(
+                                         motion_m, [](double t) { return 1.8e6 * motion_m(t); }, 0.0),
+                                     made_recording(motion_m, with_friction_n)}) {
+    for (const Segment& segment : segments_to_search(made_model(), recording, 0, 0)) {
+      EXPECT_EQ(segment.measured, recording.dofs[0].of(segment.to));
+    }
+  }
 }
 
 TEST(ModelledSegments, SpringIsJudgedByTheRecordedForce) {

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/verdict/causes.hpp"
+#include "mechanics/laws/bouc_wen.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+// What a candidate needs beside it is not known when it is fitted by itself.
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+
+constexpr double kDamping_n_s_per_m = 4.0e3;
+
+std::unique_ptr<Law> smooth_law(double strength) {
+  return std::make_unique<BoucWen>(BoucWen::Parameters{
+      .stiffness_n_per_m = strength * kMadeStiffness_n_per_m, .alpha = 0.1, .gamma_per_m = 30.0, .beta_per_m = 70.0});
+}
+
+TEST(Exchange, LawGivesWayToItsNumbersWhenDampingIsKnown) {
+  // A law in place of the model's own has more parameters, which also imitate the damping, and leads by itself.
+  SiteModel model = made_model();
+  model.make_law = [] { return smooth_law(1.0); };
+  const std::unique_ptr<Law> real = smooth_law(0.76);
+  const Recording recording = made_recording(made_motion_m, [&](double t) {
+    const double force_n = real->trial(made_motion_m(t), 0.0);
+    real->commit();
+    return force_n + kDamping_n_s_per_m * (made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4)) / 2e-4;
+  });
+  DiagnoseSettings settings;
+  settings.threads = 2;
+  const Diagnosis diagnosis = diagnose(model, {&recording, 1}, settings);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  bool has_damping = false;
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (!cause.is_cause) continue;
+    EXPECT_NE(cause.effect, "hysteresis_law");
+    if (cause.effect != "viscous_damping") continue;
+    has_damping = true;
+    // 20 N of noise on a velocity of 0.1 m/s, 6000 times: 3 N s/m; and the smoothing of the velocity.
+    EXPECT_NEAR(cause.parameters[0].value, kDamping_n_s_per_m, 0.02 * kDamping_n_s_per_m);
+  }
+  EXPECT_TRUE(has_damping);
+}
+
+report::RankedCause cause_with(const char* effect, double share, bool is_indistinguishable) {
+  report::RankedCause cause;
+  cause.effect = effect;
+  cause.share = share;
+  cause.is_cause = true;
+  cause.is_indistinguishable = is_indistinguishable;
+  return cause;
+}
+
+TEST(SettleSet, CertainCauseWithTheLargestShareIsNamed) {
+  report::DiagnosisReport report;
+  report.verdict = Verdict::set;
+  report.ranking = {cause_with("friction", 0.9, false), cause_with("gain", 0.1, true),
+                    cause_with("compliance", 0.0, true)};
+  settle_set(report);
+  EXPECT_EQ(report.verdict, Verdict::named);
+  EXPECT_TRUE(report.ranking[1].is_cause) << "it was chosen";
+  EXPECT_FALSE(report.ranking[2].is_cause);
+  EXPECT_TRUE(report.ranking[2].is_indistinguishable) << "still told as an alternative";
+}
+
+TEST(SettleSet, DoubtAboutTheLargestShareStaysASet) {  // control
+  report::DiagnosisReport report;
+  report.verdict = Verdict::set;
+  report.ranking = {cause_with("gain", 0.9, true), cause_with("friction", 0.1, false),
+                    cause_with("compliance", 0.0, true)};
+  settle_set(report);
+  EXPECT_EQ(report.verdict, Verdict::set);
+  EXPECT_TRUE(report.ranking[2].is_cause);
+}
+
+}  // namespace
+}  // namespace hybridtest
