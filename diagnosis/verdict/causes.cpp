@@ -44,15 +44,16 @@ double nats_that_decide(double probability) noexcept {
 
 namespace {
 
-/// The most probable candidates, until their sum of probabilities is large enough; and those of the same signature as
-/// the first one, with no more parameters, however rare they are.
+/// The most probable candidates, until their sum of probabilities is large enough; and, with no more parameters, those
+/// of the same signature as the first one and those that leave less, however rare they are.
 std::vector<std::size_t> credible(const Selection& selection, double probability) {
   const Candidate& first = selection.library.front();
   std::vector<std::size_t> members;
   double sum = 0.0;
   for (std::size_t i = 0; i < selection.library.size(); ++i) {
     const Candidate& candidate = selection.library[i];
-    const bool is_alike = candidate.parameters <= first.parameters && are_alike(first.fit, candidate.fit);
+    const bool is_alike = candidate.parameters <= first.parameters &&
+                          (candidate.held_out >= first.held_out || are_alike(first.fit, candidate.fit));
     if (i == 0 || sum < probability || is_alike) members.push_back(i);
     sum += selection.probabilities[i];
   }

@@ -243,7 +243,7 @@ bool exchange(const IdentificationProblem& problem, const Selection& selection, 
 
 /// Each chosen effect in turn.
 void settle_effects(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
-  for (std::size_t position = 0; position < growth.fit.effects.size() && growth.fit.effects.size() > 1; ++position) {
+  for (std::size_t position = 0; position < growth.fit.effects.size(); ++position) {
     exchange(problem, selection, position, growth);
   }
 }
@@ -278,7 +278,8 @@ void grow_further(const IdentificationProblem& problem, const IdentificationProb
 bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
             Growth& growth) {
   const std::size_t count = growth.fit.effects.size();
-  if (count < 2) return false;
+  // By itself an effect has been compared already, but for a law with what the numbers of the model's own may do.
+  if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
   settle_effects(coarse, selection, growth);
   prune(coarse, fit_nothing(coarse, false), growth.fit);
