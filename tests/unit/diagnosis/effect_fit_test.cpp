@@ -173,7 +173,7 @@ TEST(FitEffects, HeldOutBlocksAreNotFitted) {
 
 TEST(FitEffects, BlockWithoutWhichALimitIsUnknownIsPredicted) {
   // One pulse alone reaches the stop. Without it the stop may be anywhere above the rest of the motion, and the block
-  // is predicted no worse than without a stop; along the slopes of the whole fit the stop would be moved anywhere.
+  // is predicted no worse than without a stop.
   const auto demand_m = [](double t) {
     return 0.01 * std::sin(2.0 * std::numbers::pi * 0.9 * t) * (1.0 + 2.0 * std::exp(-std::pow(t - 6.4, 2)));
   };
