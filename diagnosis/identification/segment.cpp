@@ -324,10 +324,8 @@ std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& 
       segment, dof, [&](const Segment& tried) { return left_beside(model, segment.measured, tried, true); });
   if (!(best.value > 0.0)) return {};
   Segment smooth = smoothed_by(model, segment, dof, best.value);
-  double output = 0.0;
-  for (const double force_n : segment.measured) output += force_n * force_n;
-  output /= static_cast<double>(segment.measured.size());
-  const double floor = std::hypot(smooth.measured_noise, tuning::kModelAllowance * std::sqrt(output));
+  const double output = std::sqrt(mean_square(segment.measured));
+  const double floor = std::hypot(smooth.measured_noise, tuning::kModelAllowance * output);
   // Force and motion are smoothed alike, so that what smoothing takes off the one does not look like a mass.
   const double without = left_beside(model, smooth.measured, smooth, false);
   const double with = left_beside(model, smooth.measured, smooth, true);
