@@ -12,6 +12,7 @@
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/localisation/floor.hpp"
+#include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/tuning.hpp"
 #include "plant/effects/recorded_input.hpp"
 
@@ -313,6 +314,23 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, doub
   return level;
 }
 
+/// Share of a remainder of the displacement that the force goes with [variance, a lower limit]: that much is a motion
+/// that does not follow from the command, and the specimen answers it; noise of the readings it does not. By the
+/// coherence, so a spring, a damper and a mass answer alike. Hum that both channels have in common counts as motion.
+double share_answered(const Eigen::VectorXd& displacement, const Eigen::VectorXd& force, double period_s) {
+  const auto size = static_cast<std::size_t>(displacement.size());
+  if (force.size() != displacement.size() || size < tuning::kSamplesMin) return 0.0;
+  const Spectra spectra = welch({displacement.data(), size}, {force.data(), size}, period_s, welch_segment(size));
+  const double by_chance = 1.0 / static_cast<double>(spectra.averages);
+  double answered = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < spectra.input.size(); ++i) {
+    answered += spectra.input[i] * (spectra.coherence(i) - by_chance) / (1.0 - by_chance);
+    all += spectra.input[i];
+  }
+  return all > 0.0 && by_chance < 1.0 ? std::clamp(answered / all, 0.0, 1.0) : 0.0;
+}
+
 /// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
 void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   const ResidualParts parts = fit.discrepancy->parts(residual);
@@ -321,7 +339,9 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   // specimen's history, which features of the motion hold badly, and no noise.
   const bool is_noise = !fit.segment.is_quasi_static && parts.repeatable < parts.total - parts.repeatable;
   const double independent = independent_samples(parts.remainder);
-  const double deviation = is_noise ? noise_level(fit, parts.remainder, independent) : 0.0;
+  const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  double deviation = is_noise ? noise_level(fit, parts.remainder, independent) : 0.0;
+  deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));
   // What smoothing does to the prediction is no noise and comes on top.
   fit.floor = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
@@ -370,6 +390,20 @@ bool is_clear(const FitSegment& fit) {
   return root_mean_square(fit.measured - fit.baseline) > tuning::kNearFloor / fit.weight;
 }
 
+/// Beside every measured displacement the force that answers it. What of it follows from the command is taken off.
+void relate_to_forces(std::vector<FitSegment>& segments) {
+  for (FitSegment& fit : segments) {
+    if (fit.segment.to != Channel::measured_displacement || fit.segment.is_quasi_static) continue;
+    const auto answer = std::ranges::find_if(segments, [&](const FitSegment& other) {
+      return other.segment.recording == fit.segment.recording && other.segment.to == Channel::measured_force &&
+             other.measured.size() == fit.measured.size();
+    });
+    if (answer == segments.end()) continue;
+    fit.answering_force = fit.discrepancy->parts(answer->measured).remainder;
+    take_noise(fit, fit.measured - fit.baseline);
+  }
+}
+
 void mark_suspects(std::vector<FitSegment>& segments) {
   if (std::ranges::none_of(segments, is_clear)) return;
   for (FitSegment& fit : segments) fit.is_suspect = is_clear(fit);
@@ -393,6 +427,7 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
   for (Segment& segment : segments)
     problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));
+  relate_to_forces(problem.segments);
   mark_suspects(problem.segments);
   return problem;
 }

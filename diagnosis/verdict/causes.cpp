@@ -244,7 +244,8 @@ void add_gap(const IdentificationProblem& problem, const Selection& selection, c
              GapParts& parts) {
   if (judgement.verdict == Verdict::none) return;
   const double rest = gap_to_explain(problem, selection);
-  const double left = judgement.verdict == Verdict::unknown ? rest : judgement.gap_left * rest;
+  const bool is_all_left = judgement.verdict == Verdict::unknown && judgement.corrections.empty();
+  const double left = is_all_left ? rest : judgement.gap_left * rest;
   parts.left += left;
   parts.explained += std::max(0.0, rest - left);
 }
@@ -262,6 +263,8 @@ void settle_corrections(std::span<Judgement* const> judgements) {
       one->corrections.clear();
     } else if (one->verdict == Verdict::named || one->verdict == Verdict::set) {
       one->verdict = Verdict::none;
+    } else if (one->verdict == Verdict::partial) {
+      one->verdict = Verdict::unknown;
     }
   }
 }
