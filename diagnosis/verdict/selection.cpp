@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <typeinfo>
 
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
@@ -63,10 +64,10 @@ struct Typical {
   double explains = 0.0;  // of the whole gap where it acts
 };
 
-Typical typical(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+Typical typical(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
                 const Candidate& further) {
   const FitOutcome& with = further.fit;
-  const std::map<std::size_t, double> total = excess_of_recordings(problem, baseline, further.type);
+  const std::map<std::size_t, double> total = excess_of_recordings(problem, by_numbers, further.type);
   const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
   const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
   std::vector<double> leaves;
@@ -85,23 +86,38 @@ bool is_number(const IdentificationProblem& problem, const EffectType& type) {
 
 /// A further effect is accepted only if it improves the score on held-out blocks and explains enough. Wrong numbers of
 /// the model are expected: the score alone decides. Any other effect is also judged by the gap that it leaves and by
-/// the whole gap where it acts, unless it leaves hardly anything: even the right effect never has exactly the shape of
-/// the real one.
-bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& without,
+/// the whole gap where it acts that numbers do not explain, unless it leaves hardly anything: even the right effect
+/// never has exactly the shape of the real one, but a number has.
+bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
   if (gain <= decisive_gain(problem)) return false;
   if (is_number(problem, *with.type)) return true;
-  const Typical change = typical(problem, baseline, without, with);
+  const Typical change = typical(problem, by_numbers, without, with);
   const bool matters = change.explains > tuning::kAnotherEffectExplains || change.leaves < tuning::kSmallEffectLeaves;
   return change.leaves < tuning::kAnotherEffectLeaves && matters;
 }
 
+/// Damping beside the model's, where it acts: no model has all of it.
+std::vector<EffectSetting> further_damping(const IdentificationProblem& problem) {
+  const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
+  const bool acts = std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+    return fit.is_suspect && fit.segment.touched_by(*damping);
+  });
+  return acts ? std::vector<EffectSetting>{{.type = damping, .values = {1.0}}} : std::vector<EffectSetting>{};
+}
+
+/// The model with its numbers free, and further damping: what is left is for other effects.
+FitOutcome fit_numbers(const IdentificationProblem& problem) {
+  const std::vector<EffectSetting> damping = further_damping(problem);
+  return damping.empty() ? fit_nothing(problem, true) : refit_effects(problem, damping, true);
+}
+
 /// The best of `beside` that is accepted; null when there is none.
 /// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
-const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& baseline,
+const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& by_numbers,
                                   const FitOutcome& without, const std::vector<Candidate>& beside) {
-  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, baseline, without, candidate); };
+  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, by_numbers, without, candidate); };
   const auto best = std::ranges::find_if(beside, earns);
   if (best == beside.end()) return nullptr;
   const double before = gap_energy(problem, without).excess();
@@ -138,13 +154,13 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
 }
 
 /// Drops what the other effects can do without, the least needed first, and what is needless.
-void prune(const IdentificationProblem& problem, const FitOutcome& baseline, FitOutcome& fit) {
+void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
     std::optional<FitOutcome> best;
     for (std::size_t i = 0; i < fit.effects.size(); ++i) {
       FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
       const EffectType& type = *fit.effects[i].type;
-      if (!is_needless(problem, fit, i) && earns_its_place(problem, baseline, rest, {.type = &type, .fit = fit}))
+      if (!is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit}))
         continue;
       if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
     }
@@ -172,7 +188,7 @@ Growth with_its_numbers(const IdentificationProblem& problem, const Identificati
   for (std::size_t i = start.size(); i-- > candidate.fit.effects.size();) {
     FitOutcome rest = refit_effects(problem, without(together.effects, i), false);
     const Candidate with{.type = together.effects[i].type, .fit = together};
-    if (!earns_its_place(problem, selection.baseline, rest, with)) together = std::move(rest);
+    if (!earns_its_place(problem, selection.by_numbers, rest, with)) together = std::move(rest);
   }
   growth.fit = std::move(together);
   return growth;
@@ -210,20 +226,45 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
   return starts;
 }
 
+/// Whether a law that replaces the model's has the same form: it differs in its numbers alone.
+bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
+  if (!model.make_law) return false;
+  SiteModel replaced = model;
+  add_effect(replaced, replacement);
+  const std::unique_ptr<Law> law = law_of(replaced);
+  const std::unique_ptr<Law> own = model.make_law();
+  const Law& first = *law;
+  const Law& second = *own;
+  return typeid(first) == typeid(second);
+}
+
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
-/// judged without them. Of a law all laws and the numbers of the model's own are tried, and of everything the best few.
+/// judged without them. Of a law all laws and the numbers of the model's own are tried, and of everything the best few;
+/// but a number of the model's law stays a number, and does not become a law of the same form.
 /// @return whether another one is better by more than a parameter costs.
 bool exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
+  const std::vector<EffectSetting> damping = further_damping(problem);
+  const auto is_found = [&](const EffectType* type) {
+    return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
+  };
   std::vector<double> scores{score_of(problem, growth.fit)};
   std::optional<Candidate> best;
   double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
   std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
-    const bool is_of_law_too = is_law && (candidate.type->replacement != nullptr || is_of_law(*candidate.type));
+    const bool is_another_law = candidate.type->replacement != nullptr;
+    if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
+    const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
     if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
-    const std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
+    std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
+    // A law may have taken up damping that the model lacks.
+    const bool is_number_instead = is_law && is_of_law(*candidate.type);
+    if (is_number_instead && !starts.empty() && !damping.empty() && !is_found(damping.front().type)) {
+      starts.push_back(starts.back());
+      starts.back().push_back(damping.front());
+    }
     if (!is_of_law_too && !starts.empty()) ++others;
     for (const std::vector<EffectSetting>& start : starts) {
       std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
@@ -249,9 +290,9 @@ void settle_effects(const IdentificationProblem& problem, const Selection& selec
 }
 
 /// With the round's best, if it is accepted.
-std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& baseline, const Growth& from,
+std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& by_numbers, const Growth& from,
                             const std::vector<Candidate>& beside) {
-  const Candidate* const next = first_that_earns(problem, baseline, from.fit, beside);
+  const Candidate* const next = first_that_earns(problem, by_numbers, from.fit, beside);
   if (next == nullptr) return {};
   Growth growth = from;
   growth.fit = next->fit;
@@ -267,7 +308,7 @@ void grow_further(const IdentificationProblem& problem, const IdentificationProb
        growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
     const std::vector<Candidate> beside =
         fit_beside(problem, coarse, growth.fit.effects, threads, progress.round(round, tuning::kEffectsMax - 2));
-    std::optional<Growth> next = grown(problem, selection.baseline, growth, beside);
+    std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside);
     if (!next) break;
     growth = std::move(*next);
   }
@@ -282,7 +323,7 @@ bool settle(const IdentificationProblem& problem, const IdentificationProblem& c
   if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
   settle_effects(coarse, selection, growth);
-  prune(coarse, fit_nothing(coarse, false), growth.fit);
+  prune(coarse, fit_numbers(coarse), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   return growth.fit.effects.size() < count;
 }
@@ -313,7 +354,7 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
     if (!is_enough) {
       const std::vector<Candidate> beside =
           fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, count));
-      if (std::optional<Growth> pair = grown(problem, selection.baseline, leader, beside)) leader = std::move(*pair);
+      if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
     leaders.emplace(i, std::move(leader));
     if (i == 0 && is_enough) break;
@@ -428,6 +469,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   settle_noise(coarse, refit_effects(coarse, best.fit.effects, best.fit.with_nuisance));
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
+  selection.by_numbers = fit_numbers(problem);
   selection.probabilities = softmax(scores_of(selection.library));
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
     return selection;

@@ -16,6 +16,7 @@ struct AlikeLeader {
 /// The selected effects.
 struct Selection {
   FitOutcome baseline;                // the model as the user gave it
+  FitOutcome by_numbers;              // the model with its numbers free, and damping
   std::vector<Candidate> library;     // every effect and law by itself, best first
   FitOutcome chosen;                  // effects together; `effects` is empty if no effect is needed
   std::vector<double> probabilities;  // one per entry of `library`: that it is the first cause
