@@ -101,9 +101,8 @@ bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_
 /// Damping beside the model's, where it acts: no model has all of it.
 std::vector<EffectSetting> further_damping(const IdentificationProblem& problem) {
   const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
-  const bool acts = std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
-    return fit.is_suspect && fit.segment.touched_by(*damping);
-  });
+  const bool acts = std::ranges::any_of(
+      problem.segments, [&](const FitSegment& fit) { return fit.is_suspect && fit.segment.touched_by(*damping); });
   return acts ? std::vector<EffectSetting>{{.type = damping, .values = {1.0}}} : std::vector<EffectSetting>{};
 }
 
@@ -117,7 +116,9 @@ FitOutcome fit_numbers(const IdentificationProblem& problem) {
 /// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
 const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& by_numbers,
                                   const FitOutcome& without, const std::vector<Candidate>& beside) {
-  const auto earns = [&](const Candidate& candidate) { return earns_its_place(problem, by_numbers, without, candidate); };
+  const auto earns = [&](const Candidate& candidate) {
+    return earns_its_place(problem, by_numbers, without, candidate);
+  };
   const auto best = std::ranges::find_if(beside, earns);
   if (best == beside.end()) return nullptr;
   const double before = gap_energy(problem, without).excess();

@@ -8,8 +8,8 @@
 #include "diagnosis/identification/effect_fit.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
-/// Motion of the actuator that does not follow from its command. It looks like noise of the displacement transducer, but
-/// the specimen answers it.
+/// Motion of the actuator that does not follow from its command. It looks like noise of the displacement transducer,
+/// but the specimen answers it.
 namespace hybridtest {
 namespace {
 
@@ -80,9 +80,8 @@ TEST(HuntingServo, IsUnknownAtTheTransferSystem) {
 }
 
 TEST(HuntingServo, IsUnknownBesideANumberThatIsCorrected) {
-  const Diagnosis diagnosis = diagnosis_of(site_with(1.02, [](double, double moved_m) {
-    return 1.015 * kMadeStiffness_n_per_m * moved_m;
-  }));
+  const Diagnosis diagnosis =
+      diagnosis_of(site_with(1.02, [](double, double moved_m) { return 1.015 * kMadeStiffness_n_per_m * moved_m; }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "transfer_system"), Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "specimen"), std::nullopt);
