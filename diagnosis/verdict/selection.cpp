@@ -199,15 +199,17 @@ double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
   return held_out_score(problem, fit) + prior(problem, fit);
 }
 
+bool holds(const std::vector<EffectSetting>& effects, const EffectType* type) {
+  return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
+}
+
 /// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
 /// model that it needed. The numbers of a law that another law replaces go with it. None where the candidate is found
 /// already.
 std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem& problem,
                                                      const std::vector<EffectSetting>& effects, std::size_t position,
                                                      const Candidate& candidate) {
-  const auto is_found = [&](const EffectType* type) {
-    return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
-  };
+  const auto is_found = [&](const EffectType* type) { return holds(effects, type); };
   const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
   std::vector<EffectSetting> rest = without(effects, position);
   const bool law_stays = std::ranges::any_of(rest, is_law);
@@ -247,9 +249,6 @@ bool exchange(const IdentificationProblem& problem, const Selection& selection, 
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
   const std::vector<EffectSetting> damping = further_damping(problem);
-  const auto is_found = [&](const EffectType* type) {
-    return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
-  };
   std::vector<double> scores{score_of(problem, growth.fit)};
   std::optional<Candidate> best;
   double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
@@ -262,7 +261,7 @@ bool exchange(const IdentificationProblem& problem, const Selection& selection, 
     std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
     // A law may have taken up damping that the model lacks.
     const bool is_number_instead = is_law && is_of_law(*candidate.type);
-    if (is_number_instead && !starts.empty() && !damping.empty() && !is_found(damping.front().type)) {
+    if (is_number_instead && !starts.empty() && !damping.empty() && !holds(effects, damping.front().type)) {
       starts.push_back(starts.back());
       starts.back().push_back(damping.front());
     }
@@ -470,11 +469,11 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   settle_noise(coarse, refit_effects(coarse, best.fit.effects, best.fit.with_nuisance));
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
-  selection.by_numbers = fit_numbers(problem);
   selection.probabilities = softmax(scores_of(selection.library));
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
     return selection;
   }
+  selection.by_numbers = fit_numbers(problem);
   Growth growth =
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
