@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "diagnosis/tuning.hpp"
 #include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
@@ -165,7 +166,7 @@ inline constexpr std::array kRows{
         specimen, "relaxation", "time_constant_s", Scale::time_s, 0.005, 100.0, {.limit = SearchLimit::within_motion}},
     SearchRange{specimen, "inertia", "mass_kg", Scale::mass_kg, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen, "geometric_stiffness", "axial_force_n", Scale::force_n, -30.0, 30.0},
-    SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, 1.1, 30.0},
+    SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, tuning::kHeightOverStroke, 30.0},
     SearchRange{specimen, "fracture", "lost_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "fracture", "instant_s", Scale::duration_s, 0.02, 0.98},
     SearchRange{specimen, "force_with_input", "force_ratio_per_unit", Scale::one, -2.0, 2.0, {.per_input = true}},

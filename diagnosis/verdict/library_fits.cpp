@@ -270,6 +270,14 @@ bool is_of_law(const EffectType& effect) noexcept {
          (number == ModelNumber::stiffness || number == ModelNumber::strength);
 }
 
+EffectSetting absent(const EffectType& effect) {
+  EffectSetting setting{.type = &effect, .values = {}};
+  for (const EffectParameter& parameter : effect.parameters) {
+    setting.values.push_back(std::isnan(parameter.fallback) ? parameter.neutral : parameter.fallback);
+  }
+  return setting;
+}
+
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
   std::vector<EffectSetting> numbers;
   std::vector<double> found;
@@ -283,11 +291,7 @@ std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, c
     for (const EffectType* type : problem.segments[i].nuisance_types) {
       auto number = std::ranges::find(numbers, type, &EffectSetting::type);
       if (number == numbers.end()) {
-        EffectSetting setting{.type = type, .values = {}};
-        for (const EffectParameter& parameter : type->parameters) {
-          setting.values.push_back(std::isnan(parameter.fallback) ? parameter.neutral : parameter.fallback);
-        }
-        number = numbers.insert(numbers.end(), std::move(setting));
+        number = numbers.insert(numbers.end(), absent(*type));
         found.push_back(0.0);
       }
       // The parameter that is searched: of a stiffness the spring beside another one, or the ratio of a law's.

@@ -69,6 +69,9 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// 2021: e-values).
 [[nodiscard]] double decisive_gain(const IdentificationProblem& problem);
 
+/// An effect at values with which it changes nothing.
+[[nodiscard]] EffectSetting absent(const EffectType& effect);
+
 /// The wrong numbers of the model that a fit with nuisance parameters found at the suspect segments, as effects; of
 /// several recordings the mean. What it needs elsewhere is a matter of the channel there.
 [[nodiscard]] std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit);

@@ -98,18 +98,20 @@ bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_
   return change.leaves < tuning::kAnotherEffectLeaves && matters;
 }
 
-/// Damping beside the model's, where it acts: no model has all of it.
-std::vector<EffectSetting> further_damping(const IdentificationProblem& problem) {
-  const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
-  const bool acts = std::ranges::any_of(
-      problem.segments, [&](const FitSegment& fit) { return fit.is_suspect && fit.segment.touched_by(*damping); });
-  return acts ? std::vector<EffectSetting>{{.type = damping, .values = {1.0}}} : std::vector<EffectSetting>{};
+/// The numbers of the model that may be off, and damping, as effects that change nothing yet. Not among them: zeros,
+/// which are known exactly before a test, and effects that the model has.
+std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
+  std::vector<EffectSetting> numbers;
+  for (const EffectType* const type : judged_effects(problem)) {
+    if (!is_number(problem, *type) || type->traits.number == ModelNumber::offset) continue;
+    if (place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
+  }
+  return numbers;
 }
 
-/// The model with its numbers free, and further damping: what is left is for other effects.
-FitOutcome fit_numbers(const IdentificationProblem& problem) {
-  const std::vector<EffectSetting> damping = further_damping(problem);
-  return damping.empty() ? fit_nothing(problem, true) : refit_effects(problem, damping, true);
+/// The model with its numbers free, and damping: what is left is for other effects.
+FitOutcome fit_numbers(const IdentificationProblem& problem, const IdentificationProblem& coarse) {
+  return refit_effects(problem, search_effects(coarse, numbers_of(coarse), false).effects, false);
 }
 
 /// The best of `beside` that is accepted; null when there is none.
@@ -135,6 +137,14 @@ struct Accepted {
   const EffectType* type = nullptr;
   double probability = 1.0;
 };
+
+double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
+  return held_out_score(problem, fit) + prior(problem, fit);
+}
+
+bool holds(const std::vector<EffectSetting>& effects, const EffectType* type) {
+  return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
+}
 
 /// Effects accepted so far, fitted together.
 struct Growth {
@@ -195,14 +205,6 @@ Growth with_its_numbers(const IdentificationProblem& problem, const Identificati
   return growth;
 }
 
-double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
-  return held_out_score(problem, fit) + prior(problem, fit);
-}
-
-bool holds(const std::vector<EffectSetting>& effects, const EffectType* type) {
-  return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
-}
-
 /// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
 /// model that it needed. The numbers of a law that another law replaces go with it. None where the candidate is found
 /// already.
@@ -242,38 +244,46 @@ bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
 }
 
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
-/// judged without them. Of a law all laws and the numbers of the model's own are tried, and of everything the best few;
-/// but a number of the model's law stays a number, and does not become a law of the same form.
+/// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
+/// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
+/// become a law of the same form. A number of the model is expected to be off: an effect that is none has to be
+/// decidedly better.
 /// @return whether another one is better by more than a parameter costs.
 bool exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
-  const std::vector<EffectSetting> damping = further_damping(problem);
-  std::vector<double> scores{score_of(problem, growth.fit)};
+  const auto expected = [&](const EffectType& type) { return is_number(problem, type) ? decisive_gain(problem) : 0.0; };
+  std::vector<double> scores{score_of(problem, growth.fit) + expected(*effects[position].type)};
   std::optional<Candidate> best;
   double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
+  const auto compare = [&](std::optional<Candidate> instead) {
+    if (!instead) return;
+    scores.push_back(score_of(problem, instead->fit) + expected(*instead->type));
+    if (scores.back() <= highest) return;
+    highest = scores.back();
+    best = std::move(instead);
+  };
   std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
     const bool is_another_law = candidate.type->replacement != nullptr;
     if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
     const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
     if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
-    std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
-    // A law may have taken up damping that the model lacks.
-    const bool is_number_instead = is_law && is_of_law(*candidate.type);
-    if (is_number_instead && !starts.empty() && !damping.empty() && !holds(effects, damping.front().type)) {
-      starts.push_back(starts.back());
-      starts.back().push_back(damping.front());
-    }
+    const std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
     if (!is_of_law_too && !starts.empty()) ++others;
     for (const std::vector<EffectSetting>& start : starts) {
       std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
-      if (!instead || !refutation(problem, *instead).empty()) continue;
-      scores.push_back(score_of(problem, instead->fit));
-      if (scores.back() <= highest) continue;
-      highest = scores.back();
-      best = std::move(instead);
+      if (instead && refutation(problem, *instead).empty()) compare(std::move(instead));
     }
+  }
+  // Which of the numbers are needed is asked at the end.
+  if (is_law) {
+    std::vector<EffectSetting> start = without(effects, position);
+    for (const EffectSetting& number : numbers_of(problem)) {
+      if (!holds(start, number.type)) start.push_back(number);
+    }
+    const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
+    if (holds(start, stiffness)) compare(fit_together(problem, stiffness, start, refit_effects));
   }
   if (!best) return false;
   const auto place = std::ranges::max_element(scores) - scores.begin();
@@ -323,7 +333,7 @@ bool settle(const IdentificationProblem& problem, const IdentificationProblem& c
   if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
   settle_effects(coarse, selection, growth);
-  prune(coarse, fit_numbers(coarse), growth.fit);
+  prune(coarse, refit_effects(coarse, selection.by_numbers.effects, false), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   return growth.fit.effects.size() < count;
 }
@@ -341,25 +351,90 @@ bool may_lead(const IdentificationProblem& problem, const Selection& selection, 
              gap_energy(problem, first.fit).excess();
 }
 
+/// A leading candidate, at its position in the library.
+struct Leader {
+  std::size_t position = 0;
+  Growth growth;
+};
+
+/// The numbers of the model in the library, where none of them shows by itself that it is off.
+void add_numbers(Selection& selection) {
+  const FitOutcome& numbers = selection.by_numbers;
+  const bool is_there = std::ranges::any_of(
+      selection.library, [&](const Candidate& candidate) { return holds(numbers.effects, candidate.type); });
+  if (is_there || numbers.effects.empty()) return;
+  selection.library.push_back({.type = numbers.effects.front().type,
+                               .fit = numbers,
+                               .parameters = static_cast<double>(numbers.effects.size())});
+}
+
+/// The numbers of the model that are needed, if nothing is left beside them, or else all: beside another effect others
+/// may be needed. At the position of the one that explains most by itself; nothing where they do not explain anything.
+std::optional<Leader> leader_of_numbers(const IdentificationProblem& problem, const Selection& selection) {
+  const FitOutcome& all = selection.by_numbers;
+  const auto first = std::ranges::find_if(
+      selection.library, [&](const Candidate& candidate) { return holds(all.effects, candidate.type); });
+  const double gain = held_out_score(problem, all) - held_out_score(problem, selection.baseline);
+  if (first == selection.library.end() || gain <= decisive_gain(problem)) return {};
+  FitOutcome needed = all;
+  prune(problem, all, needed);
+  const auto position = static_cast<std::size_t>(first - selection.library.begin());
+  return Leader{
+      position,
+      {gap_energy(problem, needed).is_clear() ? all : needed, {{first->type, selection.probabilities[position]}}}};
+}
+
+/// Candidates from which further effects are grown. The numbers of the model come first: they are expected to be off.
+/// Where nothing is left beside them, an effect that explains the same has to be decidedly better.
+std::vector<Leader> leaders_of(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                               const Selection& selection) {
+  std::vector<Leader> leaders;
+  const auto is_enough = [&](const Leader& leader) { return !gap_energy(problem, leader.growth.fit).is_clear(); };
+  if (std::optional<Leader> numbers = leader_of_numbers(problem, selection)) {
+    const bool is_first = score_of(problem, numbers->growth.fit) + decisive_gain(problem) > selection.library[0].score;
+    leaders.push_back(std::move(*numbers));
+    if (is_first && is_enough(leaders.front())) return leaders;
+  }
+  const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
+  for (std::size_t i = 0; i < count && leaders.size() < tuning::kLeadersPaired; ++i) {
+    if (!may_lead(problem, selection, i) || (!leaders.empty() && leaders.front().position == i)) continue;
+    leaders.push_back({i, with_its_numbers(problem, coarse, selection, i)});
+    if (i == 0 && is_enough(leaders.back())) break;
+  }
+  return leaders;
+}
+
+/// Where what a leader found stands in the library: an effect that was found beside numbers of the model is that effect
+/// with its numbers, and is put first.
+std::size_t place_of_found(const IdentificationProblem& problem, const Selection& selection, Leader& leader) {
+  std::vector<Accepted>& accepted = leader.growth.accepted;
+  if (accepted.size() < 2 || !is_number(problem, *accepted.front().type) || is_number(problem, *accepted.back().type)) {
+    return leader.position;
+  }
+  const auto found = std::ranges::find(selection.library, accepted.back().type, &Candidate::type);
+  if (found == selection.library.end()) return leader.position;
+  std::swap(accepted.front(), accepted.back());
+  return static_cast<std::size_t>(found - selection.library.begin());
+}
+
 /// The leading candidates, each with the further effect that it needs most; by their positions in the library.
 std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                            const Selection& selection, std::size_t threads,
                                            const PartProgress& progress) {
-  std::map<std::size_t, Growth> leaders;
-  const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!may_lead(problem, selection, i)) continue;
-    Growth leader = with_its_numbers(problem, coarse, selection, i);
-    const bool is_enough = !gap_energy(problem, leader.fit).is_clear();
-    if (!is_enough) {
+  std::map<std::size_t, Growth> grown_leaders;
+  std::vector<Leader> leaders = leaders_of(problem, coarse, selection);
+  for (std::size_t i = 0; i < leaders.size(); ++i) {
+    Growth& leader = leaders[i].growth;
+    if (gap_energy(problem, leader.fit).is_clear()) {
       const std::vector<Candidate> beside =
-          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, count));
+          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, leaders.size()));
       if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
-    leaders.emplace(i, std::move(leader));
-    if (i == 0 && is_enough) break;
+    const std::size_t position = place_of_found(problem, selection, leaders[i]);
+    const auto [place, is_new] = grown_leaders.try_emplace(position, leader);
+    if (!is_new && score_of(problem, leader.fit) > score_of(problem, place->second.fit)) place->second = leader;
   }
-  return leaders;
+  return grown_leaders;
 }
 
 /// Between effects that the recordings cannot tell apart, the score decides nothing.
@@ -375,10 +450,6 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
                   std::size_t threads, const PartProgress& progress) {
   std::map<std::size_t, Growth> leaders = grow_leaders(problem, coarse, selection, threads, progress);
   if (leaders.size() == 1) return std::move(leaders.begin()->second);
-  std::vector<double> scores = scores_of(selection.library);
-  for (const auto& [position, leader] : leaders) {
-    scores[position] = std::max(scores[position], score_of(problem, leader.fit));
-  }
   const auto by_score = [&](const auto& leader) { return score_of(problem, leader.second.fit); };
   auto best = std::ranges::max_element(leaders, {}, by_score);
   const auto is_alike = [&](const auto& leader) { return are_alike(best->second.fit, leader.second.fit); };
@@ -388,7 +459,13 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
     });
     if (of_stage != leaders.end()) best = of_stage;
   }
+  std::vector<double> scores = scores_of(selection.library);
   for (const auto& leader : leaders) {
+    // What stands beside the best, or beside which the best stands, is not in its place.
+    const bool is_instead = !holds(best->second.fit.effects, selection.library[leader.first].type) &&
+                            !holds(leader.second.fit.effects, selection.library[best->first].type);
+    if (leader.first != best->first && !is_instead) continue;
+    scores[leader.first] = std::max(scores[leader.first], by_score(leader));
     if (is_alike(leader)) selection.alike.push_back({leader.first, leader.second.fit});
   }
   selection.probabilities = softmax(std::move(scores));
@@ -467,13 +544,14 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   // The best may be a fit at the lower rate: one that came nowhere near, until the others were fitted again.
   settle_noise(problem, refit_effects(problem, best.fit.effects, best.fit.with_nuisance));
   settle_noise(coarse, refit_effects(coarse, best.fit.effects, best.fit.with_nuisance));
+  selection.by_numbers = fit_numbers(problem, coarse);
+  add_numbers(selection);
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
   selection.probabilities = softmax(scores_of(selection.library));
   if (selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
     return selection;
   }
-  selection.by_numbers = fit_numbers(problem);
   Growth growth =
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);

@@ -44,6 +44,16 @@ TEST(SearchTable, MissingRowIsFound) {  // control
             std::vector<std::string>{"specimen.coulomb_friction.friction_force_n"});
 }
 
+TEST(SearchTable, ColumnIsNoShorterThanTenDrifts) {
+  // With a drift of a tenth of its height, a column has collapsed.
+  const EffectType& column = *find_effect(EffectInterface::specimen, "geometric_stiffness");
+  const auto height = std::ranges::find(column.parameters, "height_m", &EffectParameter::name);
+  const SearchRange* const range = search_range(column, *height);
+  ASSERT_NE(range, nullptr);
+  EXPECT_EQ(range->scale, ParameterScale::displacement_m);
+  EXPECT_EQ(range->low, 10.0);
+}
+
 TEST(SearchTable, LeavesOutOnlySeedsInputsAndTheBoucWenExponent) {
   std::set<std::string> fixed;
   for (const EffectType& type : effect_library()) {

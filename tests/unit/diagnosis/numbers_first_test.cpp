@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+/// Numbers of the user's model are expected to be off, several at once, and are looked for together before anything
+/// else.
+namespace hybridtest {
+namespace {
+
+using report::Verdict;
+using testing::UnorderedElementsAre;
+
+constexpr double kYieldForce_n = 2.0e4;
+constexpr double kLargest_m = 0.028;
+
+std::unique_ptr<Law> yielding(double stiffness_ratio, double strength_ratio) {
+  return std::make_unique<Bilinear>(Bilinear::Parameters{.stiffness_n_per_m = stiffness_ratio * kMadeStiffness_n_per_m,
+                                                         .yield_force_n = strength_ratio * kYieldForce_n,
+                                                         .hardening_ratio = 0.07});
+}
+
+/// Softens by this share of its elastic force at the largest displacement.
+double cubic_n_per_m3(double share) { return -share * kMadeStiffness_n_per_m / (kLargest_m * kLargest_m); }
+
+struct Damped {
+  double damping_n_s_per_m = 0.0;
+  double softening = 0.0;
+};
+
+/// A specimen that yields, whose stiffness and strength are 3 % more than in the model, damped and with a cubic force
+/// that the model lacks.
+Diagnosis diagnosis_with(const Damped& beyond) {
+  SiteModel model = made_model();
+  model.make_law = [] { return yielding(1.0, 1.0); };
+  const std::unique_ptr<Law> real = yielding(1.03, 1.03);
+  const Recording recording = made_recording(made_motion_m, [&](double t) {
+    const double x_m = made_motion_m(t);
+    const double velocity_m_per_s = (made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4)) / 2e-4;
+    const double law_n = real->trial(x_m, 0.0);
+    real->commit();
+    return law_n + beyond.damping_n_s_per_m * velocity_m_per_s + cubic_n_per_m3(beyond.softening) * std::pow(x_m, 3);
+  });
+  DiagnoseSettings settings;
+  settings.threads = 2;
+  return diagnose(model, {&recording, 1}, settings);
+}
+
+std::vector<std::string> effects_in(const std::vector<report::RankedCause>& entries, bool causes_alone) {
+  std::vector<std::string> names;
+  for (const report::RankedCause& entry : entries) {
+    if (!causes_alone || entry.is_cause) names.push_back(entry.effect);
+  }
+  return names;
+}
+
+double first_parameter_of(const Diagnosis& diagnosis, std::string_view effect) {
+  const auto& ranking = diagnosis.report.ranking;
+  const auto found = std::ranges::find(ranking, effect, &report::RankedCause::effect);
+  return found == ranking.end() ? NAN : found->parameters.front().value;
+}
+
+class NumbersFirst : public testing::TestWithParam<Damped> {};
+
+TEST_P(NumbersFirst, CubicForceBesideALawThatIsOffIsNoOtherLaw) {
+  // By itself none of these numbers shows that it is off, and another law takes up all of it in part.
+  const Diagnosis diagnosis = diagnosis_with(GetParam());
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  EXPECT_THAT(effects_in(diagnosis.report.ranking, true), UnorderedElementsAre("cubic_stiffness", "viscous_damping"));
+  EXPECT_THAT(effects_in(diagnosis.report.corrections, false),
+              UnorderedElementsAre("stiffness_error", "strength_error"));
+  // Noise of 20 N over 6000 samples of a cubic force of some kilonewtons, and the smoothing of the force.
+  const double cubic = cubic_n_per_m3(GetParam().softening);
+  EXPECT_NEAR(first_parameter_of(diagnosis, "cubic_stiffness"), cubic, 0.02 * std::abs(cubic));
+  EXPECT_NEAR(first_parameter_of(diagnosis, "viscous_damping"), GetParam().damping_n_s_per_m,
+              0.02 * GetParam().damping_n_s_per_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(SlightAndStrong, NumbersFirst,
+                         testing::Values(Damped{.damping_n_s_per_m = 1.0e3, .softening = 0.05},
+                                         Damped{.damping_n_s_per_m = 4.0e3, .softening = 0.3}));
+
+TEST(NumbersFirstAlone, LawThatIsOffIsCorrected) {  // control: nothing else is found where nothing else is
+  const Diagnosis diagnosis = diagnosis_with({});
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
+  EXPECT_THAT(effects_in(diagnosis.report.corrections, false),
+              UnorderedElementsAre("stiffness_error", "strength_error"));
+}
+
+}  // namespace
+}  // namespace hybridtest
