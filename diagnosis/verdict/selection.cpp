@@ -406,11 +406,10 @@ std::vector<Leader> leaders_of(const IdentificationProblem& problem, const Ident
 
 /// Where what a leader found stands in the library: an effect that was found beside numbers of the model is that effect
 /// with its numbers, and is put first.
-std::size_t place_of_found(const IdentificationProblem& problem, const Selection& selection, Leader& leader) {
+std::size_t place_of_found(const Selection& selection, Leader& leader) {
   std::vector<Accepted>& accepted = leader.growth.accepted;
-  if (accepted.size() < 2 || !is_number(problem, *accepted.front().type) || is_number(problem, *accepted.back().type)) {
-    return leader.position;
-  }
+  const auto is_of_numbers = [&](const Accepted& one) { return holds(selection.by_numbers.effects, one.type); };
+  if (accepted.size() < 2 || !is_of_numbers(accepted.front()) || is_of_numbers(accepted.back())) return leader.position;
   const auto found = std::ranges::find(selection.library, accepted.back().type, &Candidate::type);
   if (found == selection.library.end()) return leader.position;
   std::swap(accepted.front(), accepted.back());
@@ -430,7 +429,7 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
           fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, leaders.size()));
       if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
-    const std::size_t position = place_of_found(problem, selection, leaders[i]);
+    const std::size_t position = place_of_found(selection, leaders[i]);
     const auto [place, is_new] = grown_leaders.try_emplace(position, leader);
     if (!is_new && score_of(problem, leader.fit) > score_of(problem, place->second.fit)) place->second = leader;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct Damped {
   double damping_n_s_per_m = 0.0;
   double softening = 0.0;
 };
+
+std::ostream& operator<<(std::ostream& out, const Damped& beyond) {
+  return out << beyond.damping_n_s_per_m << " N s/m, softens by " << beyond.softening;
+}
 
 /// A specimen that yields, whose stiffness and strength are 3 % more than in the model, damped and with a cubic force
 /// that the model lacks.
