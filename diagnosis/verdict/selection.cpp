@@ -396,7 +396,7 @@ std::vector<Leader> leaders_of(const IdentificationProblem& problem, const Ident
     if (is_first && is_enough(leaders.front())) return leaders;
   }
   const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
-  for (std::size_t i = 0; i < count && leaders.size() < tuning::kLeadersPaired; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     if (!may_lead(problem, selection, i) || (!leaders.empty() && leaders.front().position == i)) continue;
     leaders.push_back({i, with_its_numbers(problem, coarse, selection, i)});
     if (i == 0 && is_enough(leaders.back())) break;
