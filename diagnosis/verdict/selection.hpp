@@ -28,8 +28,9 @@ struct Selection {
   std::vector<double> shares;
 };
 
-/// Fits the library, selects the best effect and adds others as long as each removes a large part of the
-/// remaining gap on held-out blocks. Then drops each effect that the others can do without.
+/// Fits the numbers of the model together, and the library; starts from these numbers or from the best effects, and
+/// adds others as long as each removes a large part of the remaining gap on held-out blocks. Then drops each effect
+/// that the others can do without.
 ///
 /// A wrong number of the model that an effect needs beside it becomes a selected effect of its own. So the answer does
 /// not depend on the numbers that the user gave.
