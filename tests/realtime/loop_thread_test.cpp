@@ -21,7 +21,6 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr Duration kControlPeriod = microseconds{500};
 constexpr double kCommandAge_s = 1.0;  // longer than a shared machine pauses
 constexpr Step kEndless = 20000;
 

@@ -17,7 +17,6 @@ namespace hybridtest {
 namespace {
 
 constexpr int kPeriodsPerStep = 2;
-constexpr Duration kControlPeriod = std::chrono::microseconds{500};
 constexpr Duration kLease = std::chrono::seconds{10};  // longer than any stall of these tests
 constexpr Bilinear::Parameters kStorey{.stiffness_n_per_m = 4.0e6, .yield_force_n = 40.0e3, .hardening_ratio = 0.05};
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "recording/row_ring.hpp"
 
 namespace hybridtest {
+
+inline constexpr Duration kControlPeriod = std::chrono::microseconds{500};
 
 /// Sends one message to each of several queues.
 template <class Message, std::size_t count>

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "compensation/polynomial_displacement.hpp"
-#include "diagnosis/page/diagnosis_json.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -25,11 +24,7 @@ DiagnoseSettings one_thread() {
   return settings;
 }
 
-Diagnosis diagnosis_of(const Recording& recording, std::size_t threads = 1) {
-  DiagnoseSettings settings;
-  settings.threads = threads;
-  return diagnose(made_model(), {&recording, 1}, settings);
-}
+Diagnosis diagnosis_of(const Recording& recording) { return diagnose(made_model(), {&recording, 1}, one_thread()); }
 
 bool has_cause(const Diagnosis& diagnosis, std::string_view interface, std::string_view effect) {
   return std::ranges::any_of(diagnosis.report.ranking, [&](const report::RankedCause& cause) {
@@ -262,11 +257,6 @@ TEST(Diagnose, IsNeverSilentForTwoSeconds) {
   EXPECT_GT(reads, 1000);
   EXPECT_TRUE(is_repeated);
   EXPECT_LE(longest, std::chrono::seconds{2});
-}
-
-TEST(Diagnose, ResultIsIndependentOfThreadCount) {
-  const Recording recording = made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); });
-  EXPECT_EQ(diagnosis_json(diagnosis_of(recording, 1)), diagnosis_json(diagnosis_of(recording, 2)));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "validation/blind_batches/plant/plant.hpp"
 #include "validation/blind_batches/plant/signal_chain.hpp"
@@ -12,7 +11,6 @@
 namespace hybridtest::blind {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kRateHz = 1000.0;
 constexpr double kFinePeriodS = 1.0 / (kRateHz * static_cast<double>(kFineSteps));
 

@@ -1,0 +1,22 @@
+#include <gtest/gtest.h>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/page/diagnosis_json.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+// In a program of its own: the thread sanitizer then builds this test of the diagnosis alone.
+namespace hybridtest {
+namespace {
+
+TEST(Diagnose, ResultIsIndependentOfThreadCount) {
+  const Recording recording =
+      made_recording(made_motion_m, [](double t) { return 1.2 * kMadeStiffness_n_per_m * made_motion_m(t); });
+  DiagnoseSettings one_thread, two_threads;
+  one_thread.threads = 1;
+  two_threads.threads = 2;
+  EXPECT_EQ(diagnosis_json(diagnose(made_model(), {&recording, 1}, one_thread)),
+            diagnosis_json(diagnose(made_model(), {&recording, 1}, two_threads)));
+}
+
+}  // namespace
+}  // namespace hybridtest
