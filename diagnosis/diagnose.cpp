@@ -268,9 +268,20 @@ std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span
   return kept;
 }
 
+/// Whose settled noise held-out recordings have, too. Beside numbers of the model alone, whose form is right, what
+/// repeats in no function of the motion is noise. The form of an effect or of a law is never quite that of the
+/// specimen: beside one, what it misses would pass for noise, and only what the channels show counts.
+std::span<const FitSegment> with_the_same_noise(const IdentificationProblem& settled,
+                                                std::span<const EffectSetting> causes) {
+  const auto is_number = [](const EffectSetting& cause) { return cause.type->traits.number != ModelNumber::none; };
+  if (!std::ranges::all_of(causes, is_number)) return {};
+  return settled.segments;
+}
+
 /// Of each kind of segment that the causes act on.
 std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const EffectSetting> causes,
-                                    std::span<const Segment> segments, std::uint64_t seed) {
+                                    std::span<const Segment> segments, std::span<const FitSegment> fitted,
+                                    std::uint64_t seed) {
   std::map<std::pair<Channel, Channel>, std::vector<Segment>> kinds;
   for (const Segment& segment : segments) {
     const bool touched =
@@ -278,7 +289,7 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
     if (touched) kinds[{segment.from, segment.to}].push_back(segment);
   }
   std::vector<report::Shrink> result;
-  for (const auto& [channels, alike] : kinds) result.push_back(shrink_on(model, causes, alike, seed));
+  for (const auto& [channels, alike] : kinds) result.push_back(shrink_on(model, causes, alike, seed, fitted));
   return result;
 }
 
@@ -290,7 +301,9 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     // Beside the causes of the other stages, so that this one's own part is judged.
     const std::vector<EffectSetting> causes = causes_of(stages, {});
     const Verdict verdict = verdict_carried_over(
-        stage.judgement.verdict, shrinks(model, causes, at_suspects(stage.problem, held_out), seed), policy);
+        stage.judgement.verdict,
+        shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed),
+        policy);
     if (verdict == stage.judgement.verdict) continue;
     if (verdict == Verdict::partial) {
       notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
@@ -489,8 +502,11 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   }
   diagnosis.causes = causes_of(stages, traces);
   diagnosis.doubts = doubts_of(stages, traces);
+  const FitOutcome all_causes = fit_of_all(problem, stages);
+  settle_noise(problem, all_causes);
   if (!diagnosis.causes.empty()) {
-    report.interface_shrink = shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed);
+    report.interface_shrink = shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed,
+                                        with_the_same_noise(problem, diagnosis.causes));
     if (held_out.empty()) {
       report.notes.emplace_back(
           "No recording was held out: the gap that remains is measured on the fitted recordings.");
@@ -514,8 +530,6 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   put_causes_first(report.ranking);
   settle_set(report);
   report.corrections = corrections_of(stages);
-  const FitOutcome all_causes = fit_of_all(problem, stages);
-  settle_noise(problem, all_causes);
   report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
   add_traces(traces, parts, report.ranking);
   add_traces(traces, parts, report.where);

@@ -11,6 +11,7 @@
 #include "core/config_error.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/noise_spectrum.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/tuning.hpp"
@@ -311,6 +312,9 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, doub
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
   if (const auto cycles = floor_of_cycles({period_s, span_of(place_m), span_of(fit.measured), span_of(remainder)}))
     level = std::min(level, cycles->rms);
+  if (const auto fast = noise_by_spectrum(span_of(fit.measured), span_of(remainder), period_s)) {
+    level = std::min(level, *fast);
+  }
   return level;
 }
 

@@ -45,16 +45,18 @@ double nats_that_decide(double probability) noexcept {
 namespace {
 
 /// The most probable candidates, until their sum of probabilities is large enough; and, with no more parameters, those
-/// of the same signature as the first one and those that leave less, however rare they are.
+/// that leave less and those of the same signature that the recordings do not tell from the first one, however rare
+/// they are.
 std::vector<std::size_t> credible(const Selection& selection, double probability) {
   const Candidate& first = selection.library.front();
+  const double told = nats_that_decide(probability);
   std::vector<std::size_t> members;
   double sum = 0.0;
   for (std::size_t i = 0; i < selection.library.size(); ++i) {
     const Candidate& candidate = selection.library[i];
-    const bool is_alike = candidate.parameters <= first.parameters &&
-                          (candidate.held_out >= first.held_out || are_alike(first.fit, candidate.fit));
-    if (i == 0 || sum < probability || is_alike) members.push_back(i);
+    const double behind = first.held_out - candidate.held_out;
+    const bool is_untold = behind <= 0.0 || (behind <= told && are_alike(first.fit, candidate.fit));
+    if (i == 0 || sum < probability || (is_untold && candidate.parameters <= first.parameters)) members.push_back(i);
     sum += selection.probabilities[i];
   }
   return members;

@@ -49,12 +49,25 @@ std::vector<double> predicted_with(const SiteModel& model, std::span<const Effec
   return predicted;
 }
 
+/// Residual that a correct model leaves [standard deviation]. Coloured noise and hum show only in a residual, so that
+/// they are taken from the fitted segments.
+double floor_of(const SiteModel& model, const Segment& segment, std::span<const FitSegment> fitted) {
+  double energy = 0.0;
+  double alike = 0.0;
+  for (const FitSegment& fit : fitted) {
+    if (fit.segment.from != segment.from || fit.segment.to != segment.to) continue;
+    energy += fit.sample_floor * fit.sample_floor;
+    alike += 1.0;
+  }
+  return std::max(noise_floor(model, segment), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
+}
+
 void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,
-                std::vector<BlockEnergy>& blocks) {
+                std::span<const FitSegment> fitted, std::vector<BlockEnergy>& blocks) {
   const std::vector<double> before = predict(model, segment);
   const std::vector<double> after = predicted_with(model, causes, segment);
   const std::size_t n = segment.measured.size();
-  const double floor = noise_floor(model, segment);
+  const double floor = floor_of(model, segment, fitted);
   double output = 0.0;
   for (const double value : segment.measured) output += value * value / static_cast<double>(n);
   if (output <= 0.0) return;
@@ -88,12 +101,12 @@ report::Interval interval_of(const std::vector<BlockEnergy>& blocks, std::uint64
 }  // namespace
 
 report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> causes,
-                         std::span<const Segment> held_out, std::uint64_t seed) {
+                         std::span<const Segment> held_out, std::uint64_t seed, std::span<const FitSegment> fitted) {
   std::vector<BlockEnergy> blocks;
   for (const Segment& segment : held_out) {
     const bool touched =
         std::ranges::any_of(causes, [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
-    if (touched) add_blocks(model, causes, segment, blocks);
+    if (touched) add_blocks(model, causes, segment, fitted, blocks);
   }
   report::Shrink shrink;
   if (blocks.empty()) return shrink;

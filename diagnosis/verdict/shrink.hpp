@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/problem.hpp"
 #include "diagnosis/result/diagnosis_report.hpp"
 #include "diagnosis/verdict/policy.hpp"
 
@@ -12,8 +12,11 @@ namespace hybridtest {
 /// The gap at the interface of the first cause on held-out segments, before and after the causes are added to the
 /// model: sample by sample, in free simulation. The interval comes from a block bootstrap.
 /// @param held_out   all segments of the recordings to judge by; those that no cause changes are ignored.
+/// @param fitted     with settled noise: what it is there beside the fit, it is at least in held-out segments of the
+///                   same kind. Without any, noise is what the channels show of it.
 [[nodiscard]] report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> causes,
-                                       std::span<const Segment> held_out, std::uint64_t seed);
+                                       std::span<const Segment> held_out, std::uint64_t seed,
+                                       std::span<const FitSegment> fitted = {});
 
 /// The verdict after the check on held-out recordings. Causes that act there but certainly leave most of the gap are
 /// rejected, even if they fit the fitted recordings well. If they explain the gap of one channel, a new gap in another

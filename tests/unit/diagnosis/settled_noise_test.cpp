@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 
+#include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "mechanics/laws/bilinear.hpp"
@@ -85,10 +86,9 @@ double force_n(Law& law, const Beside& beside, double t, double strength) {
          beside.mass_kg * (t > 0.0 ? acceleration : 0.0);
 }
 
-/// The verdict on the model as it stands, of a specimen that is this much stronger, with noise of 200 N.
-report::Verdict verdict_on(const NamedLaw& law, const Beside& beside, const MadeNoise& noise, std::uint64_t draw,
-                           double strength = 1.0) {
-  const SiteModel model = model_of(law, beside);
+/// A specimen that is this much stronger than the law, read with noise of 200 N; without the command.
+Recording noisy_recording(const NamedLaw& law, const Beside& beside, const MadeNoise& noise, std::uint64_t draw,
+                          double strength = 1.0) {
   const std::unique_ptr<Law> real = law.make();
   Random random{5, draw};
   Recording recording = made_recording([](double t) { return made_motion_m(t); },
@@ -98,6 +98,14 @@ report::Verdict verdict_on(const NamedLaw& law, const Beside& beside, const Made
   for (std::size_t i = 0; i < read_n.size(); ++i) read_n[i] += noise_n[i];
   for (double& x : recording.dofs[0].of(Channel::measured_displacement)) x += 1e-5 * random.normal();
   recording.dofs[0].of(Channel::command_displacement).clear();
+  return recording;
+}
+
+/// The verdict on the model as it stands.
+report::Verdict verdict_on(const NamedLaw& law, const Beside& beside, const MadeNoise& noise, std::uint64_t draw,
+                           double strength = 1.0) {
+  const SiteModel model = model_of(law, beside);
+  const Recording recording = noisy_recording(law, beside, noise, draw, strength);
   IdentificationProblem problem = make_problem(model, modelled_segments(model, recording, 0, 0));
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
@@ -118,6 +126,22 @@ TEST(SettledNoise, RightModelIsNoneWithEveryLawAndSmoothing) {
     }
   }
   EXPECT_LE(wrong, 1);  // of 36; over 10 draws of each and an earthquake-like motion, 720, none was
+}
+
+TEST(SettledNoise, HeldOutRecordingHasColouredNoiseToo) {
+  const NamedLaw& bilinear = kLaws[1];
+  const Beside damping{6e3, 0.0};
+  constexpr MadeNoise kColoured{.correlation = 0.99};
+  std::array recordings{noisy_recording(bilinear, damping, kColoured, 1),
+                        noisy_recording(bilinear, damping, kColoured, 2)};
+  recordings[1].file = "held_out.csv";
+  recordings[1].role = RecordingRole::held_out;
+  const Diagnosis diagnosis = diagnose(model_of(bilinear, {}), recordings, {});
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  ASSERT_TRUE(diagnosis.report.interface_shrink.has_value());
+  const report::Shrink& left = *diagnosis.report.interface_shrink;
+  // Two estimates of one deviation, each from 12 s of noise that a hundred samples, 0.2 s, correlate: 1 / sqrt(60).
+  EXPECT_NEAR(left.nrmse_after, left.floor_nrmse, 0.25 * left.floor_nrmse);
 }
 
 /// Control. Friction beside damping is left out: while its amount is wrong, the widest smoothing seems the best one,
