@@ -32,7 +32,7 @@ void add_floor(std::span<const PossibleTest> of_noise, report::ResponseShrink& s
   const double after = square(shrink.nrmse_after);
   const double floor = energy_left(of_noise);
   shrink.floor_nrmse = std::sqrt(floor);
-  if (before > floor) shrink.explainable_fraction = (before - after) / (before - floor);
+  if (before > floor) shrink.explainable_fraction = std::min(1.0, (before - after) / (before - floor));
   if (before > 0.0) shrink.unknown_share = std::max(0.0, after - floor) / before;
 }
 

@@ -12,8 +12,10 @@
 namespace hybridtest {
 namespace {
 
-/// The output is no more than twice the remainder: nothing of the motion shows there.
-bool is_quiet(const Spectra& spectra, std::size_t line) { return spectra.input[line] <= 2.0 * spectra.output[line]; }
+/// At least half of the output's power is the remainder's: nothing of the motion shows there.
+bool is_quiet(const Spectra& spectra, std::size_t line) {
+  return spectra.input[line] - spectra.output[line] <= spectra.output[line];
+}
 
 /// Power spectral density over frequency of an autoregressive process of unit innovation, beside white noise.
 std::vector<double> shape_of(double correlation, double white, std::size_t lines) {
@@ -25,14 +27,15 @@ std::vector<double> shape_of(double correlation, double white, std::size_t lines
   return shape;
 }
 
-/// Hum stands out of the noise beside it.
+/// Hum stands above the median of its neighbours, as many on either side as the spectrum has averages, by what stands
+/// above a floor. With six independent averages white noise does so in 1 of 100 000 lines.
 bool is_hum(const std::vector<double>& density, std::size_t line) {
-  constexpr std::size_t kReach = 8;
-  const std::size_t begin = line - std::min(line, kReach);
+  const std::size_t begin = line - std::min(line, tuning::kSpectrumAverages);
+  const std::size_t end = std::min(density.size(), line + tuning::kSpectrumAverages + 1);
   std::vector<double> near(density.begin() + static_cast<std::ptrdiff_t>(begin),
-                           density.begin() + static_cast<std::ptrdiff_t>(std::min(density.size(), line + kReach + 1)));
+                           density.begin() + static_cast<std::ptrdiff_t>(end));
   std::ranges::nth_element(near, near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2));
-  return density[line] > 4.0 * near[near.size() / 2];
+  return density[line] > tuning::kNearFloor * tuning::kNearFloor * near[near.size() / 2];
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ struct Shrink {
   double changed_nrmse = 0.0;     // by how much the causes change the prediction
   double variance_removed = 0.0;  // 0 to 1
   std::optional<Interval> ci95{};
-  std::optional<double> explainable_fraction{};  // (E0 - E1) / (E0 - floor)
+  std::optional<double> explainable_fraction{};  // (E0 - E1) / (E0 - floor), at most 1
   double unknown_share = 0.0;                    // of the gap before: repeatable and unexplained
 };
 

@@ -278,14 +278,14 @@ std::string summary_of(const SiteDiagnosis& site) {
         fmt::format("    {:<22} {:>5.1f} % [{:>5.1f}, {:>5.1f}] {:>9.4f} {:>10.4f}\n", gap.interface, 100.0 * gap.share,
                     100.0 * gap.share_ci95.low, 100.0 * gap.share_ci95.high, gap.nrmse, gap.floor_nrmse);
   }
-  bool causes = true;
+  bool are_causes = true;
   for (const report::RankedCause& cause : report.ranking) {
-    if (&cause == &report.ranking.front() && cause.is_cause) text += "\n  causes\n";
-    if (causes && !cause.is_cause) {
-      text += "\n  also considered\n";
-      causes = false;
-    }
     if (!cause.is_cause && cause.probability < 1e-3 && !cause.is_indistinguishable) continue;
+    if (&cause == &report.ranking.front() && cause.is_cause) text += "\n  causes\n";
+    if (are_causes && !cause.is_cause) {
+      text += "\n  also considered\n";
+      are_causes = false;
+    }
     text += fmt::format("    {}: {}{}, probability {:.3f}\n", cause.interface, cause.effect, detail_of(cause),
                         cause.probability);
     if (cause.is_cause) text += parameters_in_words(cause);

@@ -118,7 +118,8 @@ report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> 
   shrink.changed_nrmse = std::sqrt(sum.changed / sum.samples);
   shrink.variance_removed = removed(sum);
   shrink.ci95 = interval_of(blocks, seed);
-  if (sum.before > sum.floor) shrink.explainable_fraction = (sum.before - sum.after) / (sum.before - sum.floor);
+  if (sum.before > sum.floor)
+    shrink.explainable_fraction = std::min(1.0, (sum.before - sum.after) / (sum.before - sum.floor));
   if (sum.before > 0.0) shrink.unknown_share = std::max(0.0, sum.after - sum.floor) / sum.before;
   return shrink;
 }

@@ -7,6 +7,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "mechanics/laws/bouc_wen.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 // What a candidate needs beside it is not known when it is fitted by itself.
@@ -20,16 +21,6 @@ constexpr double kDamping_n_s_per_m = 4.0e3;
 std::unique_ptr<Law> smooth_law(double strength) {
   return std::make_unique<BoucWen>(BoucWen::Parameters{
       .stiffness_n_per_m = strength * kMadeStiffness_n_per_m, .alpha = 0.1, .gamma_per_m = 30.0, .beta_per_m = 70.0});
-}
-
-double velocity_m_per_s(double t) { return (made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4)) / 2e-4; }
-
-std::vector<std::string> causes_of(const Diagnosis& diagnosis) {
-  std::vector<std::string> causes;
-  for (const report::RankedCause& cause : diagnosis.report.ranking) {
-    if (cause.is_cause) causes.push_back(cause.effect);
-  }
-  return causes;
 }
 
 Diagnosis diagnosis_with(const SiteModel& model, const std::function<double(double)>& force_n) {
@@ -47,7 +38,7 @@ TEST(Exchange, LawGivesWayToItsNumbersWhenDampingIsKnown) {
   const Diagnosis diagnosis = diagnosis_with(model, [&](double t) {
     const double force_n = real->trial(made_motion_m(t), 0.0);
     real->commit();
-    return force_n + kDamping_n_s_per_m * velocity_m_per_s(t);
+    return force_n + kDamping_n_s_per_m * made_velocity_m_per_s(t);
   });
   EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
   bool has_damping = false;
@@ -70,7 +61,7 @@ TEST(Exchange, LawOfTheSameFormGivesWayToAStrengthAndDampingThatIsSlight) {
   const Diagnosis diagnosis = diagnosis_with(model, [&](double t) {
     const double force_n = real->trial(made_motion_m(t), 0.0);
     real->commit();
-    return force_n + 0.1 * kDamping_n_s_per_m * velocity_m_per_s(t);
+    return force_n + 0.1 * kDamping_n_s_per_m * made_velocity_m_per_s(t);
   });
   EXPECT_THAT(causes_of(diagnosis), testing::ElementsAre("viscous_damping"));
   EXPECT_FALSE(diagnosis.report.corrections.empty());

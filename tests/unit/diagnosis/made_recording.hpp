@@ -23,6 +23,11 @@ inline double made_motion_m(double time_s) {
                    0.008 * std::sin(2.0 * std::numbers::pi * 2.3 * time_s));
 }
 
+inline double made_velocity_m_per_s(double time_s) {
+  constexpr double kStep_s = 1e-5;
+  return (made_motion_m(time_s + kStep_s) - made_motion_m(time_s - kStep_s)) / (2.0 * kStep_s);
+}
+
 /// 12 s of a site whose transducer reads `measured_m(t)` and whose load cell `force_n(t)`, with noise.
 inline Recording made_recording(const std::function<double(double)>& measured_m,
                                 const std::function<double(double)>& force_n, double force_noise_n = 20.0,

@@ -10,6 +10,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "mechanics/laws/bilinear.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Numbers of the user's model are expected to be off, several at once, and are looked for together before anything
@@ -49,22 +50,14 @@ Diagnosis diagnosis_with(const Damped& beyond) {
   const std::unique_ptr<Law> real = yielding(1.03, 1.03);
   const Recording recording = made_recording(made_motion_m, [&](double t) {
     const double x_m = made_motion_m(t);
-    const double velocity_m_per_s = (made_motion_m(t + 1e-4) - made_motion_m(t - 1e-4)) / 2e-4;
     const double law_n = real->trial(x_m, 0.0);
     real->commit();
-    return law_n + beyond.damping_n_s_per_m * velocity_m_per_s + cubic_n_per_m3(beyond.softening) * std::pow(x_m, 3);
+    return law_n + beyond.damping_n_s_per_m * made_velocity_m_per_s(t) +
+           cubic_n_per_m3(beyond.softening) * std::pow(x_m, 3);
   });
   DiagnoseSettings settings;
   settings.threads = 2;
   return diagnose(model, {&recording, 1}, settings);
-}
-
-std::vector<std::string> effects_in(const std::vector<report::RankedCause>& entries, bool causes_alone) {
-  std::vector<std::string> names;
-  for (const report::RankedCause& entry : entries) {
-    if (!causes_alone || entry.is_cause) names.push_back(entry.effect);
-  }
-  return names;
 }
 
 double first_parameter_of(const Diagnosis& diagnosis, std::string_view effect) {
@@ -79,9 +72,8 @@ TEST_P(NumbersFirst, CubicForceBesideALawThatIsOffIsNoOtherLaw) {
   // By itself none of these numbers shows that it is off, and another law takes up all of it in part.
   const Diagnosis diagnosis = diagnosis_with(GetParam());
   EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
-  EXPECT_THAT(effects_in(diagnosis.report.ranking, true), UnorderedElementsAre("cubic_stiffness", "viscous_damping"));
-  EXPECT_THAT(effects_in(diagnosis.report.corrections, false),
-              UnorderedElementsAre("stiffness_error", "strength_error"));
+  EXPECT_THAT(causes_of(diagnosis), UnorderedElementsAre("cubic_stiffness", "viscous_damping"));
+  EXPECT_THAT(effects_of(diagnosis.report.corrections), UnorderedElementsAre("stiffness_error", "strength_error"));
   // Noise of 20 N over 6000 samples of a cubic force of some kilonewtons, and the smoothing of the force.
   const double cubic = cubic_n_per_m3(GetParam().softening);
   EXPECT_NEAR(first_parameter_of(diagnosis, "cubic_stiffness"), cubic, 0.02 * std::abs(cubic));
@@ -96,8 +88,7 @@ INSTANTIATE_TEST_SUITE_P(SlightAndStrong, NumbersFirst,
 TEST(NumbersFirstAlone, LawThatIsOffIsCorrected) {  // control: nothing else is found where nothing else is
   const Diagnosis diagnosis = diagnosis_with({});
   EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
-  EXPECT_THAT(effects_in(diagnosis.report.corrections, false),
-              UnorderedElementsAre("stiffness_error", "strength_error"));
+  EXPECT_THAT(effects_of(diagnosis.report.corrections), UnorderedElementsAre("stiffness_error", "strength_error"));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/replay.hpp"
 #include "mechanics/laws/presliding_element.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -27,8 +28,6 @@ using report::Verdict;
 using testing::HasSubstr;
 
 constexpr double kPresliding_m = 1e-4;
-
-double velocity_m_per_s(double time_s) { return (made_motion_m(time_s + 1e-5) - made_motion_m(time_s - 1e-5)) / 2e-5; }
 
 /// From 0.5 A to 1.5 A and back, not in step with the motion.
 double current_a(double time_s) { return 1.0 - 0.5 * std::cos(2.0 * std::numbers::pi * time_s / 5.3); }
@@ -71,15 +70,6 @@ SiteModel model_with_friction(double friction_force_n) {
   return model;
 }
 
-std::vector<std::string> causes_of(const Diagnosis& diagnosis) {
-  std::vector<std::string> causes;
-  for (const report::RankedCause& cause : diagnosis.report.ranking) {
-    if (cause.is_cause) causes.push_back(cause.effect + (cause.input.empty() ? "" : ":" + cause.input));
-  }
-  std::ranges::sort(causes);
-  return causes;
-}
-
 const report::RankedCause& cause_named(const Diagnosis& diagnosis, std::string_view effect) {
   const auto& ranking = diagnosis.report.ranking;
   const auto found = std::ranges::find(ranking, effect, &report::RankedCause::effect);
@@ -117,7 +107,7 @@ TEST(RecordedInput, FrictionThatTheModelLacksIsTwoCauses) {
 
 TEST(RecordedInput, DampingThatGrowsWithCurrentIsNamed) {
   const Recording recording =
-      recording_of([](double t, double, double u) { return 4.0e4 * (u - 0.5) * velocity_m_per_s(t); });
+      recording_of([](double t, double, double u) { return 4.0e4 * (u - 0.5) * made_velocity_m_per_s(t); });
   const Diagnosis diagnosis = diagnose(made_model(), {&recording, 1}, {});
   EXPECT_EQ(diagnosis.report.verdict, Verdict::named) << report::verdict_sentence(diagnosis.report);
   EXPECT_EQ(causes_of(diagnosis), std::vector<std::string>{"damping_with_input:current_a"});
@@ -181,14 +171,14 @@ TEST(RecordedInput, NothingIsNamedWhereTheModelIsRight) {
 /// A test with two inputs, of which one acts.
 TEST(RecordedInput, TheRightOneOfTwoInputsIsNamed) {
   Recording recording =
-      recording_of([](double t, double, double u) { return 4.0e4 * (u - 0.5) * velocity_m_per_s(t); });
+      recording_of([](double t, double, double u) { return 4.0e4 * (u - 0.5) * made_velocity_m_per_s(t); });
   recording.inputs.push_back({"temperature_c", switched(7, recording.samples)});
   const Diagnosis diagnosis = diagnose(made_model(), {&recording, 1}, {});
   EXPECT_EQ(causes_of(diagnosis), std::vector<std::string>{"damping_with_input:current_a"});
 }
 
 TEST(RecordedInput, ConstantOneIsNotSearchedAndANoteSaysSo) {
-  Recording recording = recording_of([](double t, double, double) { return 3.0e4 * velocity_m_per_s(t); });
+  Recording recording = recording_of([](double t, double, double) { return 3.0e4 * made_velocity_m_per_s(t); });
   recording.inputs.front().samples.assign(recording.samples, 2.0);
   recording.inputs.front().samples.front() = 0.0;  // switched on with the recording
   const Diagnosis diagnosis = diagnose(made_model(), {&recording, 1}, {});
@@ -200,7 +190,7 @@ TEST(RecordedInput, TwoTestsAtConstantCurrentsShowWhatItDoes) {
   std::vector<Recording> recordings;
   for (const double current : {0.0, 1.0}) {
     recordings.push_back(
-        recording_of([current](double t, double, double) { return 3.0e4 * current * velocity_m_per_s(t); }));
+        recording_of([current](double t, double, double) { return 3.0e4 * current * made_velocity_m_per_s(t); }));
     recordings.back().file = fmt::format("{}A.csv", current);
     recordings.back().inputs.front().samples.assign(recordings.back().samples, current);
   }
@@ -215,7 +205,7 @@ TEST(RecordedInput, DamperWithAndWithoutCurrentHasBothCauses) {
   std::vector<Recording> recordings;
   for (const double current : {0.0, 1.0}) {
     recordings.push_back(recording_of([current](double t, double z, double) {
-      return (500.0 + 3000.0 * current) * z + 2.0e4 * current * velocity_m_per_s(t);
+      return (500.0 + 3000.0 * current) * z + 2.0e4 * current * made_velocity_m_per_s(t);
     }));
     recordings.back().file = fmt::format("{}A.csv", current);
     recordings.back().inputs.front().samples.assign(recordings.back().samples, current);
