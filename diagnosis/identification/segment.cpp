@@ -329,7 +329,9 @@ std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& 
   // Force and motion are smoothed alike, so that what smoothing takes off the one does not look like a mass.
   const double without = left_beside(model, smooth.measured, smooth, false);
   const double with = left_beside(model, smooth.measured, smooth, true);
-  const bool explains_a_gap = without > std::pow(tuning::kNearFloor * floor, 2) && with < tuning::kMainShare * without;
+  // Of a law with hysteresis, smoothing may take off as much as the gap.
+  const double unseen = std::max(floor, smooth.smoothing_error);
+  const bool explains_a_gap = without > std::pow(tuning::kNearFloor * unseen, 2) && with < tuning::kMainShare * without;
   return explains_a_gap ? std::optional{std::move(smooth)} : std::nullopt;
 }
 
