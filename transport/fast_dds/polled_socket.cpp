@@ -96,6 +96,11 @@ void PolledSocket::close() noexcept {
 bool PolledSocket::is_open_at(std::uint16_t port) const noexcept { return port != 0 && port_ == port; }
 
 void PolledSocket::receive() noexcept {
+  visits_.fetch_add(1, std::memory_order_relaxed);
+  read();
+}
+
+void PolledSocket::read() noexcept {
   const std::lock_guard lock{mutex_};
   for (int i = 0; i < kDatagramsAtOnce && socket_ >= 0; ++i) {
     sockaddr_in from{};
@@ -128,27 +133,29 @@ bool PolledSocket::await(Clock::time_point deadline) noexcept {
     std::uint64_t count = 0;
     static_cast<void>(!::read(interruption_, &count, sizeof(count)));
   }
-  awaits_.fetch_add(1, std::memory_order_relaxed);
+  visits_.fetch_add(1, std::memory_order_relaxed);
   is_awaited_.store(false, std::memory_order_relaxed);
   return in_time;
 }
 
 void PolledSocket::interrupt() noexcept { set(interruption_); }
 
-bool PolledSocket::is_someone_there(std::uint64_t& awaits_seen) const noexcept {
+bool PolledSocket::is_someone_there(std::uint64_t& visits_seen) const noexcept {
   if (is_awaited_.load(std::memory_order_relaxed)) return true;
-  return std::exchange(awaits_seen, awaits_.load(std::memory_order_relaxed)) != awaits_seen;
+  return std::exchange(visits_seen, visits_.load(std::memory_order_relaxed)) != visits_seen;
 }
 
 void PolledSocket::stand_in() noexcept {
-  std::uint64_t awaits_seen = 0;
+  std::uint64_t visits_seen = 0;
+  bool is_needed = false;
   const timespec absence = to_wait(kAbsence);
   while (true) {
-    const bool is_needed = !is_someone_there(awaits_seen);
     std::array<pollfd, 2> descriptors{pollfd{is_needed ? socket_.load() : -1, POLLIN, 0}, pollfd{end_, POLLIN, 0}};
     static_cast<void>(wait_for(descriptors, &absence));
     if ((descriptors[1].revents & POLLIN) != 0) return;
-    if ((descriptors[0].revents & POLLIN) != 0 && !is_awaited_.load(std::memory_order_relaxed)) receive();
+    // Who is back reads alone again, also while it is between two waits.
+    is_needed = !is_someone_there(visits_seen);
+    if (is_needed && (descriptors[0].revents & POLLIN) != 0) read();
   }
 }
 

@@ -23,7 +23,8 @@ class PolledSocket final : public Reception {
   /// Takes one datagram: its bytes, their number, and the sender's address and port, both in the order of the host.
   using Sink = std::function<void(const std::uint8_t*, std::uint32_t, std::uint32_t, std::uint16_t)>;
 
-  /// How long the waiting thread may be away before the other one stands in.
+  /// How long the waiting thread may be away before the other one stands in. Only then: what another thread reads may
+  /// have been sent after the instant that the waiting thread's node works with, and a latency would be negative.
   static constexpr Duration kAbsence = std::chrono::milliseconds{50};
 
   /// @param busy_poll    how long await() looks at the socket before it sleeps.
@@ -46,8 +47,9 @@ class PolledSocket final : public Reception {
   void interrupt() noexcept override;
 
  private:
+  void read() noexcept;
   void stand_in() noexcept;
-  [[nodiscard]] bool is_someone_there(std::uint64_t& awaits_seen) const noexcept;
+  [[nodiscard]] bool is_someone_there(std::uint64_t& visits_seen) const noexcept;
 
   const Duration busy_poll_;
   const std::function<void()> when_woken_;
@@ -59,7 +61,7 @@ class PolledSocket final : public Reception {
   Sink sink_;
   std::vector<std::uint8_t> datagram_;
   std::atomic<bool> is_awaited_{false};
-  std::atomic<std::uint64_t> awaits_{0};  // counts calls of await()
+  std::atomic<std::uint64_t> visits_{0};  // counts calls of await() and of receive()
   std::thread stand_in_;
 };
 

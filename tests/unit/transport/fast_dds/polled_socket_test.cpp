@@ -128,6 +128,32 @@ TEST(PolledSocket, StandsInAgainWhenTheWaitingThreadIsAway) {
   EXPECT_EQ(arrived, 2);
 }
 
+/// Otherwise it reads a message between two waits, later than the instant that the node works with.
+TEST(PolledSocket, StandsInNoMoreOnceTheWaitingThreadIsBack) {
+  for (const bool was_signalled : {false, true}) {
+    PolledSocket socket{Duration{0}};
+    Waker waker{&socket};
+    std::atomic<int> arrived{0};
+    std::atomic<Clock::time_point> at{};
+    const std::uint16_t port =
+        open_somewhere(socket, [&](const std::uint8_t*, std::uint32_t, std::uint32_t, std::uint16_t) {
+          at = Clock::now();
+          ++arrived;
+          arrived.notify_one();
+        });
+    ASSERT_NE(port, 0);
+    const Sender sender;
+    sender.send(port, "while it computes");
+    arrived.wait(0);
+    if (was_signalled) waker.signal();
+    const Clock::time_point back = Clock::now();
+    EXPECT_EQ(waker.wait_until(Clock::time_point{}), was_signalled);
+    sender.send(port, "after its wait");
+    arrived.wait(1);
+    EXPECT_GE(at.load() - back, PolledSocket::kAbsence) << "a wait that was signalled before: " << was_signalled;
+  }
+}
+
 TEST(PolledSocket, WaitWithPastDeadlineReceives) {
   PolledSocket socket{Duration{0}};
   Waker waker{&socket};
