@@ -17,6 +17,7 @@
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/experiments.hpp"
+#include "diagnosis/verdict/refutations.hpp"
 #include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/selection.hpp"
 #include "diagnosis/verdict/shrink.hpp"
@@ -420,6 +421,18 @@ void add_input_notes(const IdentificationProblem& problem, std::span<const Recor
   }
 }
 
+/// Why a cause is named in part, though little may be left.
+void add_doubt_notes(const Stage& stage, std::vector<std::string>& notes) {
+  if (stage.judgement.verdict != Verdict::partial) return;
+  const FitOutcome& chosen = stage.selection.chosen;
+  for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
+    if (stage.judgement.is_correction(i) || !may_be_absent(stage.problem, chosen, i)) continue;
+    const EffectType& effect = *chosen.effects[i].type;
+    notes.push_back(report::plain(effect.name) + " of the " + report::plain(name_of(effect.interface)) +
+                    ": its 95 % interval holds the value at which it is absent, so the answer is one in part.");
+  }
+}
+
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -521,6 +534,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     add_gap(stage.problem, stage.selection, stage.judgement, parts);
     explained.push_back(parts.explained - before);
     judgements.push_back(stage.judgement);
+    add_doubt_notes(stage, report.notes);
   }
   report.verdict = verdict_with(traces, verdict_of(judgements), parts);
   for (std::size_t i = 0; i < stages.size(); ++i) {

@@ -133,6 +133,11 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.may_be_set = false;
   }
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
+  // Nor is a name given to what may be absent by the interval that is reported with it.
+  for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+    if (judgement.is_correction(i) || !may_be_absent(problem, selection.chosen, i)) continue;
+    judgement.verdict = Verdict::partial;
+  }
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
   const EffectType* const cause = only_cause(problem, selection, judgement);
   if (cause == nullptr) return judgement;

@@ -291,6 +291,27 @@ double doubt_with_shape_held(const Eigen::MatrixXd& covariance, std::size_t para
   return 1.0 / std::sqrt(std::max(1.0, unit.dot(correlation.ldlt().solve(unit))));
 }
 
+/// The parameter whose interval holds the value at which the effect is absent: what the effect is proportional to, or
+/// its only parameter. Null when none does.
+/// @param half_of   half the interval of the parameter at a position.
+template <class HalfOf>
+const EffectParameter* absent_in_interval(const Suspect& suspect, HalfOf half_of) {
+  const EffectType& type = *suspect.effect.type;
+  // A parameter that may be left out and is, as the second pole of a lag, is none.
+  std::size_t free = 0;
+  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+    const bool is_left_out = suspect.estimates[i].value == left_out(suspect.problem, type, i);
+    if (!is_left_out && !is_fixed(suspect.problem, type, type.parameters[i])) ++free;
+  }
+  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+    const EffectParameter& parameter = type.parameters[i];
+    const bool can_be_absent = std::isfinite(parameter.neutral) && std::abs(parameter.neutral) < kUnbounded;
+    if (!can_be_absent || (free > 1 && !parameter.is_linear) || is_fixed(suspect.problem, type, parameter)) continue;
+    if (std::abs(suspect.estimates[i].value - parameter.neutral) <= half_of(i)) return &parameter;
+  }
+  return nullptr;
+}
+
 /// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter. Where
 /// it is absent its shape means nothing: a shape that makes up for the size says nothing of absence, and is held.
 /// What a model lacks besides other effects has to be seen in the interval that is reported, every
@@ -306,30 +327,23 @@ std::string absence_not_excluded(const Suspect& suspect) {
     }
     return fmt::format("{}: the intervals hold what it is in the model", suspect.name());
   }
-  // A parameter that may be left out and is, as the second pole of a lag, is none.
-  std::size_t free = 0;
-  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
-    const bool is_left_out = suspect.estimates[i].value == left_out(suspect.problem, type, i);
-    if (!is_left_out && !is_fixed(suspect.problem, type, type.parameters[i])) ++free;
-  }
-  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
-    const EffectParameter& parameter = suspect.effect.type->parameters[i];
-    const ParameterEstimate& estimate = suspect.estimates[i];
-    const bool can_be_absent = std::isfinite(parameter.neutral) && std::abs(parameter.neutral) < kUnbounded;
-    if (!can_be_absent || (free > 1 && !parameter.is_linear) ||
-        is_fixed(suspect.problem, *suspect.effect.type, parameter))
-      continue;
-    const double shape_held = doubt_with_shape_held(suspect.covariance(), i);
-    if (std::abs(estimate.value - parameter.neutral) > shape_held * half_width(estimate)) continue;
-    return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), parameter.name);
-  }
-  return {};
+  const EffectParameter* const absent = absent_in_interval(suspect, [&](std::size_t i) {
+    return doubt_with_shape_held(suspect.covariance(), i) * half_width(suspect.estimates[i]);
+  });
+  if (absent == nullptr) return {};
+  return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), absent->name);
 }
 
 }  // namespace
 
 bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   return slides_as_in_model(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});
+}
+
+bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const Suspect suspect{problem, fit, fit.effects[position], fit.parameters[position]};
+  if (place_of(problem.model, *suspect.effect.type) != nullptr) return false;
+  return absent_in_interval(suspect, [&](std::size_t i) { return half_interval_95(suspect.estimates[i]); }) != nullptr;
 }
 
 bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {

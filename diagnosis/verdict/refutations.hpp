@@ -14,6 +14,11 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] bool is_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
+/// Whether the interval that is reported (95 %) of what an effect is proportional to, or of its only parameter, holds
+/// the value at which it is absent, whatever its fit gains. Never of an effect that the model has.
+/// @param position   in the fit's effects.
+[[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
+
 /// Whether a friction that the model has slides no later than it does there. What the user calls a friction is one,
 /// however late it slides.
 /// @param position   in the fit's effects.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/verdict/causes.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -114,6 +115,39 @@ TEST(Refutation, ShapeThatMakesUpForTheSizeIsHeld) {
   };
   EXPECT_THAT(with_correlation(0.9999), IsEmpty());
   EXPECT_THAT(with_correlation(0.0), HasSubstr("axial_force_n"));
+}
+
+TEST(Refutation, IntervalThatIsReportedIsNotNarrowedByAShapeHeld) {
+  // The shape makes up for the size, so something is there; what is reported of the size alone holds none of it.
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate column = fit_of(specimen, "geometric_stiffness", {1e5, 3.0});
+  column.fit.covariances[0] = Eigen::Matrix2d{{0.36e10, 0.9999 * 1.08e5}, {0.9999 * 1.08e5, 3.24}};
+  for (ParameterEstimate& estimate : column.fit.parameters[0]) {
+    estimate.standard_error = estimate.beside_wrong_numbers = 0.6 * estimate.value;
+  }
+  EXPECT_THAT(refutation(problem, column), IsEmpty());
+  EXPECT_TRUE(may_be_absent(problem, column.fit, 0));
+  for (ParameterEstimate& estimate : column.fit.parameters[0]) estimate.beside_wrong_numbers = 0.4 * estimate.value;
+  EXPECT_FALSE(may_be_absent(problem, column.fit, 0));
+}
+
+TEST(Judge, GivesNoNameToWhatMayBeAbsentByItsInterval) {
+  const auto damped_n = [](double t) {
+    return spring_n(t) + 3e4 * (made_motion_m(t + 5e-4) - made_motion_m(t - 5e-4)) / 1e-3;
+  };
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, damped_n));
+  Candidate damping;
+  damping.type = find_effect(specimen, "viscous_damping");
+  damping.fit = fit_effects(problem, {damping.type}, false);
+  Selection selection;
+  selection.baseline = fit_nothing(problem, false);
+  selection.chosen = damping.fit;
+  selection.probabilities = {0.9};
+  selection.library.push_back(damping);
+  EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::named);
+  ParameterEstimate& estimate = selection.chosen.parameters[0][0];
+  estimate.beside_wrong_numbers = 0.6 * estimate.value;
+  EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::partial);
 }
 
 TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {

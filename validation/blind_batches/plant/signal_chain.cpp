@@ -187,21 +187,21 @@ Part flow_limit(double velocity_m_per_s, double period_s) {
 
 /// Seals hold the piston after each stop until the demand is `breakaway_m` ahead; then it catches up at a velocity
 /// that the pressure behind it gives, within milliseconds, and follows until the next reversal of the demand.
+/// The seals hold until the demand is the breakaway ahead. Then the actuator gains on the demand at a velocity until it
+/// has caught up, so it moves faster than the demand does.
 Part stuck(const PlantEffect& effect, double period_s) {
   const double breakaway_m = effect.of("breakaway_m");
-  const double reach_m = breakaway_m * kTwoPi * effect.of("catching_up_hz") * period_s;
-  return [breakaway_m, reach_m, is_stuck = true, has_caught_up = false, direction = 0.0, past = 0.0,
-          y = 0.0](double x) mutable {
+  const double gained_m = breakaway_m * kTwoPi * effect.of("catching_up_hz") * period_s;
+  return [breakaway_m, gained_m, is_stuck = true, direction = 0.0, past = 0.0, behind = 0.0](double x) mutable {
     const double step = x - std::exchange(past, x);
     if (!is_stuck && step * direction < 0.0) is_stuck = true;
-    if (is_stuck && std::abs(x - y) > breakaway_m) {
+    if (is_stuck) behind += step;
+    if (is_stuck && std::abs(behind) > breakaway_m) {
       is_stuck = false;
-      has_caught_up = false;
-      direction = x - y;
+      direction = behind;
     }
-    if (is_stuck) return y;
-    has_caught_up = has_caught_up || std::abs(x - y) <= reach_m;
-    return y = has_caught_up ? x : y + std::clamp(x - y, -reach_m, reach_m);
+    if (!is_stuck) behind -= std::clamp(behind, -gained_m, gained_m);
+    return x - behind;
   };
 }
 

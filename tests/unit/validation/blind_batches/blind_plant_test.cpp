@@ -141,6 +141,18 @@ TEST(Actuator, FrameReducesStrokeByStiffnessRatio) {
   for (std::size_t i = 50; i < x.size(); i += 50) EXPECT_NEAR(x[i], command[i] / 1.1, late_m);
 }
 
+TEST(Actuator, HeldBySealsItCatchesUpWithAFastDemand) {
+  const PlantEffects seals{{"transfer_system", "stiction", {{"breakaway_m", 0.001}, {"catching_up_hz", 10.0}}}};
+  const History ramp = samples_of([](double t) { return 0.1 * t; }, 0.1);
+  const History x = stage_output(Residual::transfer_system, elastic_site(), seals, ramp);
+  // 1 mm ahead after 10 ms, caught up 1 / (2 pi 10 Hz) = 16 ms later, though 1 mm in that time is less than the demand.
+  EXPECT_EQ(x[9], 0.0);
+  // It slips within one fine step of 10 ms.
+  EXPECT_NEAR(x[18], ramp[18] - 0.001 * (1.0 - 0.008 * kTwoPi * 10.0), 0.1001 * kFinePeriodS);
+  EXPECT_NEAR(x[27], ramp[27], 1e-12);
+  EXPECT_NEAR(x.back(), ramp.back(), 1e-12);
+}
+
 TEST(Compensator, IsExactForMotionsOfItsOrder) {
   Site site = elastic_site();
   site.compensator = {.order = 2, .delay_s = 0.0125};
