@@ -117,15 +117,28 @@ ServoLoop ServoLoop::second_order(double natural_frequency_hz, double damping_ra
 }
 
 double ServoLoop::next(double input) {
+  // The method diverges where a pole turns by more than 2.8 rad in a step.
+  constexpr double kTurn = 2.0;
+  const double excess = std::sqrt(std::max(0.0, damping_ratio_ * damping_ratio_ - 1.0));
+  const double fastest = has_two_poles_ ? w_ * (std::max(1.0, damping_ratio_) + excess) : w_;
+  const double steps = std::max(1.0, std::ceil(fastest * period_s_ / kTurn));
   const double before = std::exchange(input_, input);
+  for (double step = 0.0; step < steps; ++step) {
+    advance(before + (input - before) * (step / steps), before + (input - before) * ((step + 1.0) / steps),
+            period_s_ / steps);
+  }
+  return x_;
+}
+
+void ServoLoop::advance(double before, double input, double h) {
   const double middle = 0.5 * (before + input);
-  const double h = period_s_;
   if (!has_two_poles_) {
     const double k1 = w_ * (before - x_);
     const double k2 = w_ * (middle - x_ - 0.5 * h * k1);
     const double k3 = w_ * (middle - x_ - 0.5 * h * k2);
     const double k4 = w_ * (input - x_ - h * k3);
-    return x_ += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    x_ += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    return;
   }
   const auto pull = [&](double u, double x, double v) { return w_ * w_ * (u - x) - 2.0 * damping_ratio_ * w_ * v; };
   const double a1 = pull(before, x_, v_);
@@ -137,7 +150,6 @@ double ServoLoop::next(double input) {
   const double a4 = pull(input, x_ + h * v3, v4);
   x_ += h / 6.0 * (v_ + 2.0 * v2 + 2.0 * v3 + v4);
   v_ += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-  return x_;
 }
 
 namespace {

@@ -40,7 +40,7 @@ class CompensatorStage {
 };
 
 /// What the servo loop makes of its command: an ordinary differential equation under straight command lines, by the
-/// classical Runge-Kutta method.
+/// classical Runge-Kutta method, in as many steps as the fastest pole asks for.
 class ServoLoop {
  public:
   /// x' = w (u - x).
@@ -50,6 +50,8 @@ class ServoLoop {
   [[nodiscard]] double next(double input);
 
  private:
+  void advance(double before, double input, double h);
+
   double period_s_ = 0.0;
   double w_ = 0.0;
   double damping_ratio_ = 0.0;

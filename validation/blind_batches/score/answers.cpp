@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -191,18 +192,25 @@ PlantEffect read_effect(const Json& json) {
           json.at("parameters").get<Parameters>(), json.value("plant_law", std::string{})};
 }
 
+/// A gap that the plant could not compute was written as null.
+double gap_in(const Json& json, const char* field) {
+  const Json& gap = json.at(field);
+  return gap.is_null() ? std::numeric_limits<double>::quiet_NaN() : gap.get<double>();
+}
+
 KeyCase read_case(const Json& json) {
   KeyCase result;
   result.name = json.at("case").get<std::string>();
   result.truth = class_named(json.at("truth").get<std::string>());
-  result.gap_to_floor = json.at("gap_to_floor").get<double>();
+  result.gap_to_floor = gap_in(json, "gap_to_floor");
   for (const Json& effect : json.at("effects")) {
     PlantEffect read = read_effect(effect);
     std::vector<Cause> acceptable = causes_in(effect, "acceptable");
     if (!effect.contains("acceptable")) acceptable = {{read.interface, read.name}};
     result.effects.push_back(std::move(read));
     result.effect_acceptable.push_back(std::move(acceptable));
-    result.effect_gaps_to_floor.push_back(effect.value("gap_to_floor", result.gap_to_floor));
+    result.effect_gaps_to_floor.push_back(effect.contains("gap_to_floor") ? gap_in(effect, "gap_to_floor")
+                                                                          : result.gap_to_floor);
   }
   for (const Json& beside : json.value("besides", Json::array())) result.besides.push_back(read_effect(beside));
   result.acceptable = causes_in(json, "acceptable");
@@ -211,12 +219,16 @@ KeyCase read_case(const Json& json) {
   result.is_separable = json.value("is_separable", result.acceptable.size() == 1);
   result.is_closed_loop = json.value("is_closed_loop", false);
   result.gap_at = json.at("gap_at").get<std::string>();
-  result.held_out_gap_to_floor = json.at("held_out_gap_to_floor").get<double>();
+  result.held_out_gap_to_floor = gap_in(json, "held_out_gap_to_floor");
   result.variance_removed = json.at("variance_removed_by_true_model").get<double>();
   return result;
 }
 
 }  // namespace
+
+bool KeyCase::can_be_scored() const noexcept {
+  return std::isfinite(gap_to_floor) && std::isfinite(held_out_gap_to_floor);
+}
 
 std::vector<KeyCase> read_key(std::string_view text) {
   try {

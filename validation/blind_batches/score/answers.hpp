@@ -93,6 +93,9 @@ struct KeyCase {
   double gap_to_floor = 0.0;
   double held_out_gap_to_floor = 0.0;
   double variance_removed = 0.0;
+
+  /// False where the plant could not compute the gap: how clear the case is, nobody knows.
+  [[nodiscard]] bool can_be_scored() const noexcept;
 };
 
 /// @throws std::runtime_error if the text is not a key.

@@ -379,7 +379,12 @@ BatchScore score_batches(const std::vector<AnsweredBatch>& batches, const Digest
     std::vector<std::string> names;
     for (const KeyCase& of_case : cases) names.push_back(of_case.name);
     const GivenAnswers given = open_answers(batch.batch, batch.answers, names, digest);
+    std::string left_out;
     for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (!cases[i].can_be_scored()) {
+        left_out += " " + names[i];
+        continue;
+      }
       try {
         marked.push_back(mark(cases[i], given.texts[i] ? std::optional{read_answer(*given.texts[i])} : std::nullopt));
       } catch (const std::runtime_error& error) {
@@ -389,6 +394,7 @@ BatchScore score_batches(const std::vector<AnsweredBatch>& batches, const Digest
     }
     const std::string whose = batches.size() > 1 ? " to " + batch.batch.string() : "";
     seals += "The answers" + whose + (given.are_sealed ? " are as they were sealed.\n" : " are not sealed.\n");
+    if (!left_out.empty()) seals += "Left out" + whose + ", as the key has no gap of it:" + left_out + "\n";
     const std::string hash = digest(read_batch_file(batch.batch / "batch.json"));
     if (std::ranges::any_of(of_batches, [&](const Json& other) { return other["batch_sha256"] == hash; })) {
       throw std::runtime_error{batch.batch.string() + ": this batch is given twice; expected each batch once"};

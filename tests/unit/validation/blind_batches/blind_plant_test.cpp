@@ -117,6 +117,18 @@ TEST(Actuator, SecondOrderServoDelaysSlowMotion) {
   EXPECT_NEAR(x.back(), 0.01 * (2.0 - delay_s), 1e-12);  // transients: exp(-176) after 2 s
 }
 
+TEST(Actuator, ServoFasterThanTheStepsFollowsARamp) {
+  for (const double natural_frequency_hz : {200.0, 5e3, 5e4}) {
+    for (const double damping_ratio : {0.7, 1.6}) {
+      ServoLoop loop = ServoLoop::second_order(natural_frequency_hz, damping_ratio, kFinePeriodS);
+      double x = 0.0;
+      for (int i = 1; i <= 20000; ++i) x = loop.next(1e-6 * i);
+      const double delay_steps = 2.0 * damping_ratio / (kTwoPi * natural_frequency_hz) / kFinePeriodS;
+      EXPECT_NEAR(x, 1e-6 * (20000.0 - delay_steps), 1e-12) << natural_frequency_hz << " Hz, " << damping_ratio;
+    }
+  }
+}
+
 TEST(Actuator, FirstOrderServoIsThreeDecibelsDownAtBandwidth) {
   Site site = elastic_site();
   site.transfer_system = {.kind = TransferKind::first_order,

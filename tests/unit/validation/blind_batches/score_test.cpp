@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -161,6 +162,17 @@ TEST(Score, OneThatPeeksAtDrawnCasesIsRight) {
   EXPECT_DOUBLE_EQ(value(score_of(peeked), "effect_right_or_in_set"), 1.0);
   EXPECT_DOUBLE_EQ(value(score_of(peeked), "false_names_on_none_and_unknown"), 0.0);
   EXPECT_DOUBLE_EQ(value(score_of(silent), "effect_right_or_in_set"), 0.0);
+}
+
+TEST(Score, CaseWithoutAGapInItsKeyCannotBeScored) {
+  Json key{{"schema", "hybridtest/blind_key/1"}, {"cases", Json::array()}};
+  BlindCase of_case = draw_case(77, 0);
+  key["cases"].push_back(truth_json("whole", of_case));
+  of_case.truth.held_out_gap_to_floor = std::numeric_limits<double>::infinity();
+  key["cases"].push_back(truth_json("without", of_case));
+  const std::vector<KeyCase> cases = read_key(key.dump());
+  EXPECT_TRUE(cases[0].can_be_scored());
+  EXPECT_FALSE(cases[1].can_be_scored());
 }
 
 TEST(Score, AllUnknownHasNoFalseNamesAndNoHits) {
