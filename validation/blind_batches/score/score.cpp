@@ -382,7 +382,7 @@ BatchScore score_batches(const std::vector<AnsweredBatch>& batches, const Digest
     std::string left_out;
     for (std::size_t i = 0; i < cases.size(); ++i) {
       if (!cases[i].can_be_scored()) {
-        left_out += " " + names[i];
+        left_out.append(" ").append(names[i]);
         continue;
       }
       try {
@@ -394,7 +394,8 @@ BatchScore score_batches(const std::vector<AnsweredBatch>& batches, const Digest
     }
     const std::string whose = batches.size() > 1 ? " to " + batch.batch.string() : "";
     seals += "The answers" + whose + (given.are_sealed ? " are as they were sealed.\n" : " are not sealed.\n");
-    if (!left_out.empty()) seals += "Left out" + whose + ", as the key has no gap of it:" + left_out + "\n";
+    if (!left_out.empty())
+      seals.append("Left out").append(whose).append(", as the key has no gap of it:").append(left_out).append("\n");
     const std::string hash = digest(read_batch_file(batch.batch / "batch.json"));
     if (std::ranges::any_of(of_batches, [&](const Json& other) { return other["batch_sha256"] == hash; })) {
       throw std::runtime_error{batch.batch.string() + ": this batch is given twice; expected each batch once"};
