@@ -106,6 +106,7 @@ ServoLoop ServoLoop::first_order(double bandwidth_hz, double period_s) {
   ServoLoop loop;
   loop.period_s_ = period_s;
   loop.w_ = kTwoPi * bandwidth_hz;
+  loop.follow_pole(loop.w_);
   return loop;
 }
 
@@ -113,19 +114,22 @@ ServoLoop ServoLoop::second_order(double natural_frequency_hz, double damping_ra
   ServoLoop loop = first_order(natural_frequency_hz, period_s);
   loop.damping_ratio_ = damping_ratio;
   loop.has_two_poles_ = true;
+  const double excess = std::sqrt(std::max(0.0, damping_ratio * damping_ratio - 1.0));
+  loop.follow_pole(loop.w_ * (std::max(1.0, damping_ratio) + excess));
   return loop;
 }
 
-double ServoLoop::next(double input) {
+void ServoLoop::follow_pole(double fastest_rad_per_s) {
   // The method diverges where a pole turns by more than 2.8 rad in a step.
   constexpr double kTurn = 2.0;
-  const double excess = std::sqrt(std::max(0.0, damping_ratio_ * damping_ratio_ - 1.0));
-  const double fastest = has_two_poles_ ? w_ * (std::max(1.0, damping_ratio_) + excess) : w_;
-  const double steps = std::max(1.0, std::ceil(fastest * period_s_ / kTurn));
+  steps_ = std::max(1.0, std::ceil(fastest_rad_per_s * period_s_ / kTurn));
+}
+
+double ServoLoop::next(double input) {
   const double before = std::exchange(input_, input);
-  for (double step = 0.0; step < steps; ++step) {
-    advance(before + (input - before) * (step / steps), before + (input - before) * ((step + 1.0) / steps),
-            period_s_ / steps);
+  for (double step = 0.0; step < steps_; ++step) {
+    advance(before + (input - before) * (step / steps_), before + (input - before) * ((step + 1.0) / steps_),
+            period_s_ / steps_);
   }
   return x_;
 }
@@ -197,10 +201,8 @@ Part flow_limit(double velocity_m_per_s, double period_s) {
   };
 }
 
-/// Seals hold the piston after each stop until the demand is `breakaway_m` ahead; then it catches up at a velocity
-/// that the pressure behind it gives, within milliseconds, and follows until the next reversal of the demand.
-/// The seals hold until the demand is the breakaway ahead. Then the actuator gains on the demand at a velocity until it
-/// has caught up, so it moves faster than the demand does.
+/// Seals hold the piston after each stop until the demand is `breakaway_m` ahead. Then it gains on the demand at a
+/// velocity, so it moves faster than the demand does until it has caught up, and follows until the next reversal.
 Part stuck(const PlantEffect& effect, double period_s) {
   const double breakaway_m = effect.of("breakaway_m");
   const double gained_m = breakaway_m * kTwoPi * effect.of("catching_up_hz") * period_s;

@@ -50,9 +50,11 @@ class ServoLoop {
   [[nodiscard]] double next(double input);
 
  private:
+  void follow_pole(double fastest_rad_per_s);
   void advance(double before, double input, double h);
 
   double period_s_ = 0.0;
+  double steps_ = 1.0;  // in a period
   double w_ = 0.0;
   double damping_ratio_ = 0.0;
   bool has_two_poles_ = false;
