@@ -12,8 +12,7 @@
 #include "tests/support/system_fixture.hpp"
 #include "tests/support/tall_tower.hpp"
 
-/// The same scenario gives the same bytes: over DDS in several processes, simulated in one, and at every
-/// optimisation level.
+/// The same scenario gives the same bytes over DDS in several processes and simulated in one.
 namespace hybridtest {
 namespace {
 
@@ -156,31 +155,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Shipped{"three_storey_base_isolated", {"isolators"}, {"superstructure"}},
                       Shipped{"isolated_with_dampers", {"isolators"}, {"superstructure", "dampers"}}),
     [](const auto& instance) { return instance.param.scenario; });
-
-/// `simulate_digest` prints how it was compiled and a SHA-256 of every record of a simulated test.
-class OptimisationLevel : public SystemTest {
- protected:
-  [[nodiscard]] std::string digest(const std::string& program_name) const {
-    StartedProgram printed{
-        program(program_name),
-        {"time.duration_s=4", shipped_scenario("two_storey_one_site").string(),
-         shipped_scenario("two_storey_two_sites").string(), shipped_scenario("three_storey_base_isolated").string()},
-        directory() / program_name};
-    EXPECT_THAT(printed.wait(), ::testing::Optional(kExitCompleted)) << printed.standard_error();
-    return printed.standard_output();
-  }
-};
-
-TEST_F(OptimisationLevel, RecordsAreTheSameUnoptimisedAndOptimised) {
-  const std::string plain = digest("simulate_digest_unoptimised");
-  const std::string optimised = digest("simulate_digest");
-  ASSERT_TRUE(plain.starts_with("unoptimised\n")) << plain;
-  if (!optimised.starts_with("optimised\n")) GTEST_SKIP() << "this build is not optimised: nothing to compare with";
-  const auto records = [](const std::string& text) { return text.substr(text.find('\n')); };
-  EXPECT_EQ(records(plain), records(optimised));
-  EXPECT_NE(records(plain).find("storey_1/control"), std::string::npos) << plain;
-  std::cout << optimised;
-}
 
 }  // namespace
 }  // namespace hybridtest

@@ -48,14 +48,10 @@ void print_digests(const std::filesystem::path& file, const std::string& overrid
 }  // namespace
 }  // namespace hybridtest
 
-/// simulate_digest OVERRIDE SCENARIO…: how this program was compiled, and a SHA-256 of every record of each
-/// scenario under simulated time.
+/// simulate_digest OVERRIDE SCENARIO…: the flags that this program was compiled with, and a SHA-256 of every record of
+/// each scenario under simulated time.
 int main(int argc, char** argv) try {
-#ifdef __OPTIMIZE__
-  std::printf("optimised\n");
-#else
-  std::printf("unoptimised\n");
-#endif
+  std::printf("%s\n", HYBRIDTEST_COMPILED_WITH);
   for (int i = 2; i < argc; ++i) hybridtest::print_digests(argv[i], argv[1]);
   return hybridtest::kExitCompleted;
 } catch (const std::exception& error) {

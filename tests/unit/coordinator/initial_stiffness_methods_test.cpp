@@ -43,11 +43,7 @@ struct ImplicitMethod {
     now << 1.0, 1.0, 0.5 - beta, 0.0, 1.0, 1.0 - gamma, -alpha_f * stiffness, -alpha_f * damping, -alpha_m;
     return next.inverse() * now;
   }
-  [[nodiscard]] Eigen::VectorXcd roots(const MeasuredMode& mode) const {
-    Eigen::VectorXcd roots = Eigen::EigenSolver<Eigen::Matrix3d>{amplification(mode), false}.eigenvalues();
-    std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return std::norm(a) > std::norm(b); });
-    return roots;
-  }
+  [[nodiscard]] Eigen::VectorXcd roots(const MeasuredMode& mode) const { return test::roots_of(amplification(mode)); }
 };
 
 ImplicitMethod generalised_alpha(double rho_inf) {
