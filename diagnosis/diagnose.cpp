@@ -98,6 +98,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       if (judgement.is_correction(i)) continue;
       RankedCause cause = ranked(stage.problem.model, selection.chosen, i);
       cause.is_cause = true;
+      cause.may_be_absent = std::ranges::find(judgement.may_be_absent, i) != judgement.may_be_absent.end();
       cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
       cause.probability = tuning::kAnswerRight * selection.chosen_probabilities[i];
@@ -421,18 +422,6 @@ void add_input_notes(const IdentificationProblem& problem, std::span<const Recor
   }
 }
 
-/// Why a cause is named in part, though little may be left.
-void add_doubt_notes(const Stage& stage, std::vector<std::string>& notes) {
-  if (stage.judgement.verdict != Verdict::partial) return;
-  const FitOutcome& chosen = stage.selection.chosen;
-  for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
-    if (stage.judgement.is_correction(i) || !may_be_absent(stage.problem, chosen, i)) continue;
-    const EffectType& effect = *chosen.effects[i].type;
-    notes.push_back(report::plain(effect.name) + " of the " + report::plain(name_of(effect.interface)) +
-                    ": its 95 % interval holds the value at which it is absent, so the answer is one in part.");
-  }
-}
-
 void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   const auto sees = [&](Channel to) {
     return std::ranges::any_of(segments, [&](const Segment& s) { return s.to == to; });
@@ -534,7 +523,6 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     add_gap(stage.problem, stage.selection, stage.judgement, parts);
     explained.push_back(parts.explained - before);
     judgements.push_back(stage.judgement);
-    add_doubt_notes(stage, report.notes);
   }
   report.verdict = verdict_with(traces, verdict_of(judgements), parts);
   for (std::size_t i = 0; i < stages.size(); ++i) {

@@ -50,6 +50,7 @@ Json cause_entry(const report::RankedCause& cause) {
   } else if (cause.share == 0.0) {
     entry["indistinguishable"] = cause.is_indistinguishable;
   }
+  if (cause.may_be_absent) entry["may_be_absent"] = true;
   entry["parameters"] = Json::object();
   for (const report::ReportedParameter& parameter : cause.parameters) {
     Json value{{"value", parameter.value}};

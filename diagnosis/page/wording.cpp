@@ -90,6 +90,28 @@ std::string named_sentence(const DiagnosisReport& report) {
   return text + removal(report) + in_doubt(report);
 }
 
+/// Causes that are named in part because they may be absent.
+std::string doubt_sentence(const DiagnosisReport& report) {
+  std::vector<const RankedCause*> doubtful;
+  for (const RankedCause& cause : report.ranking) {
+    if (cause.is_cause && cause.may_be_absent) doubtful.push_back(&cause);
+  }
+  if (doubtful.empty()) return {};
+  const std::string names = joined(in_words(doubtful));
+  if (doubtful.size() == 1) {
+    return fmt::format(" The 95{}% interval of {} holds the value at which it is absent: it may not be there.",
+                       kNoBreak, names);
+  }
+  return fmt::format(" The 95{}% intervals of {} hold the values at which they are absent: they may not be there.",
+                     kNoBreak, names);
+}
+
+std::string partial_sentence(const DiagnosisReport& report) {
+  const std::string doubt = doubt_sentence(report);
+  return named_sentence(report) + remainder(report) +
+         (doubt.empty() ? " No effect in the library explains what is left." : doubt);
+}
+
 std::string set_sentence(const DiagnosisReport& report) {
   const std::vector<const RankedCause*> alike = indistinguishable(report);
   std::vector<std::string> others;
@@ -264,8 +286,7 @@ std::string verdict_sentence(const DiagnosisReport& report) {
                  : "The model lacks nothing. Some of its numbers are slightly off, and correcting them closes the gap.";
     case Verdict::named: return named_sentence(report);
     case Verdict::set: return set_sentence(report);
-    case Verdict::partial:
-      return named_sentence(report) + remainder(report) + " No effect in the library explains what is left.";
+    case Verdict::partial: return partial_sentence(report);
     case Verdict::unknown:
       return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
     case Verdict::not_excited:

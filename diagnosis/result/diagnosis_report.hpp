@@ -104,6 +104,7 @@ struct RankedCause {
   double share = 0.0;                 // of what all causes explain; 0 for an alternative
   bool is_cause = false;              // of the verdict; else an alternative
   bool is_indistinguishable = false;  // from the first one, on these recordings
+  bool may_be_absent = false;         // at a value within the interval that is reported with it
   std::vector<ReportedParameter> parameters{};
 };
 

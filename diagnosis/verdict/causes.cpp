@@ -136,6 +136,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   // Nor is a name given to what may be absent by the interval that is reported with it.
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     if (judgement.is_correction(i) || !may_be_absent(problem, selection.chosen, i)) continue;
+    judgement.may_be_absent.push_back(i);
     judgement.verdict = Verdict::partial;
   }
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();

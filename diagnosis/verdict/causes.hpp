@@ -25,6 +25,8 @@ struct Judgement {
   std::vector<std::size_t> indistinguishable;
   // Positions in Selection::chosen of numbers of the model that are slightly off: corrected, but no causes.
   std::vector<std::size_t> corrections;
+  // Likewise of causes that are absent at a value within the interval that is reported with them.
+  std::vector<std::size_t> may_be_absent;
   std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
   bool may_be_set = false;     // what is left allows one, and no search ran into its limit

@@ -243,6 +243,19 @@ TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {
   EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
 }
 
+TEST(DiagnosisPage, CauseThatMayBeAbsentIsSaidToBeInTheFirstSentence) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::partial;
+  EXPECT_THAT(verdict_sentence(report), HasSubstr("No effect in the library explains what is left."));
+  report.ranking.front().may_be_absent = true;
+  EXPECT_THAT(
+      verdict_sentence(report),
+      testing::AllOf(
+          HasSubstr(
+              "The 95\u00a0% interval of coulomb friction holds the value at which it is absent: it may not be there."),
+          Not(HasSubstr("No effect in the library"))));
+}
+
 TEST(DiagnosisPage, CauseBesideASetIsNoMemberOfIt) {
   DiagnosisReport report = example();
   report.verdict = Verdict::set;
