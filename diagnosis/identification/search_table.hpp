@@ -164,6 +164,8 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "relaxation", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 3.0},
     SearchRange{
         specimen, "relaxation", "time_constant_s", Scale::time_s, 0.005, 100.0, {.limit = SearchLimit::within_motion}},
+    SearchRange{specimen, "fractional_damping", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 3.0},
+    SearchRange{specimen, "fractional_damping", "order", Scale::one, 0.1, 0.9},
     SearchRange{specimen, "inertia", "mass_kg", Scale::mass_kg, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen, "geometric_stiffness", "axial_force_n", Scale::force_n, -30.0, 30.0},
     SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, tuning::kHeightOverStroke, 30.0},

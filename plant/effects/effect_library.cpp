@@ -30,6 +30,7 @@
 #include "plant/effects/specimen/cubic_stiffness.hpp"
 #include "plant/effects/specimen/damping_with_input.hpp"
 #include "plant/effects/specimen/force_with_input.hpp"
+#include "plant/effects/specimen/fractional_damping.hpp"
 #include "plant/effects/specimen/fracture.hpp"
 #include "plant/effects/specimen/friction_with_input.hpp"
 #include "plant/effects/specimen/gap.hpp"
@@ -161,6 +162,7 @@ std::span<const EffectType> effect_library() noexcept {
       entry<SpecimenBacklash>(At::specimen, "backlash"),
       entry<Contact>(At::specimen, "contact"),
       entry<Relaxation>(At::specimen, "relaxation"),
+      entry<FractionalDamping>(At::specimen, "fractional_damping"),
       entry<Inertia>(At::specimen, "inertia"),
       entry<GeometricStiffness>(At::specimen, "geometric_stiffness"),
       entry<Fracture>(At::specimen, "fracture"),

@@ -296,6 +296,31 @@ TEST(Relaxation, HasMaxwellComplexStiffness) {
   }
 }
 
+/// Size and phase of a power law of the frequency, and its answer to a ramp, at several orders.
+TEST(FractionalDamping, HasComplexStiffnessAndRampOfAPowerLaw) {
+  for (const double order : {0.1, 0.35, 0.5, 0.65}) {
+    const auto effect = made(kSpecimen, "fractional_damping", {1.0e5, order});
+    std::vector<double> ramp_m;
+    for (std::size_t i = 0; i <= 5000; ++i) ramp_m.push_back(0.01 * time_s(i));
+    const auto on_ramp = along(*effect, ramp_m);
+    for (std::size_t i = 200; i < on_ramp.size(); ++i) {
+      const double expected_n =
+          1.0e5 * 0.01 * std::pow(2.0 * kPi, -order) * std::pow(time_s(i), 1.0 - order) / std::tgamma(2.0 - order);
+      ASSERT_NEAR(on_ramp[i] / expected_n, 1.0, 4e-4) << order;  // two fading springs a decade
+    }
+    for (const double frequency_hz : {1.0, 3.0}) {
+      effect->reset();
+      const auto forces = response(*effect, sine(0.01, 2.0 * kPi * frequency_hz), 20000);
+      for (std::size_t i = 18000; i < forces.size(); ++i) {
+        const double turn = 2.0 * kPi * frequency_hz * time_s(i);
+        const double expected_n = 1.0e3 * std::pow(frequency_hz, order) * std::sin(turn + 0.5 * kPi * order);
+        // The same, and half a sample of the share of a dashpot.
+        ASSERT_NEAR(forces[i], expected_n, 1.0e3 * std::pow(frequency_hz, order) * 2e-3) << order;
+      }
+    }
+  }
+}
+
 TEST(Fracture, RemovesItsShareFromItsTimeOn) {
   const auto effect = made(kSpecimen, "fracture", {0.4, 0.05});
   const auto forces = response(*effect, sine(1.0, 1.0), 100, [](const Motion&) { return 10.0; });

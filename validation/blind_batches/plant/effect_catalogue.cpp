@@ -73,6 +73,12 @@ Parameters relaxation(RandomStream& r, Setting s, double amount) {
   return {{"stiffness_n_per_m", amount * stiffness(s)}, {"time_constant_s", r.log_uniform(0.1, 3.0)}};
 }
 
+Parameters fractional(RandomStream& r, Setting s, double amount) {
+  Parameters p{{"force_n", std::max(0.02, amount) * force(s)}, {"stroke_m", stroke(s)}};
+  p["order"] = r.uniform(0.2, 0.8);
+  return p;
+}
+
 Parameters geometric(RandomStream& r, Setting s, double amount) {
   Parameters p{{"length_m", stroke(s) * r.uniform(5.0, 30.0)}};
   p["load_n"] = std::min(0.6, amount) * stiffness(s) * p["length_m"];
@@ -250,6 +256,7 @@ const std::vector<CatalogueEntry>& named_effects() {
                            {"stroke_m", stroke(s)}};
        }},
       {"specimen", "relaxation", always, relaxation},
+      {"specimen", "fractional_damping", always, fractional},
       {"specimen", "inertia", has_acceleration,
        [](RandomStream&, Setting s, double m) {
          return Parameters{{"mass_kg", m * force(s) / s.scales.acceleration_m_per_s2}};
@@ -299,7 +306,6 @@ const std::vector<CatalogueEntry>& foreign_effects() {
     p["pitch_m"] = stroke(s) * r.uniform(0.15, 0.5);
     p["place_m"] = stroke(s) * r.uniform(-0.5, 0.5);
     p["distance_m"] = stroke(s) * r.uniform(0.05, 0.3);
-    p["order"] = r.uniform(0.35, 0.65);
     return p;
   };
   const auto hunting = [](RandomStream& r, Setting s, double m) {
@@ -321,7 +327,6 @@ const std::vector<CatalogueEntry>& foreign_effects() {
     return Parameters{{"share", m}, {"delay_s", r.uniform(0.15, 0.6)}};
   };
   static const std::vector<CatalogueEntry> entries{
-      {"specimen", "fractional_damping", always, placed},
       {"specimen", "random_stick_slip", always, placed},
       {"specimen", "magnetic_memory", always, placed},
       {"specimen", "self_excitation", always, placed},

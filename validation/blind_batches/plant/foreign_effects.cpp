@@ -42,26 +42,6 @@ class RandomWalk {
   double to_ = 0.0;
 };
 
-/// c D^alpha x as a ladder of Maxwell elements, three to a decade (after Oustaloup et al., 2000).
-ForceTerm fractional(const PlantEffect& effect, double period_s) {
-  constexpr std::size_t kElements = 14;
-  std::array<double, kElements> stiffness{};
-  std::array<double, kElements> following{};
-  double rate = 0.01 * kTwoPi;
-  for (std::size_t e = 0; e < kElements; ++e, rate *= std::pow(10.0, 1.0 / 3.0)) {
-    stiffness[e] = effect.of("force_n") / effect.of("stroke_m") * std::pow(rate / kTwoPi, effect.of("order")) * 0.5;
-    following[e] = 1.0 - std::exp(-period_s * rate);
-  }
-  return [stiffness, following, q = std::array<double, kElements>{}](const MotionPoint& at) mutable {
-    double force = 0.0;
-    for (std::size_t e = 0; e < kElements; ++e) {
-      q[e] += following[e] * (at.displacement_m - q[e]);
-      force += stiffness[e] * (at.displacement_m - q[e]);
-    }
-    return force;
-  };
-}
-
 /// Zero-mean stick-slip: over random distances a force builds up against the motion, then lets go.
 ForceTerm stick_slip(const PlantEffect& effect) {
   const double distance_m = effect.of("distance_m");
@@ -192,7 +172,6 @@ std::function<double(double)> foreign_motion(const PlantEffect& effect, double p
 }
 
 ForceTerm foreign_force(const PlantEffect& effect, double period_s) {
-  if (effect.name == "fractional_damping") return fractional(effect, period_s);
   if (effect.name == "random_stick_slip") return stick_slip(effect);
   if (effect.name == "magnetic_memory") return preisach(effect);
   if (effect.name == "self_excitation") {

@@ -1,6 +1,7 @@
 #include "validation/blind_batches/plant/specimen.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -227,6 +228,26 @@ ForceTerm relaxation(const PlantEffect& effect, double period_s) {
   };
 }
 
+/// c D^alpha x as a ladder of Maxwell elements, three to a decade from 0.01 to 200 Hz (after Oustaloup et al., 2000).
+ForceTerm fractional(const PlantEffect& effect, double period_s) {
+  constexpr std::size_t kElements = 14;
+  std::array<double, kElements> stiffness{};
+  std::array<double, kElements> following{};
+  double rate = 0.01 * kTwoPi;
+  for (std::size_t e = 0; e < kElements; ++e, rate *= std::pow(10.0, 1.0 / 3.0)) {
+    stiffness[e] = effect.of("force_n") / effect.of("stroke_m") * std::pow(rate / kTwoPi, effect.of("order")) * 0.5;
+    following[e] = 1.0 - std::exp(-period_s * rate);
+  }
+  return [stiffness, following, q = std::array<double, kElements>{}](const MotionPoint& at) mutable {
+    double force = 0.0;
+    for (std::size_t e = 0; e < kElements; ++e) {
+      q[e] += following[e] * (at.displacement_m - q[e]);
+      force += stiffness[e] * (at.displacement_m - q[e]);
+    }
+    return force;
+  };
+}
+
 ForceTerm friction(const PlantEffect& effect, double period_s) {
   FrictionParameters friction;
   friction.force_n = effect.of("friction_force_n");
@@ -337,6 +358,7 @@ void SpecimenStage::add_effect(const PlantEffect& effect, double period_s) {
   const std::string_view name = effect.name;
   if (name == "backlash") play_.emplace_back(effect.of("width_m"), 0.1);
   if (name == "relaxation") terms_.push_back(relaxation(effect, period_s));
+  if (name == "fractional_damping") terms_.push_back(fractional(effect, period_s));
   if (name == "coulomb_friction" || name == "stribeck_friction") terms_.push_back(friction(effect, period_s));
   if (name == "bouc_wen_hysteresis") terms_.push_back(rounded_loop(effect));
   if (name == "echo") {
