@@ -346,6 +346,21 @@ bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, 
   return absent_in_interval(suspect, [&](std::size_t i) { return half_interval_95(suspect.estimates[i]); }) != nullptr;
 }
 
+bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const EffectType& law = *fit.effects[position].type;
+  if (law.replacement == nullptr || law.replacement->law != "self_centring") return false;
+  const bool another_has_one = std::ranges::any_of(fit.effects, [&](const EffectSetting& other) {
+    const EffectTraits& traits = other.type->traits;
+    return other.type != &law && other.type->interface == specimen && traits.family == EffectFamily::amplitude &&
+           traits.number == ModelNumber::none;
+  });
+  if (another_has_one) return false;
+  const ParameterEstimate& flag =
+      Suspect{problem, fit, fit.effects[position], fit.parameters[position]}.parameter("flag_ratio");
+  // A bound is an end of 0 to 1.
+  return flag.at_bound ? flag.value < 0.5 : flag.value <= half_interval_95(flag);
+}
+
 bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const EffectType& effect = *fit.effects[position].type;
   if (effect.replacement != nullptr) return false;

@@ -19,6 +19,12 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
+/// Whether an effect is a self-centring law whose loop is closed (its interval of 95 % holds a flag of no height), and
+/// none of the others has a loop: what is left of it is a force that bends, as that of a load cell at its limit does.
+/// @param position   in the fit's effects.
+[[nodiscard]] bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit,
+                                       std::size_t position);
+
 /// Whether a friction that the model has slides no later than it does there. What the user calls a friction is one,
 /// however late it slides.
 /// @param position   in the fit's effects.

@@ -530,6 +530,39 @@ bool stands_above_floor(const IdentificationProblem& problem, const FitOutcome& 
   return false;
 }
 
+namespace {
+
+/// The effects that explain the gap, from the library as it stands.
+Growth find_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                    std::size_t threads, const PartProgress& progress) {
+  Growth growth =
+      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
+  const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
+  // Beside a leader alone nothing was accepted.
+  if (growth.accepted.size() > 1) grow_further(problem, coarse, selection, threads, further, growth);
+  // In place of what was dropped, something else may be needed.
+  if (settle(problem, coarse, selection, growth)) {
+    grow_further(problem, coarse, selection, threads, further, growth);
+    settle(problem, coarse, selection, growth);
+  }
+  return growth;
+}
+
+/// Removes a law without a loop from the library, if one was found.
+bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcome& found, Selection& selection) {
+  for (std::size_t i = 0; i < found.effects.size(); ++i) {
+    if (!is_law_without_loop(problem, found, i)) continue;
+    std::erase_if(selection.library,
+                  [&](const Candidate& candidate) { return candidate.type == found.effects[i].type; });
+    selection.alike.clear();
+    selection.probabilities = softmax(scores_of(selection.library));
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, std::size_t threads,
                          const PartProgress& progress) {
   Selection selection;
@@ -548,18 +581,15 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
   selection.probabilities = softmax(scores_of(selection.library));
-  if (selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
-    return selection;
-  }
-  Growth growth =
-      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
-  const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
-  // Beside a leader alone nothing was accepted.
-  if (growth.accepted.size() > 1) grow_further(problem, coarse, selection, threads, further, growth);
-  // In place of what was dropped, something else may be needed.
-  if (settle(problem, coarse, selection, growth)) {
-    grow_further(problem, coarse, selection, threads, further, growth);
-    settle(problem, coarse, selection, growth);
+  const auto is_explained = [&] {
+    return !selection.library.empty() &&
+           selection.library.front().score >= held_out_score(problem, selection.baseline) + decisive_gain(problem);
+  };
+  if (!is_explained()) return selection;
+  Growth growth = find_effects(problem, coarse, selection, threads, progress);
+  if (drop_law_without_loop(problem, growth.fit, selection)) {
+    if (!is_explained()) return selection;
+    growth = find_effects(problem, coarse, selection, threads, progress);
   }
   selection.shares = cause_shares(coarse, growth.fit.effects, progress.part(tuning::kEffectsChosen, 1.0));
   selection.chosen = std::move(growth.fit);

@@ -57,6 +57,21 @@ double value_of(const report::RankedCause& cause, std::string_view name) {
   return found == cause.parameters.end() ? std::nan("") : found->value;
 }
 
+/// An amplifier gives way before its limit: no effect of the library has quite that curve. A self-centring law whose
+/// loop is closed comes nearest.
+TEST(LawForm, LoadCellThatGivesWayAtItsLimitIsNoLaw) {
+  constexpr double kLimit_n = 28e3;  // half of what the specimen gives
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double force_n = kMadeStiffness_n_per_m * made_motion_m(time_s);
+    return force_n / std::pow(1.0 + std::pow(std::abs(force_n) / kLimit_n, 12), 1.0 / 12.0);
+  });
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::partial);
+  const report::RankedCause& cause = diagnosis.report.ranking.front();
+  EXPECT_EQ(cause.interface + "." + cause.effect, "force_sensor.saturation");
+  EXPECT_NEAR(value_of(cause, "limit_n"), kLimit_n, 0.02 * kLimit_n);  // 2 to the power 1/12 is 6 % at the corner
+}
+
 /// Whatever the user believes of the stiffness, from a tenth to ten times the real one.
 TEST(LawForm, YieldingUnderAnElasticModelIsOneCause) {
   const auto real = real_bilinear();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -145,9 +146,11 @@ TEST(Judge, GivesNoNameToWhatMayBeAbsentByItsInterval) {
   selection.probabilities = {0.9};
   selection.library.push_back(damping);
   EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::named);
+  EXPECT_THAT(judge(problem, selection).may_be_absent, IsEmpty());
   ParameterEstimate& estimate = selection.chosen.parameters[0][0];
   estimate.beside_wrong_numbers = 0.6 * estimate.value;
   EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::partial);
+  EXPECT_THAT(judge(problem, selection).may_be_absent, testing::ElementsAre(0U));
 }
 
 TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
@@ -224,6 +227,32 @@ TEST(Refutation, FurtherEffectIsJudgedByTheIntervalThatIsReported) {
   inertia.fit.effects.push_back({find_effect(specimen, "viscous_damping"), {100.0}});
   inertia.fit.parameters.push_back({{.value = 100.0, .standard_error = 4.0}});
   EXPECT_THAT(refutation(problem, inertia), HasSubstr("mass_kg"));
+}
+
+TEST(LawWithoutLoop, IsASelfCentringOneWithoutAFlagAndAlone) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  const auto laws = law_candidates(true);
+  const auto law =
+      std::ranges::find(laws, "self_centring", [](const LawCandidate& l) { return l.type.replacement->law; });
+  ASSERT_NE(law, laws.end());
+  const auto fit_with = [&](const ParameterEstimate& flag) {
+    FitOutcome fit;
+    fit.effects.push_back({&law->type, {1e6, 0.01, 0.1, flag.value}});
+    fit.parameters.push_back({{.value = 1e6}, {.value = 0.01}, {.value = 0.1}, flag});
+    return fit;
+  };
+  const ParameterEstimate open{.value = 0.6, .standard_error = 0.1, .beside_wrong_numbers = 0.1};
+  const ParameterEstimate doubtful{.value = 0.1, .standard_error = 0.1, .beside_wrong_numbers = 0.1};
+  const ParameterEstimate closed{.value = 1e-5, .at_bound = true};
+  EXPECT_FALSE(is_law_without_loop(problem, fit_with(open), 0));
+  EXPECT_TRUE(is_law_without_loop(problem, fit_with(doubtful), 0));
+  EXPECT_TRUE(is_law_without_loop(problem, fit_with(closed), 0));
+  EXPECT_FALSE(is_law_without_loop(problem, fit_with({.value = 1.0, .at_bound = true}), 0));
+  FitOutcome beside_friction = fit_with(closed);
+  beside_friction.effects.push_back({find_effect(specimen, "coulomb_friction"), {100.0, 0.0, 1e-3}});
+  beside_friction.parameters.emplace_back(3);
+  EXPECT_FALSE(is_law_without_loop(problem, beside_friction, 0));
+  EXPECT_FALSE(is_law_without_loop(problem, beside_friction, 1)) << "friction is no law";
 }
 
 TEST(Refutation, DropsWhatIsRefutedAndKeepsTheOrder) {
