@@ -7,6 +7,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "compensation/polynomial_displacement.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -47,6 +50,34 @@ TEST(Diagnose, NamesViscousForceAtSpecimen) {
   EXPECT_GT(diagnosis.report.where.front().share, 0.95);
   EXPECT_TRUE(has_cause(diagnosis, "specimen", "viscous_damping"));
   EXPECT_GT(diagnosis.report.interface_shrink->explainable_fraction.value(), 0.99);
+}
+
+/// The force by differences over the whole past (Grünwald and Letnikov), at a quarter of the sample period.
+TEST(Diagnose, NamesFractionalDampingAndItsOrder) {
+  constexpr double kOrder = 0.4;
+  constexpr double kStiffness_at_1_hz = 3.0e5;
+  constexpr double kStep_s = kSitePeriod_s / 4.0;
+  std::vector<double> past_m;
+  std::vector<double> weights{1.0};
+  const auto derivative = [&](double time_s) {
+    const auto count = static_cast<std::size_t>(std::lround(time_s / kStep_s)) + 1;
+    while (past_m.size() < count) past_m.push_back(made_motion_m(kStep_s * static_cast<double>(past_m.size())));
+    while (weights.size() < count) {
+      weights.push_back(weights.back() * (1.0 - (kOrder + 1.0) / static_cast<double>(weights.size())));
+    }
+    const double sum = std::inner_product(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(count),
+                                          past_m.rend() - static_cast<std::ptrdiff_t>(count), 0.0);
+    return sum / std::pow(kStep_s, kOrder);
+  };
+  const double scale = kStiffness_at_1_hz / std::pow(2.0 * std::numbers::pi, kOrder);
+  const Diagnosis diagnosis =
+      diagnosis_of(made_recording(made_motion_m, [&](double t) { return spring_n(t) + scale * derivative(t); }));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  ASSERT_TRUE(has_cause(diagnosis, "specimen", "fractional_damping"));
+  const auto& parameters = diagnosis.report.ranking.front().parameters;
+  // The differences are late by kOrder * kStep_s / 2, 1.4 mrad at 2.3 Hz: of a quarter turn that is 0.001.
+  EXPECT_NEAR(parameters[1].value, kOrder, 0.01);
+  EXPECT_NEAR(parameters[0].value, kStiffness_at_1_hz, 0.03 * kStiffness_at_1_hz);
 }
 
 TEST(Diagnose, NamesCoarseConverterBesideBias) {
