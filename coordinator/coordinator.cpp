@@ -89,7 +89,7 @@ Coordinator::Coordinator(CoordinatorSettings settings, std::unique_ptr<MotionSou
 
 Instant Coordinator::advance(Instant now) noexcept {
   if (!std::exchange(began_, true)) phase_began_ = now;
-  const Instant presence_wake = presence_.advance(now);
+  static_cast<void>(presence_.advance(now));
   take_control_messages(now);
   if (requested_stop_ != StopReason::none)
     begin_stop(now, std::exchange(requested_stop_, StopReason::none), kOperatorId);
@@ -112,8 +112,7 @@ Instant Coordinator::advance(Instant now) noexcept {
   if (phase_ == Phase::running) run(now);
   if (phase_ == Phase::stopping) stop(now);
   presence_.set_last_step(completed_steps_ - 1);
-  if (phase_ == Phase::done) static_cast<void>(presence_.advance(now));  // sends the final state
-  return next_wake(now, presence_wake);
+  return next_wake(now, presence_.tell(now));
 }
 
 CoordinatorReport Coordinator::report() const noexcept {

@@ -43,7 +43,10 @@ Instant Presence::advance(Instant now) noexcept {
   for (; inbox_.take(heard_); has_heard = true) learn(heard_, now);
   // Leases begin anew with a status and end at the time that was found: in between there is nothing to look at.
   if (has_heard || now >= next_lease_) check_leases(now);
+  return tell(now);
+}
 
+Instant Presence::tell(Instant now) noexcept {
   if (status_changed_ || now >= next_heartbeat_) {
     own_.clock = now.time_since_epoch();
     outbox_.send(own_);

@@ -46,8 +46,11 @@ class Presence {
   /// Takes the statuses that wait, marks peers whose lease ran out as lost, sends the own status
   /// when it changed or is due. @return when the next heartbeat or lease is due.
   Instant advance(Instant now) noexcept;
+  /// Sends the own status when it changed or is due. Nothing may wake this participant for a quarter of a lease:
+  /// whoever changes the state after advance() calls this before the next sleep. @return as advance().
+  Instant tell(Instant now) noexcept;
 
-  /// Sends the own status at the next advance(); a state once `refused` or `finished` stays.
+  /// Sends the own status at the next advance() or tell(); a state once `refused` or `finished` stays.
   void set_state(LifecycleState state) noexcept;
   void set_last_step(Step step) noexcept { own_.last_step = step; }
   void raise(FaultFlags faults) noexcept;

@@ -43,11 +43,10 @@ void SiteLink::take_messages(Instant now) noexcept {
 }
 
 Instant SiteLink::pass_reports_on(Instant now) noexcept {
-  const Instant wake = presence_.advance(now);  // sends the state that the messages led to
+  static_cast<void>(presence_.advance(now));  // sends the state that the messages led to
   while (ports_.reports.take(report_)) handle(report_, now);
-  if (!is_done()) return wake;
-  static_cast<void>(presence_.advance(now));  // sends the final state
-  return kNever;
+  const Instant wake = presence_.tell(now);
+  return is_done() ? kNever : wake;
 }
 
 bool SiteLink::is_done() const noexcept {

@@ -27,7 +27,7 @@ NumericalNode::NumericalNode(SubstructureIndex index, CouplingMode mode, std::un
       row_(2 + 2 * recorded_.size()) {}
 
 Instant NumericalNode::advance(Instant now) noexcept {
-  const Instant wake = presence_.advance(now);
+  static_cast<void>(presence_.advance(now));
   if (requested_stop_ != StopReason::none) presence_.set_state(LifecycleState::finished);
   for (Request request = membership_.next_request(now); request != Request::none;
        request = membership_.next_request(now)) {
@@ -36,9 +36,8 @@ Instant NumericalNode::advance(Instant now) noexcept {
   }
   if (is_pending_ && !is_done()) await_model(now);
   while (!is_pending_ && !has_failed_ && commands_.take(command_)) serve(command_, now);
-  if (!is_done()) return wake;
-  static_cast<void>(presence_.advance(now));  // sends the final state
-  return kNever;
+  const Instant wake = presence_.tell(now);
+  return is_done() ? kNever : wake;
 }
 
 bool NumericalNode::is_done() const noexcept {

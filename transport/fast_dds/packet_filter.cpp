@@ -1,7 +1,9 @@
 #include "transport/fast_dds/packet_filter.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <string_view>
 
 namespace hybridtest::fast_dds {
 namespace {
@@ -265,9 +267,10 @@ bool PacketFilter::admits_discovery(Bytes packet, Time now) {
         if (!goes_between(*part, kAnnouncing)) return refuse(refused_->in_plain_text);
         Prefix sender{};
         std::ranges::copy(prefix, sender.begin());
-        if (!is_announcement(*payload, prefix) || !is_as_before(sender, *payload, now)) {
-          return refuse(refused_->announcements);
-        }
+        const Belief belief =
+            is_announcement(*payload, prefix) ? belief_in(sender, part->bytes, now) : Belief::contradicted;
+        if (belief == Belief::contradicted) return refuse(refused_->announcements);
+        if (belief == Belief::unrepeated) return false;
         break;
       }
       case kStatistics: break;
@@ -277,20 +280,31 @@ bool PacketFilter::admits_discovery(Bytes packet, Time now) {
   return true;
 }
 
-bool PacketFilter::is_as_before(const Prefix& prefix, Bytes announcement, Time now) {
+PacketFilter::Belief PacketFilter::belief_in(const Prefix& prefix, Bytes announcement, Time now) {
   if (announcements_.size() >= kParticipantsMax && !announcements_.contains(prefix)) {
     std::erase_if(announcements_, [now](const auto& one) { return now - one.second.heard > kSilence; });
-    if (announcements_.size() >= kParticipantsMax) return false;
+    if (announcements_.size() >= kParticipantsMax) return Belief::contradicted;
   }
-  Announcement& before = announcements_[prefix];
-  const bool is_new = before.bytes.empty() || now - before.heard > kSilence;
-  if (is_new) {
-    before.bytes.assign(announcement.begin(), announcement.end());
-  } else if (!std::ranges::equal(before.bytes, announcement)) {
-    return false;
+  Announcements& of_it = announcements_[prefix];
+  if (now - of_it.heard > kSilence) of_it.believed.clear();
+  if (!of_it.believed.empty()) {
+    if (!std::ranges::equal(of_it.believed, announcement)) return Belief::contradicted;
+    of_it.heard = now;
+    return Belief::believed;
   }
-  before.heard = now;
-  return true;
+  of_it.heard = now;
+  const std::size_t content =
+      std::hash<std::string_view>{}({reinterpret_cast<const char*>(announcement.data()), announcement.size()});
+  if (of_it.times.size() >= kContentsMax) of_it.times.clear();
+  const int times = ++of_it.times[content];
+  int others = 0;
+  for (const auto& [other, its_times] : of_it.times) {
+    if (other != content) others = std::max(others, its_times);
+  }
+  if (times < others + kLead) return others == 0 ? Belief::unrepeated : Belief::contradicted;
+  of_it.believed.assign(announcement.begin(), announcement.end());
+  of_it.times.clear();
+  return Belief::believed;
 }
 
 }  // namespace hybridtest::fast_dds

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct RefusedPackets {
   std::atomic<std::uint64_t> harmful{0};        // would keep Fast DDS busy for ever, or end the process
   std::atomic<std::uint64_t> in_plain_text{0};  // with credentials: neither encrypted nor needed to find each other
   // With credentials: an announcement or a message of the authentication with false lengths, or other contents than
-  // those of its participant before.
+  // those of its participant. While it is open which are its own, all of them but the first.
   std::atomic<std::uint64_t> announcements{0};
   // With credentials: that a participant has left. Fast DDS sends them for genuine participants, too.
   std::atomic<std::uint64_t> departures{0};
@@ -46,8 +47,13 @@ class PacketFilter {
   using Time = std::chrono::steady_clock::time_point;
   using Bytes = std::span<const std::uint8_t>;
 
-  /// An announcement that differs from those before is admitted when these have not been heard for this time.
+  /// A participant repeats its announcement. One is believed that was heard so much more often than any other in the
+  /// same name: who has no credentials can be the first, and send many, yet each other contents.
+  static constexpr int kLead = 2;
+  /// It is believed, and no other, until it has not been heard for this time.
   static constexpr std::chrono::seconds kSilence{10};
+  /// Contents that are counted in one name, before counting begins again.
+  static constexpr std::size_t kContentsMax = 1000;
   /// Participants whose announcements are compared with those before.
   static constexpr std::size_t kParticipantsMax = 1000;
   /// A range of messages that are not there, or that still are, has never been longer: 4 hours at 1 kHz.
@@ -68,16 +74,19 @@ class PacketFilter {
 
  private:
   using Prefix = std::array<std::uint8_t, 12>;  // of the GUIDs of a participant
-  struct Announcement {
-    std::vector<std::uint8_t> bytes;
-    Time heard;
+  /// In the name of one participant.
+  struct Announcements {
+    std::vector<std::uint8_t> believed;               // none yet when empty
+    Time heard;                                       // that one, or any while there is none
+    std::unordered_map<std::size_t, int> times = {};  // how often each was heard, by its hash, while there is none
   };
+  enum class Belief { believed, unrepeated, contradicted };
 
-  [[nodiscard]] bool is_as_before(const Prefix& prefix, Bytes announcement, Time now);
+  [[nodiscard]] Belief belief_in(const Prefix& prefix, Bytes announcement, Time now);
 
   const Admission admission_;
   const std::shared_ptr<RefusedPackets> refused_;
-  std::map<Prefix, Announcement> announcements_;
+  std::map<Prefix, Announcements> announcements_;
 };
 
 }  // namespace hybridtest::fast_dds

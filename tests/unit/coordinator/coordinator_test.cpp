@@ -232,6 +232,19 @@ TEST_F(CoordinatorTest, AnnouncesTestAfterListeningForOlderCoordinator) {
   EXPECT_EQ(announcement.step_s, kStep_s);
 }
 
+/// Nothing else may wake it before its next heartbeat.
+TEST_F(CoordinatorTest, TellsANewStateBeforeItSleeps) {
+  make();
+  advance();
+  advance(milliseconds{300});
+  EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::ready);
+  say_both(LifecycleState::ready);
+  advance();
+  say_both(LifecycleState::armed);
+  advance();
+  EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::running);
+}
+
 TEST_F(CoordinatorTest, ArmsWhenAllAreReadyAndStartsWhenAllAreArmed) {
   make();
   advance();

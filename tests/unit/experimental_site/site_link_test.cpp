@@ -139,6 +139,15 @@ TEST_F(SiteLinkTest, IsArmedWhenItsLoopIsArmed) {
   EXPECT_EQ(presence_.state(), LifecycleState::armed);
 }
 
+/// Nothing else may wake it before its next heartbeat.
+TEST_F(SiteLinkTest, TellsANewStateBeforeItSleeps) {
+  join();
+  EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::ready);
+  loop_says(loop_report::Armed{});
+  advance();
+  EXPECT_EQ(take_all(own_statuses_).back().state, LifecycleState::armed);
+}
+
 TEST_F(SiteLinkTest, LoopThatCannotArmIsAFault) {
   join();
   control(ControlVerb::arm);

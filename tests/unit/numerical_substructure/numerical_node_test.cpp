@@ -75,6 +75,12 @@ class NumericalNodeTest : public testing::Test {
     commands_.send(command);
     advance();
   }
+  LifecycleState told_state() {
+    ParticipantStatus status;
+    while (own_statuses_.take(status)) {
+    }
+    return status.state;
+  }
   std::vector<ForceMeasurement> take_measurements() {
     std::vector<ForceMeasurement> taken;
     ForceMeasurement message;
@@ -104,6 +110,17 @@ class NumericalNodeTest : public testing::Test {
                       {0}};
   Instant now_{};
 };
+
+/// Nothing else may wake it before its next heartbeat.
+TEST_F(NumericalNodeTest, TellsANewStateBeforeItSleeps) {
+  TestAnnouncement announcement;
+  announcement.coordinator = kCoordinator;
+  announcements_.send(announcement);
+  advance();
+  EXPECT_EQ(told_state(), LifecycleState::ready);
+  control(ControlVerb::arm);
+  EXPECT_EQ(told_state(), LifecycleState::armed);
+}
 
 TEST_F(NumericalNodeTest, AnswersACommandWithTheForceOfItsModel) {
   start();

@@ -64,17 +64,24 @@ Bytes token(std::uint32_t characters = 4) { return word(characters) + bytes({'D'
 
 /// @param of   whose name is in it.
 /// @param in_front   parameters in front of the data.
-Bytes announcement(int of, const Bytes& parameters, const Bytes& in_front = {}) {
+Bytes announcement(int of, const Bytes& parameters, const Bytes& in_front = {}, std::uint64_t number = 1) {
   const Bytes its_header = header(of);
   const Bytes guid = Bytes(its_header.begin() + 8, its_header.end()) + bytes({0, 0, 1, 0xc1});
   const Bytes list = bytes({0, 3, 0, 0}) + parameter(0x50, guid) + parameters + parameter(1, {});
   const Bytes inline_qos = in_front.empty() ? Bytes{} : in_front + parameter(1, {});
-  return part(0x15, bytes({0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2}) + sequence(1) + inline_qos + list,
+  return part(0x15, bytes({0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2}) + sequence(number) + inline_qos + list,
               in_front.empty() ? 4 : 6);
 }
 
+/// When it is repeated.
 bool admits_announcement(const Bytes& packet) {
-  return PacketFilter{Admission::secured}.admits_discovery(packet, kNow);
+  PacketFilter filter{Admission::secured};
+  return !filter.admits_discovery(packet, kNow) && filter.admits_discovery(packet, kNow);
+}
+
+/// @param address   where the participant says that it is.
+Bytes announced_at(int address) {
+  return header() + announcement(1, parameter(0x32, Bytes(24, static_cast<std::uint8_t>(address))));
 }
 
 TEST(PacketFilter, RefusesRangesThatNoTestHas) {
@@ -124,20 +131,40 @@ TEST(PacketFilter, TokensAreAsLongAsTheySay) {
 
 TEST(PacketFilter, AnnouncementStaysAsItWasWhileItIsHeard) {
   PacketFilter filter{Admission::secured};
-  const Bytes genuine = header() + announcement(1, parameter(0x32, Bytes(24)));
-  const Bytes moved = header() + announcement(1, parameter(0x32, Bytes(24, 7)));
+  const Bytes genuine = announced_at(0);
+  const Bytes moved = announced_at(7);
+  EXPECT_FALSE(filter.admits_discovery(genuine, kNow)) << "heard once";
   EXPECT_TRUE(filter.admits_discovery(genuine, kNow));
-  EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{1}));
+  for (const int second : {1, 1, 1}) EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{second}));
+  const Bytes later = header() + announcement(1, parameter(0x32, Bytes(24)), {}, std::uint64_t{1} << 33U);
+  EXPECT_FALSE(filter.admits_discovery(later, kNow + seconds{1})) << "Fast DDS would drop the genuine ones as old";
   EXPECT_TRUE(filter.admits_discovery(genuine, kNow + seconds{9}));
   EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{18}));
-  EXPECT_TRUE(filter.admits_discovery(moved, kNow + seconds{30})) << "a participant that was away";
+  EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{30})) << "heard once";
+  EXPECT_TRUE(filter.admits_discovery(moved, kNow + seconds{31})) << "a participant that was away";
+}
+
+/// Who knows the network can send another announcement before the genuine one arrives, and many of them.
+TEST(PacketFilter, ForgedAnnouncementsThatComeFirstDoNotKeepAParticipantOut) {
+  PacketFilter filter{Admission::secured};
+  for (int address = 1; address < 200; ++address) EXPECT_FALSE(filter.admits_discovery(announced_at(address), kNow));
+  EXPECT_FALSE(filter.admits_discovery(announced_at(1), kNow)) << "not clearly more often than the others";
+  for (int heard = 1; heard <= 4; ++heard) {
+    EXPECT_EQ(filter.admits_discovery(announced_at(0), kNow + seconds{1}), heard == 4) << heard << " times";
+    EXPECT_FALSE(filter.admits_discovery(announced_at(100 + heard), kNow + seconds{1}));
+  }
+  // What is repeated often enough gets in: the certificate tells whose it is, and that is not looked at here.
+  PacketFilter other{Admission::secured};
+  EXPECT_FALSE(other.admits_discovery(announced_at(1), kNow));
+  EXPECT_TRUE(other.admits_discovery(announced_at(1), kNow)) << "control";
 }
 
 TEST(PacketFilter, CountsWhatItRefusesByKind) {
   const auto refused = std::make_shared<RefusedPackets>();
   PacketFilter filter{Admission::secured, refused};
-  const Bytes genuine = header() + announcement(1, parameter(0x32, Bytes(24)));
+  const Bytes genuine = announced_at(0);
   EXPECT_TRUE(filter.admits_message(header() + encrypted()));
+  EXPECT_FALSE(filter.admits_discovery(genuine, kNow));
   EXPECT_TRUE(filter.admits_discovery(genuine, kNow));
   EXPECT_EQ(refused->harmful + refused->in_plain_text + refused->announcements, 0U);
 
@@ -152,7 +179,7 @@ TEST(PacketFilter, CountsWhatItRefusesByKind) {
   EXPECT_FALSE(filter.admits_discovery(header() + announcement(1, {}, parameter(0x70, Bytes(4))), kNow));
   EXPECT_EQ(refused->in_plain_text, 3U) << "more than an announcement says, and no notice of leaving";
   EXPECT_FALSE(filter.admits_discovery(header() + announcement(2, {}), kNow)) << "in the name of another";
-  EXPECT_FALSE(filter.admits_discovery(header() + announcement(1, parameter(0x32, Bytes(24, 7))), kNow)) << "moved";
+  EXPECT_FALSE(filter.admits_discovery(announced_at(7), kNow)) << "moved";
   EXPECT_FALSE(filter.admits_discovery(header() + announcement(1, parameter(0x1001, token(0xfffffff0))), kNow));
   EXPECT_EQ(refused->announcements, 3U);
   EXPECT_EQ(refused->harmful + refused->in_plain_text + refused->departures, 6U) << "each packet is of one kind";
