@@ -118,8 +118,11 @@ TEST(RealTime, LossesAreBridgedAndCounted) {
     unanswered += std::isnan(round_trip) ? 1U : 0U;
   }
   EXPECT_EQ(unanswered, bridged(kept)) << "one row of `bridges` for each exchange without an answer";
-  for (const double energy : kept.table("coordinator", "bridges").column_values("energy_added_j")) {
-    EXPECT_TRUE(std::isfinite(energy));
+  // Of the last step no measured force follows, so its energy is not known.
+  const auto steps = kept.table("coordinator", "bridges").column_values("step");
+  const auto energy_j = kept.table("coordinator", "bridges").column_values("energy_added_j");
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_EQ(std::isfinite(energy_j[i]), steps[i] < 400.0) << "step " << steps[i];
   }
 }
 
