@@ -315,6 +315,11 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, doub
   if (const auto fast = noise_by_spectrum(span_of(fit.measured), span_of(remainder), period_s)) {
     level = std::min(level, *fast);
   }
+  // Noise is there at rest as well. Jumps of a friction that passes from place to place look like noise, and are not.
+  const Eigen::VectorXd& told_m = fit.command_m.size() > 0 ? fit.command_m : place_m;
+  if (const auto rest = floor_at_rest({period_s, span_of(told_m), span_of(fit.measured), span_of(remainder)})) {
+    level = std::min(level, tuning::kNearFloor * rest->rms);
+  }
   return level;
 }
 
@@ -394,16 +399,26 @@ bool is_clear(const FitSegment& fit) {
   return root_mean_square(fit.measured - fit.baseline) > tuning::kNearFloor / fit.weight;
 }
 
-/// Beside every measured displacement the force that answers it. What of it follows from the command is taken off.
-void relate_to_forces(std::vector<FitSegment>& segments) {
+/// Beside every measured displacement the force that answers it; what of it follows from the command is taken off.
+/// Beside every measured force the displacement that was commanded.
+void relate_channels(std::vector<FitSegment>& segments) {
   for (FitSegment& fit : segments) {
-    if (fit.segment.to != Channel::measured_displacement || fit.segment.is_quasi_static) continue;
-    const auto answer = std::ranges::find_if(segments, [&](const FitSegment& other) {
-      return other.segment.recording == fit.segment.recording && other.segment.to == Channel::measured_force &&
-             other.measured.size() == fit.measured.size();
+    if (fit.segment.is_quasi_static) continue;
+    const bool is_force = fit.segment.to == Channel::measured_force;
+    if (!is_force && fit.segment.to != Channel::measured_displacement) continue;
+    const Channel its = is_force ? Channel::measured_displacement : Channel::measured_force;
+    const auto other = std::ranges::find_if(segments, [&](const FitSegment& one) {
+      return one.segment.recording == fit.segment.recording && one.segment.to == its &&
+             one.measured.size() == fit.measured.size();
     });
-    if (answer == segments.end()) continue;
-    fit.answering_force = fit.discrepancy->parts(answer->measured).remainder;
+    if (other == segments.end()) continue;
+    if (is_force) {
+      std::vector<double> command_m(other->segment.input.size());
+      std::ranges::transform(other->segment.input, command_m.begin(), &Motion::displacement_m);
+      fit.command_m = other->average(command_m);
+    } else {
+      fit.answering_force = fit.discrepancy->parts(other->measured).remainder;
+    }
     take_noise(fit, fit.measured - fit.baseline);
   }
 }
@@ -431,7 +446,7 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
   for (Segment& segment : segments)
     problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));
-  relate_to_forces(problem.segments);
+  relate_channels(problem.segments);
   mark_suspects(problem.segments);
   return problem;
 }

@@ -78,6 +78,8 @@ struct FitSegment {
   double smoothing_floor = 0.0;
   // Of a measured displacement: what of the force that answers it no function of the command explains. Empty without.
   Eigen::VectorXd answering_force;
+  // Of a measured force: the displacement that was commanded, which rests without noise. Empty without.
+  Eigen::VectorXd command_m;
   // Samples over the autocorrelation time of the noise (independent_samples()): the same for all candidates.
   double independent = 1.0;
   // What of a residual here follows from the motion at all.

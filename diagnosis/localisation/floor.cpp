@@ -92,7 +92,11 @@ std::optional<RepeatabilityFloor> floor_of_cycles(const GapSignals& signals) {
 std::optional<RepeatabilityFloor> floor_at_rest(const GapSignals& signals) {
   double squares = 0.0;
   std::size_t count = 0;
-  for (const RestStretch& rest : rest_stretches(signals.input_m, signals.period_s)) {
+  const std::vector<RestStretch> stretches = rest_stretches(signals.input_m, signals.period_s);
+  for (std::size_t i = 0; i < stretches.size();) {
+    // Those that follow each other are one: slow noise moves little in a short one.
+    RestStretch rest = stretches[i];
+    while (++i < stretches.size() && stretches[i].begin == rest.begin + rest.count) rest.count += stretches[i].count;
     squares += variance(signals.residual.subspan(rest.begin, rest.count)) * static_cast<double>(rest.count);
     count += rest.count - 1;
   }

@@ -29,7 +29,7 @@ struct RepeatabilityFloor {
 /// over at least half of the recording.
 [[nodiscard]] std::optional<RepeatabilityFloor> floor_of_cycles(const GapSignals& signals);
 
-/// Of stretches at rest (rest_stretches()): the residual's spread around its mean in each. Nothing without any.
+/// Of the times at rest (rest_stretches()): the residual's spread around its mean in each. Nothing without any.
 [[nodiscard]] std::optional<RepeatabilityFloor> floor_at_rest(const GapSignals& signals);
 
 /// Of the fastest fluctuation, second differences, as if it were white: a lower limit to the floor, an upper one

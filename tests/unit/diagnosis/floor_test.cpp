@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_signals.hpp"
 
 namespace hybridtest {
@@ -59,6 +60,11 @@ TEST(Floor, EqualsNoiseAtRestAndHighFrequencies) {
   // Second differences of white noise are correlated: 35/18 times the variance of independent ones.
   EXPECT_NEAR(floor_of_high_frequencies(signals).rms, kNoise, 1.5 * kTolerance);
   EXPECT_NEAR(repeatability_floor(signals).rms, kNoise, 1.5 * kTolerance);
+  // Noise that takes 0.5 s to change; in stretches of 0.2 s two thirds of it would not show.
+  const MadeNoise slow{.correlation = 1.0 - kMadePeriod_s / 0.5};
+  const auto drifting = made_noise(slow, kSamples, kNoise, kMadePeriod_s, 1);
+  // Its samples are independent 1 s apart, in 16 s: 3 / sqrt(2 * 16), and the mean is of them.
+  EXPECT_NEAR(floor_at_rest({kMadePeriod_s, motion, drifting, drifting})->rms, kNoise, 0.5 * kNoise);
   const auto moving = sampled(kSamples, [](double t) { return sine(1.0, t); });
   EXPECT_FALSE(floor_at_rest({kMadePeriod_s, moving, residual, residual}).has_value());
 }

@@ -144,6 +144,45 @@ TEST(SettledNoise, HeldOutRecordingHasColouredNoiseToo) {
   EXPECT_NEAR(left.nrmse_after, left.floor_nrmse, 0.25 * left.floor_nrmse);
 }
 
+/// Friction that changes with the place looks like noise to whatever holds velocity, displacement and path alone. It is
+/// not there while the command rests; the noise is, also where that of the transducer hides the rest.
+TEST(SettledNoise, FrictionThatChangesWithThePlaceIsNoNoise) {
+  constexpr double kRest_s = 2.0;
+  const auto motion_m = [](double t) { return t > kRest_s ? made_motion_m(t - kRest_s) : 0.0; };
+  const auto verdict = [&](double friction_n, bool has_rest) {
+    const auto force_n = [&](double t) {
+      const double velocity_m_per_s = t > kRest_s ? made_velocity_m_per_s(t - kRest_s) : 0.0;
+      return kStiffness_n_per_m * motion_m(t) +
+             friction_n * std::tanh(velocity_m_per_s / 1e-3) * std::sin(motion_m(t) / 3e-3);
+    };
+    Recording recording = made_recording(motion_m, force_n, 200.0);
+    Random random{7};
+    DofRecording& dof = recording.dofs[0];
+    for (double& x : dof.of(Channel::measured_displacement)) x += 4e-5 * random.normal();
+    for (std::size_t i = 0; i < recording.samples; ++i) {
+      dof.of(Channel::command_displacement)[i] = motion_m(kSitePeriod_s * static_cast<double>(i));
+    }
+    if (!has_rest) {
+      recording.samples -= static_cast<std::size_t>(kRest_s / kSitePeriod_s);
+      for (const Channel channel :
+           {Channel::command_displacement, Channel::measured_displacement, Channel::measured_force}) {
+        std::vector<double>& values = dof.of(channel);
+        values.erase(values.begin(), values.end() - static_cast<std::ptrdiff_t>(recording.samples));
+      }
+    }
+    const SiteModel model = made_model();
+    IdentificationProblem problem = make_problem(model, modelled_segments(model, recording, 0, 0));
+    Selection selection;
+    selection.baseline = fit_nothing(problem, false);
+    selection.chosen = selection.baseline;
+    settle_noise(problem, selection.chosen);
+    return judge(problem, selection).verdict;
+  };
+  EXPECT_NE(verdict(3000.0, true), report::Verdict::none);
+  EXPECT_EQ(verdict(0.0, true), report::Verdict::none) << "control: the noise alone";
+  EXPECT_EQ(verdict(3000.0, false), report::Verdict::none) << "control: what a recording without rest does not show";
+}
+
 /// Control. Friction beside damping is left out: while its amount is wrong, the widest smoothing seems the best one,
 /// and what that does to a sliding force hides half of it.
 TEST(SettledNoise, WrongModelIsNotNone) {
