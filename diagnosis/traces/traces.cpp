@@ -52,15 +52,19 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
   double shrinking = 0.0;
   double fresh_count = 0.0;
   int before = -1;
+  bool was_held = false;
   for (std::size_t i = 1; i < received_m.size(); ++i) {
     if (sent_m[i] == sent_m[i - 1]) {
       before = -1;
+      was_held = false;
       continue;
     }
     const int lag = lags.lag[i] = lag_at(sent_m, received_m[i], i, latest);
     moving += 1.0;
     const bool is_held = received_m[i] == received_m[i - 1];
     lags.held += is_held ? 1.0 : 0.0;
+    lags.held_again += is_held && was_held ? 1.0 : 0.0;
+    was_held = is_held;
     if (lag >= 0) {
       found += 1.0;
       lags.mean += lag;
@@ -76,6 +80,7 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
   lags.found = found / moving;
   lags.shrinking = shrinking / found;
   lags.held /= moving;
+  lags.held_again /= moving;
   lags.mean /= found;
   for (const auto& [lag, count] : fresh) lags.fresh_at_usual = std::max(lags.fresh_at_usual, count / fresh_count);
   return lags;
@@ -85,12 +90,17 @@ std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<
                                       double period_s) {
   const NetworkLags lags = lags_between(sent_m, received_m, period_s);
   if (!lags.fluctuate()) return {};
-  const bool is_loss = lags.fresh_at_usual > tuning::kEquallyLateMin;
+  const bool are_alike = lags.fresh_at_usual > tuning::kEquallyLateMin;
+  // Two late messages in a row: the first one shows, late. Two lost ones: neither does. Nearer to which?
+  const double twice = lags.held * lags.held;
+  const bool is_short_jitter = 1.0 - lags.fresh_at_usual > 0.5 * twice && lags.held_again < 0.5 * twice;
+  const bool is_loss = are_alike && !is_short_jitter;
   const EffectType* const type =
       find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
   if (type == nullptr) return {};
-  // A uniformly distributed delay up to J has the mean J / 2.
-  const double value = is_loss ? lags.held : 2.0 * lags.mean * period_s;
+  // A uniformly distributed delay up to J has the mean J / 2. A short one is longer than a period in 1 - period / J.
+  const double jitter_s = are_alike ? period_s / (1.0 - lags.held) : 2.0 * lags.mean * period_s;
+  const double value = is_loss ? lags.held : jitter_s;
   Trace trace{.effect = {.type = type, .values = {}}, .in = Channel::target_displacement};
   for (const EffectParameter& parameter : type->parameters) {
     trace.effect.values.push_back(std::isnan(parameter.fallback) ? value : parameter.fallback);

@@ -32,6 +32,7 @@ struct NetworkLags {
   double shrinking = 0.0;       // share of found ones that follow a longer lag
   double fresh_at_usual = 0.0;  // share of fresh targets with the most frequent lag
   double held = 0.0;            // share of moving samples that repeat the target before
+  double held_again = 0.0;      // and of those that repeat one that was a repetition already
   double mean = 0.0;            // samples
 
   /// Whether the lags go up and down; those of a delay or a drift do not.
@@ -43,7 +44,9 @@ struct NetworkLags {
                                        double period_s);
 
 /// `jitter` or `loss`, if the lags fluctuate. With loss, new targets always have the same delay; with jitter they do
-/// not.
+/// not. A jitter of little more than a sample period leaves most of them alike, too: messages that come too late look
+/// lost. But then the one behind a late message is seldom late as well without showing the late one, so that two
+/// repetitions in a row are rare, and of messages that are lost independently of each other they are not.
 [[nodiscard]] std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<const double> received_m,
                                                     double period_s);
 

@@ -129,6 +129,30 @@ TEST(NetworkTrace, SeparatesLossJitterAndDelay) {
   EXPECT_FALSE(trace_of_network(motion_m(), with_noise(motion_m(), 1e-6), kPeriod_s)) << "not what was sent";
 }
 
+/// As of messages with a delay that is drawn uniformly, 1.15 periods at most: the newest that has arrived counts.
+TEST(NetworkTrace, JitterOfLittleMoreThanAPeriodIsNoLoss) {
+  constexpr double kJitter = 1.15;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random{seed};
+    std::vector<bool> is_late(kSamples);
+    for (std::size_t i = 0; i < kSamples; ++i) is_late[i] = kJitter * random.uniform() > 1.0;
+    std::vector<int> lags(kSamples, 1);
+    for (std::size_t i = 1; i < kSamples; ++i) lags[i] = is_late[i - 1] ? 2 : 1;
+    const auto jitter = trace_of_network(motion_m(), received(lags), kPeriod_s);
+    ASSERT_TRUE(jitter);
+    EXPECT_EQ(jitter->effect.type->name, "jitter") << seed;
+    // 1 - 1/J of the messages are late. Behind a late one no repetition is seen: that makes J less by 0.02 periods.
+    EXPECT_NEAR(jitter->effect.values[0], kJitter * kPeriod_s, 0.03 * kPeriod_s);
+
+    // Control: as many are lost.
+    std::vector<int> lost(kSamples, 1);
+    for (std::size_t i = 1; i < kSamples; ++i) lost[i] = is_late[i] ? lost[i - 1] + 1 : 1;
+    const auto loss = trace_of_network(motion_m(), received(lost), kPeriod_s);
+    ASSERT_TRUE(loss);
+    EXPECT_EQ(loss->effect.type->name, "loss") << seed;
+  }
+}
+
 TEST(FindTraces, SumsRecordingsAndSkipsEffectsOfTheModel) {
   const double step = span_of(motion_m()) / 60.0;
   Recording recording =
