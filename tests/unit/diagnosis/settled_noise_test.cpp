@@ -102,16 +102,18 @@ Recording noisy_recording(const NamedLaw& law, const Beside& beside, const MadeN
 }
 
 /// The verdict on the model as it stands.
-report::Verdict verdict_on(const NamedLaw& law, const Beside& beside, const MadeNoise& noise, std::uint64_t draw,
-                           double strength = 1.0) {
-  const SiteModel model = model_of(law, beside);
-  const Recording recording = noisy_recording(law, beside, noise, draw, strength);
+report::Verdict verdict_on(const SiteModel& model, const Recording& recording) {
   IdentificationProblem problem = make_problem(model, modelled_segments(model, recording, 0, 0));
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
   settle_noise(problem, selection.chosen);
   return judge(problem, selection).verdict;
+}
+
+report::Verdict verdict_on(const NamedLaw& law, const Beside& beside, const MadeNoise& noise, std::uint64_t draw,
+                           double strength = 1.0) {
+  return verdict_on(model_of(law, beside), noisy_recording(law, beside, noise, draw, strength));
 }
 
 TEST(SettledNoise, RightModelIsNoneWithEveryLawAndSmoothing) {
@@ -170,13 +172,7 @@ TEST(SettledNoise, FrictionThatChangesWithThePlaceIsNoNoise) {
         values.erase(values.begin(), values.end() - static_cast<std::ptrdiff_t>(recording.samples));
       }
     }
-    const SiteModel model = made_model();
-    IdentificationProblem problem = make_problem(model, modelled_segments(model, recording, 0, 0));
-    Selection selection;
-    selection.baseline = fit_nothing(problem, false);
-    selection.chosen = selection.baseline;
-    settle_noise(problem, selection.chosen);
-    return judge(problem, selection).verdict;
+    return verdict_on(made_model(), recording);
   };
   EXPECT_NE(verdict(3000.0, true), report::Verdict::none);
   EXPECT_EQ(verdict(0.0, true), report::Verdict::none) << "control: the noise alone";

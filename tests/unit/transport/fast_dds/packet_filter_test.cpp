@@ -135,7 +135,7 @@ TEST(PacketFilter, AnnouncementStaysAsItWasWhileItIsHeard) {
   const Bytes moved = announced_at(7);
   EXPECT_FALSE(filter.admits_discovery(genuine, kNow)) << "heard once";
   EXPECT_TRUE(filter.admits_discovery(genuine, kNow));
-  for (const int second : {1, 1, 1}) EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{second}));
+  for (int times = 0; times < 3; ++times) EXPECT_FALSE(filter.admits_discovery(moved, kNow + seconds{1}));
   const Bytes later = header() + announcement(1, parameter(0x32, Bytes(24)), {}, std::uint64_t{1} << 33U);
   EXPECT_FALSE(filter.admits_discovery(later, kNow + seconds{1})) << "Fast DDS would drop the genuine ones as old";
   EXPECT_TRUE(filter.admits_discovery(genuine, kNow + seconds{9}));
