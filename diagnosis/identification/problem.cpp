@@ -261,6 +261,13 @@ std::vector<double> predict_remembering(const SiteModel& model, FitSegment& fit)
   return predicted;
 }
 
+/// The displacements that it starts from, averaged.
+Eigen::VectorXd places_m(const FitSegment& fit) {
+  std::vector<double> displacement(fit.segment.input.size());
+  std::ranges::transform(fit.segment.input, displacement.begin(), &Motion::displacement_m);
+  return fit.average(displacement);
+}
+
 /// Median of the mean squares of groups of samples, corrected for what the median of so few draws lies below the mean
 /// (Wilson and Hilferty, 1931).
 double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_t>& group, std::size_t groups,
@@ -288,9 +295,7 @@ double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_
 /// direction of the motion, and by time.
 double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, double independent) {
   constexpr std::size_t kGroups = tuning::kNoiseGroups;
-  std::vector<double> displacement(fit.segment.input.size());
-  std::ranges::transform(fit.segment.input, displacement.begin(), &Motion::displacement_m);
-  const Eigen::VectorXd place_m = fit.average(displacement);
+  const Eigen::VectorXd place_m = places_m(fit);
   const auto size = static_cast<std::size_t>(remainder.size());
   std::vector<std::size_t> order(size);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -380,7 +385,6 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment, 
   add_number_slopes(model, fit);
   add_found_changes(model, found, fit);
   fit.discrepancy = std::make_shared<Discrepancy>(fit);
-  take_noise(fit, fit.measured - fit.baseline);
   return fit;
 }
 
@@ -413,13 +417,10 @@ void relate_channels(std::vector<FitSegment>& segments) {
     });
     if (other == segments.end()) continue;
     if (is_force) {
-      std::vector<double> command_m(other->segment.input.size());
-      std::ranges::transform(other->segment.input, command_m.begin(), &Motion::displacement_m);
-      fit.command_m = other->average(command_m);
+      fit.command_m = places_m(*other);
     } else {
       fit.answering_force = fit.discrepancy->parts(other->measured).remainder;
     }
-    take_noise(fit, fit.measured - fit.baseline);
   }
 }
 
@@ -447,6 +448,7 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   for (Segment& segment : segments)
     problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));
   relate_channels(problem.segments);
+  for (FitSegment& fit : problem.segments) take_noise(fit, fit.measured - fit.baseline);
   mark_suspects(problem.segments);
   return problem;
 }
