@@ -5,9 +5,11 @@
 #include "core/config_error.hpp"
 #include "core/exit_code.hpp"
 #include "launch/commands.hpp"
+#include "runtime/crash_report.hpp"
 #include "runtime/version.hpp"
 
 int main(int argc, char** argv) {
+  hybridtest::report_crashes();
   CLI::App app{
       "Distributed hybrid tests: one part of a structure is computed, the rest is a specimen in a laboratory\n"
       "or a simulated specimen; both are coupled at every step of an earthquake.\n"

@@ -17,6 +17,7 @@
 #include "recording/recorder.hpp"
 #include "recording/recorder_thread.hpp"
 #include "recording/summary/run_summary.hpp"
+#include "runtime/crash_report.hpp"
 #include "runtime/deferring_transport.hpp"
 #include "runtime/event_log.hpp"
 #include "runtime/executor.hpp"
@@ -567,6 +568,7 @@ int run_participant_process(const ParticipantProcessOptions& options, Role role)
 }
 
 int participant_main(int argc, char** argv, Role role) {
+  report_crashes();
   CLI::App app{"One participant of a hybrid test: " + std::string{name(role)}, std::string{name(role)}};
   app.set_version_flag("--version", app.get_name() + " " + std::string{software_version()});
   ParticipantProcessOptions options;

@@ -25,6 +25,7 @@ namespace {
 constexpr int kPortsOfADomain = 250;  // RTPS 9.6.1
 constexpr std::size_t kKept = 512;
 constexpr std::size_t kHeader = 20;  // of RTPS
+constexpr std::array<std::uint8_t, 8> kRtps{'R', 'T', 'P', 'S', 2, 3, 1, 15};
 constexpr timespec kInterval{.tv_sec = 0, .tv_nsec = 100'000};
 
 using Bytes = std::vector<std::uint8_t>;
@@ -116,7 +117,7 @@ void PacketFuzzer::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     listen();
     const Packet packet = next();
-    if (!heard_.empty() || kind_ == Kind::noise) {
+    if (!heard_.empty() || kind_ == Kind::noise || kind_ == Kind::malformed_packets) {
       sockaddr_in to{};
       to.sin_family = AF_INET;
       to.sin_port = htons(packet.port);
@@ -161,25 +162,51 @@ void PacketFuzzer::listen() {
 
 PacketFuzzer::Packet PacketFuzzer::next() {
   Packet packet;
-  if (kind_ == Kind::noise) {
+  if (kind_ == Kind::noise || kind_ == Kind::malformed_packets) {
     packet.port = static_cast<std::uint16_t>(first_port_ + static_cast<int>(below(60)));
     if (!heard_.empty()) packet.port = heard_[below(heard_.size())].port;
+    if (kind_ == Kind::malformed_packets) {
+      packet.bytes = malformed();
+      return packet;
+    }
     packet.bytes.resize(below(2000));
     for (std::uint8_t& one : packet.bytes) one = byte();
-    constexpr std::array<std::uint8_t, 8> kRtps{'R', 'T', 'P', 'S', 2, 3, 1, 15};
     if (below(2) == 0 && packet.bytes.size() > kRtps.size()) std::ranges::copy(kRtps, packet.bytes.begin());
     return packet;
   }
   if (heard_.empty()) return packet;
   packet = heard_[below(heard_.size())];
   switch (kind_) {
-    case Kind::noise: break;
+    case Kind::noise:
+    case Kind::malformed_packets: break;
     case Kind::cut_packets: cut(packet.bytes); break;
     case Kind::altered_packets: alter(packet.bytes); break;
     case Kind::disordered_packets: disorder(packet.bytes); break;
     case Kind::forged_packets: forge(packet.bytes); break;
   }
   return packet;
+}
+
+std::vector<std::uint8_t> PacketFuzzer::malformed() {
+  constexpr std::array<int, 19> kParts{0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d, 0x0e, 0x0f, 0x12,
+                                       0x13, 0x15, 0x16, 0x30, 0x31, 0x32, 0x33, 0x34, 0x80};
+  Bytes bytes{kRtps.begin(), kRtps.end()};
+  while (bytes.size() < kHeader) bytes.push_back(byte());
+  const std::size_t parts = 1 + below(4);
+  for (std::size_t i = 0; i < parts; ++i) {
+    const std::size_t length = 4 * below(below(3) == 0 ? 350 : 20);
+    std::size_t said = length;
+    if (below(6) == 0) said = 0;  // up to the end of the packet
+    if (below(8) == 0) said = below(65'536);
+    append(bytes,
+           {kParts[below(kParts.size())], byte() | 1, static_cast<int>(said % 256), static_cast<int>(said / 256)});
+    const std::size_t range = std::array<std::size_t, 3>{256, 64, 4}[below(3)];
+    for (std::size_t at = 0; at < length; ++at) {
+      const bool is_random = range != 64 || below(4) == 0;
+      bytes.push_back(is_random ? static_cast<std::uint8_t>(below(range)) : std::uint8_t{0});
+    }
+  }
+  return bytes;
 }
 
 void PacketFuzzer::cut(std::vector<std::uint8_t>& bytes) {

@@ -16,6 +16,7 @@ class PacketFuzzer {
  public:
   enum class Kind {
     noise,               // random bytes, half of them behind a valid RTPS header
+    malformed_packets,   // parts that RTPS knows, with random contents, often to every reader
     cut_packets,         // packets of the test itself, cut short or with other lengths in their parts
     altered_packets,     // packets of the test itself with other bits, which may be well formed
     disordered_packets,  // packets of the test itself once more, or with their parts exchanged or among those of
@@ -42,6 +43,7 @@ class PacketFuzzer {
   void run(const std::stop_token& stop);
   void listen();
   [[nodiscard]] Packet next();
+  [[nodiscard]] std::vector<std::uint8_t> malformed();
   void cut(std::vector<std::uint8_t>& bytes);
   void alter(std::vector<std::uint8_t>& bytes);
   void disorder(std::vector<std::uint8_t>& bytes);

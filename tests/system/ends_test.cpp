@@ -18,6 +18,7 @@ namespace hybridtest {
 namespace {
 
 using ::testing::AnyOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
@@ -90,6 +91,15 @@ TEST_F(Ends, KilledCoordinatorIsLost) {
   kill_child(run, "coordinator", SIGKILL);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   expect_end(StopReason::coordinator_lost, "coordinator", "killed by signal 9");
+}
+
+TEST_F(Ends, CrashTellsTheCallsThatLedThere) {
+  StartedProgram run = start_endless();
+  kill_child(run, "coordinator", SIGSEGV);
+  ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
+  expect_end(StopReason::coordinator_lost, "coordinator", "killed by signal 11");
+  EXPECT_THAT(text_of(directory() / "run" / "coordinator.log"), ContainsRegex("the last one first:\n.*coordinator"));
+  EXPECT_THAT(run.standard_error(), HasSubstr("libc.so"));
 }
 
 TEST_F(Ends, SilentParticipantIsTheCauseNotTheOverdueCommand) {

@@ -43,6 +43,8 @@ class NetworkFuzz : public SystemTest {
 
 TEST_F(NetworkFuzz, NoiseChangesNoBit) { expect_unharmed(PacketFuzzer::Kind::noise); }
 
+TEST_F(NetworkFuzz, MalformedPacketsChangeNoBit) { expect_unharmed(PacketFuzzer::Kind::malformed_packets); }
+
 TEST_F(NetworkFuzz, CutPacketsChangeNoBit) { expect_unharmed(PacketFuzzer::Kind::cut_packets); }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "tests/support/rtps_packets.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// Whole tests to whose participants somebody sends packets that would keep Fast DDS busy for years.
+/// Whole tests to whose participants somebody sends packets that would keep Fast DDS busy for years, or end the process.
 namespace hybridtest {
 namespace {
 
@@ -41,34 +41,39 @@ class RefusedPacketsLive : public SystemTest {
               recorded("simulated").column(kCoordinatorId, "steps", "displacement_floor_2_m"));
   }
   /// A run to which this packet is sent in the middle.
-  StartedProgram completed_run(std::uint64_t end_of_gap) {
+  StartedProgram completed_run(const std::vector<std::uint8_t>& packet) {
     StartedProgram run = start_run(scenario_, "run", arguments_);
     EXPECT_TRUE(has_recorded("run", kCoordinatorId, 10.0)) << run.standard_error();
-    send_to_all_ports(gap_up_to(end_of_gap));
+    send_to_all_ports(packet);
     EXPECT_TRUE(run.is_running()) << "the test was over before the packets were sent";
     EXPECT_THAT(run.wait(), Optional(kExitCompleted)) << run.standard_error();
     return run;
   }
+  /// Every participant refuses them, says so, and goes on.
+  void expect_refused(const std::vector<std::uint8_t>& packet) {
+    const StartedProgram run = completed_run(packet);
+    const nlohmann::json participants = recorded("run").summary()["participants"];
+    ASSERT_EQ(participants.size(), 3U);
+    for (const nlohmann::json& one : participants) {
+      const std::string id = one["participant"];
+      // A port of discovery and one of messages.
+      EXPECT_EQ(one["refused_packets"]["harmful"], 2 * kEach) << id;
+      EXPECT_EQ(one["refused_packets"]["in_plain_text"], 0) << id;
+      EXPECT_THAT(log_of(id),
+                  HasSubstr("packets refused by the packet filter: 40 that would hang or end the process"));
+    }
+    EXPECT_THAT(run.standard_output(), HasSubstr("packets refused"));
+    expect_same_as_simulated();
+  }
 };
 
-TEST_F(RefusedPacketsLive, AreToldAndTheTestGoesOnUnharmed) {
-  const StartedProgram run = completed_run(std::uint64_t{1} << 60U);
-  const nlohmann::json participants = recorded("run").summary()["participants"];
-  ASSERT_EQ(participants.size(), 3U);
-  for (const nlohmann::json& one : participants) {
-    const std::string id = one["participant"];
-    // A port of discovery and one of messages.
-    EXPECT_EQ(one["refused_packets"]["harmful"], 2 * kEach) << id;
-    EXPECT_EQ(one["refused_packets"]["in_plain_text"], 0) << id;
-    EXPECT_THAT(log_of(id), HasSubstr("packets refused by the packet filter: 40 that would hang or end the process"));
-  }
-  EXPECT_THAT(run.standard_output(), HasSubstr("packets refused"));
-  expect_same_as_simulated();
-}
+TEST_F(RefusedPacketsLive, ThatWouldKeepItBusyForYears) { expect_refused(gap_up_to(std::uint64_t{1} << 60U)); }
+
+TEST_F(RefusedPacketsLive, ThatWouldEndTheProcess) { expect_refused(fragment_without_data()); }
 
 /// Control: a gap that a test could have is read, and nothing is told.
 TEST_F(RefusedPacketsLive, NothingIsToldWhereNoneWasRefused) {
-  const StartedProgram run = completed_run(5);
+  const StartedProgram run = completed_run(gap_up_to(5));
   for (const nlohmann::json& one : recorded("run").summary()["participants"]) {
     const std::string id = one["participant"];
     EXPECT_EQ(one["refused_packets"]["harmful"], 0) << id;

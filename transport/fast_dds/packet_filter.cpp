@@ -17,6 +17,7 @@ enum Submessage : std::uint8_t {
   kInfoTimestamp = 0x09,
   kInfoDestination = 0x0e,
   kData = 0x15,
+  kDataFragment = 0x16,
   kSecureBody = 0x30,
   kSecurePrefix = 0x31,
   kSecurePostfix = 0x32,
@@ -32,6 +33,11 @@ constexpr std::size_t kPrefixAt = 8;
 // Flags of DATA.
 constexpr std::uint8_t kHasInlineQos = 0x02;
 constexpr std::uint8_t kHasData = 0x04;
+constexpr std::uint8_t kHasKey = 0x08;
+constexpr std::uint8_t kFragmentIsKey = 0x04;
+// From the field that says so to the parameters in front of the data: identities and number, and which fragments.
+constexpr std::uint32_t kToParameters = 16;
+constexpr std::uint32_t kToParametersOfFragment = 28;
 // Reader and writer of announcements, and of the authentication.
 constexpr std::array<std::uint8_t, 8> kAnnouncing{0x00, 0x01, 0x00, 0xc7, 0x00, 0x01, 0x00, 0xc2};
 constexpr std::array<std::uint8_t, 8> kAuthenticating{0x00, 0x02, 0x01, 0xc4, 0x00, 0x02, 0x01, 0xc3};
@@ -131,6 +137,42 @@ bool has_sane_range(const Part& part) noexcept {
          (last <= first || last - first <= PacketFilter::kRangeMax);
 }
 
+/// Takes the parameters in front of the data.
+void skip_parameters(Reader& reader) noexcept {
+  while (reader.is_good()) {
+    const std::uint32_t what = reader.number(2);
+    static_cast<void>(reader.take(reader.number(2)));
+    if (what == kEndOfList) return;
+  }
+}
+
+/// Which fragments of a message it brings could be true. Takes what says so.
+bool takes_sane_fragments(Reader& reader) noexcept {
+  const std::uint64_t first = reader.number(4);
+  const std::uint64_t count = reader.number(2);
+  const std::uint64_t bytes_of_one = reader.number(2);
+  const std::uint64_t bytes_of_all = reader.number(4);
+  return reader.is_good() && first > 0 && count > 0 && bytes_of_one > 0 &&
+         (first + count - 2) * bytes_of_one < bytes_of_all && bytes_of_all <= PacketFilter::kMessageMax;
+}
+
+/// The data are where they should be. Of others Fast DDS 2.9 copies what lies behind the packet, or frees what it has
+/// not allocated.
+bool has_sane_data(const Part& part) noexcept {
+  if (part.id != kData && part.id != kDataFragment) return true;
+  const bool is_fragment = part.id == kDataFragment;
+  const bool has_key = (part.flags & (is_fragment ? kFragmentIsKey : kHasKey)) != 0;
+  const bool has_data = is_fragment || (part.flags & kHasData) != 0;
+  if (has_key && has_data) return false;
+  Reader reader{part.bytes, part.is_little()};
+  static_cast<void>(reader.take(2));
+  if (reader.number(2) != (is_fragment ? kToParametersOfFragment : kToParameters)) return false;
+  static_cast<void>(reader.take(kToParameters));
+  if (is_fragment && !takes_sane_fragments(reader)) return false;
+  if ((part.flags & kHasInlineQos) != 0) skip_parameters(reader);
+  return reader.is_good() && ((!has_data && !has_key) || !reader.rest().empty());
+}
+
 /// Does no harm to Fast DDS.
 bool is_sane(Bytes packet) noexcept {
   if (packet.size() < kHeaderBytes) return true;  // Fast DDS refuses it
@@ -138,10 +180,10 @@ bool is_sane(Bytes packet) noexcept {
   const bool has_statistics = std::ranges::equal(packet.subspan(kVendorAt, 2), kFastDds);
   Bytes rest = packet.subspan(kHeaderBytes);
   while (const auto part = next_part(rest)) {
-    if (!has_sane_range(*part)) return false;
-    // Fast DDS ends the process on an assertion when its statistics are not the last part. It looks for the next part
-    // at the next multiple of four.
-    if (has_statistics && !rest.empty() && (part->id == kStatistics || part->bytes.size() % 4 != 0)) return false;
+    if (!has_sane_range(*part) || !has_sane_data(*part)) return false;
+    // Fast DDS looks for the next part at the next multiple of four, where it would find other parts than we do. It
+    // ends the process on an assertion when its statistics are not the last part.
+    if (!rest.empty() && (part->bytes.size() % 4 != 0 || (has_statistics && part->id == kStatistics))) return false;
   }
   return true;
 }
@@ -152,8 +194,8 @@ std::optional<Bytes> payload_of(const Part& data) noexcept {
   if ((data.flags & kHasData) == 0) return std::nullopt;
   Reader reader{data.bytes, data.is_little()};
   static_cast<void>(reader.take(2));
-  if (reader.number(2) != 16) return std::nullopt;  // behind the two identities and the number
-  static_cast<void>(reader.take(16));
+  if (reader.number(2) != kToParameters) return std::nullopt;
+  static_cast<void>(reader.take(kToParameters));
   while ((data.flags & kHasInlineQos) != 0 && reader.is_good()) {
     const std::uint32_t what = reader.number(2);
     static_cast<void>(reader.take(reader.number(2)));

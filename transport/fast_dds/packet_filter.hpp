@@ -16,7 +16,7 @@ namespace hybridtest::fast_dds {
 
 /// Which packets this participant hands to Fast DDS.
 enum class Admission {
-  /// All but those that Fast DDS 2.9 would be busy with for ever.
+  /// All but those that Fast DDS 2.9 would be busy with for ever, or that end the process.
   plain,
   /// With credentials: what is encrypted, and the few packets by which participants find and authenticate each other.
   secured,
@@ -60,6 +60,8 @@ class PacketFilter {
   static constexpr std::uint64_t kRangeMax = std::uint64_t{1} << 24U;
   /// Messages of a writer are counted from 1, 1000 a second for 30 years.
   static constexpr std::uint64_t kSequenceMax = std::uint64_t{1} << 40U;
+  /// The largest message of a test has 200 kB. Fast DDS sets aside as many bytes as a fragment of one says.
+  static constexpr std::uint64_t kMessageMax = std::uint64_t{1} << 20U;
 
   /// @param refused   counts what is not admitted.
   explicit PacketFilter(Admission admission,

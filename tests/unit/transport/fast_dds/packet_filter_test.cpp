@@ -53,6 +53,28 @@ Bytes gap(std::uint64_t first, std::uint64_t end) {
 Bytes heartbeat(std::uint64_t first, std::uint64_t last) {
   return part(7, Bytes(8) + sequence(first) + sequence(last) + Bytes(4));
 }
+// Flags of DATA.
+constexpr int kParameters = 2;
+constexpr int kData = 4;
+constexpr int kKey = 8;
+
+/// @param octets   from the field that says so to what follows: 16.
+Bytes data(int flags, int octets, const Bytes& what_follows) {
+  return part(0x15, bytes({0, 0, octets % 256, octets / 256}) + Bytes(8) + sequence(1) + what_follows, flags);
+}
+
+struct Fragment {
+  std::uint32_t first;
+  int of_one;            // bytes
+  std::uint32_t of_all;  // bytes
+  std::size_t bytes = 8;
+  int flags = 0;
+};
+Bytes fragment(const Fragment& one) {
+  const Bytes which = word(one.first) + bytes({1, 0, one.of_one % 256, one.of_one / 256}) + word(one.of_all);
+  return part(0x16, bytes({0, 0, 28, 0}) + Bytes(8) + sequence(1) + which + Bytes(one.bytes), one.flags);
+}
+
 Bytes statistics() { return part(0x80, Bytes(52)); }
 Bytes encrypted() { return part(0x33, Bytes(20)) + part(0x30, Bytes(64)) + part(0x34, Bytes(20)); }
 
@@ -101,6 +123,45 @@ TEST(PacketFilter, RefusesStatisticsThatAreNotTheLastPart) {
     EXPECT_FALSE(filter.admits_discovery(header() + encrypted() + statistics() + statistics(), kNow));
     EXPECT_FALSE(filter.admits_discovery(header() + statistics() + encrypted(), kNow));
   }
+}
+
+TEST(PacketFilter, RefusesPartsThatEndBetweenMultiplesOfFour) {
+  const PacketFilter filter{Admission::plain};
+  EXPECT_FALSE(filter.admits_message(header() + part(0x0e, Bytes(14)) + Bytes(2) + heartbeat(1, 5)));
+  EXPECT_TRUE(filter.admits_message(header() + part(0x0e, Bytes(12)) + heartbeat(1, 5))) << "control";
+  EXPECT_TRUE(filter.admits_message(header() + data(kData, 16, Bytes(5)))) << "the last one";
+}
+
+TEST(PacketFilter, RefusesDataThatAreNotThere) {
+  const PacketFilter filter{Admission::plain};
+  const auto admits = [&](const Bytes& packet) { return filter.admits_message(header() + packet); };
+  const Bytes list = parameter(0x71, bytes({0, 0, 0, 3})) + parameter(1, {});
+  EXPECT_TRUE(admits(data(kData, 16, Bytes(8))));
+  EXPECT_TRUE(admits(data(kKey, 16, Bytes(8))));
+  EXPECT_TRUE(admits(data(kParameters, 16, list))) << "has left";
+  EXPECT_TRUE(admits(data(kParameters | kData, 16, list + Bytes(4))));
+  EXPECT_FALSE(admits(data(kData, 16, {}))) << "none";
+  EXPECT_FALSE(admits(data(kParameters | kData, 16, list))) << "none behind the parameters";
+  EXPECT_FALSE(admits(data(kData | kKey, 16, Bytes(8)))) << "both";
+  EXPECT_FALSE(admits(data(kData, 0, Bytes(8)))) << "in front of the part";
+  EXPECT_FALSE(admits(data(kData, 0xfff0, Bytes(8)))) << "the same, as a signed number";
+  EXPECT_FALSE(admits(data(kData, 400, Bytes(8)))) << "behind the packet";
+  EXPECT_FALSE(admits(data(kParameters, 16, parameter(0x71, bytes({0, 0, 0, 3}))))) << "parameters without an end";
+  EXPECT_FALSE(admits(data(kParameters, 16, bytes({0x71, 0, 0xff, 0xff}) + Bytes(8)))) << "parameter with a false length";
+  EXPECT_FALSE(admits(part(0x15, Bytes(12)))) << "too short";
+}
+
+TEST(PacketFilter, RefusesFragmentsThatAreNotOfAMessage) {
+  const PacketFilter filter{Admission::plain};
+  const auto admits = [&](const Bytes& packet) { return filter.admits_message(header() + packet); };
+  EXPECT_TRUE(admits(fragment({.first = 1, .of_one = 1000, .of_all = 4000})));
+  EXPECT_TRUE(admits(fragment({.first = 4, .of_one = 1000, .of_all = 4000})));
+  EXPECT_FALSE(admits(fragment({.first = 5, .of_one = 1000, .of_all = 4000}))) << "behind the last";
+  EXPECT_FALSE(admits(fragment({.first = 0, .of_one = 1000, .of_all = 4000}))) << "they are counted from 1";
+  EXPECT_FALSE(admits(fragment({.first = 1, .of_one = 0, .of_all = 4000}))) << "empty ones";
+  EXPECT_FALSE(admits(fragment({.first = 1, .of_one = 1000, .of_all = 1U << 30U}))) << "no message is so long";
+  EXPECT_FALSE(admits(fragment({.first = 1, .of_one = 1000, .of_all = 4000, .bytes = 0}))) << "none";
+  EXPECT_FALSE(admits(fragment({.first = 1, .of_one = 1000, .of_all = 4000, .flags = 4}))) << "of a key";
 }
 
 TEST(PacketFilter, MessagesWithCredentialsAreEncryptedAndNoMore) {
