@@ -16,6 +16,8 @@ namespace {
 constexpr Duration kStartedTogether = std::chrono::milliseconds{200};
 /// Longer than the round trip of a status.
 constexpr Duration kOnItsWay = std::chrono::milliseconds{50};
+/// After a status that the transport did not take.
+constexpr Duration kTellAgain = std::chrono::milliseconds{10};
 
 [[nodiscard]] bool may_still_leave(LifecycleState state) noexcept {
   return state == LifecycleState::joining || state == LifecycleState::ready;
@@ -49,9 +51,9 @@ Instant Presence::advance(Instant now) noexcept {
 Instant Presence::tell(Instant now) noexcept {
   if (status_changed_ || now >= next_heartbeat_) {
     own_.clock = now.time_since_epoch();
-    outbox_.send(own_);
-    status_changed_ = false;
-    next_heartbeat_ = now + lease_ / 4;
+    const bool is_told = outbox_.send(own_);
+    status_changed_ = !is_told;
+    next_heartbeat_ = now + (is_told ? lease_ / 4 : std::min(kTellAgain, lease_ / 4));
   }
   return std::min(next_lease_, next_heartbeat_);
 }

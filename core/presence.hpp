@@ -47,7 +47,8 @@ class Presence {
   /// when it changed or is due. @return when the next heartbeat or lease is due.
   Instant advance(Instant now) noexcept;
   /// Sends the own status when it changed or is due. Nothing may wake this participant for a quarter of a lease:
-  /// whoever changes the state after advance() calls this before the next sleep. @return as advance().
+  /// whoever changes the state after advance() calls this before the next sleep. What the transport does not take is
+  /// sent again soon. @return as advance().
   Instant tell(Instant now) noexcept;
 
   /// Sends the own status at the next advance() or tell(); a state once `refused` or `finished` stays.

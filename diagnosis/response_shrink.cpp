@@ -15,7 +15,7 @@ double square(double value) noexcept { return value * value; }
 /// What the completed model leaves of these tests on average [mean square over that of the response].
 double energy_left(std::span<const PossibleTest> tests) {
   double sum = 0.0;
-  for (const PossibleTest& test : tests) sum += square(test.nrmse);
+  for (const PossibleTest& test : tests) sum += square(test.error.nrmse);
   return sum / static_cast<double>(tests.size());
 }
 
@@ -36,14 +36,29 @@ void add_floor(std::span<const PossibleTest> of_noise, report::ResponseShrink& s
   if (before > 0.0) shrink.unknown_share = std::max(0.0, after - floor) / before;
 }
 
+/// Of an error of one number. What is left of it beyond the average of the draws repeats, and adds to theirs.
+template <typename Number>
+report::Interval error_left(std::span<const PossibleTest> tests, double after, const Number& number) {
+  double average = 0.0;
+  for (const PossibleTest& test : tests) average += number(test) / static_cast<double>(tests.size());
+  const report::Interval drawn = extremes(tests, number);
+  return {drawn.low, drawn.high + std::max(0.0, after - average)};
+}
+
 void add_intervals(const PossibleTests& possible, report::ResponseShrink& shrink) {
   const double repeats = std::max(0.0, square(shrink.nrmse_after) - energy_left(possible.of_both));
   std::vector<PossibleTest> tests = possible.of_both;
   tests.insert(tests.end(), possible.of_noise.begin(), possible.of_noise.end());
-  const report::Interval left = extremes(tests, [](const PossibleTest& test) { return test.nrmse; });
+  const report::Interval left = extremes(tests, [](const PossibleTest& test) { return test.error.nrmse; });
   shrink.nrmse_after_ci95 = {left.low, std::sqrt(square(left.high) + repeats)};
   if (const double before = square(shrink.nrmse_before); before > 0.0) {
     shrink.ci95 = {1.0 - square(shrink.nrmse_after_ci95->high) / before, 1.0 - square(left.low) / before};
+  }
+  shrink.peak_error_after_ci95 =
+      error_left(tests, shrink.peak_error_after, [](const PossibleTest& test) { return test.error.peak_error; });
+  if (shrink.energy_error_after) {
+    shrink.energy_error_after_ci95 =
+        error_left(tests, *shrink.energy_error_after, [](const PossibleTest& test) { return test.error.energy_error; });
   }
   for (std::size_t dof = 0; dof < shrink.peaks.size(); ++dof) {
     const auto peak = [&](const PossibleTest& test) { return test.peaks_m[static_cast<Eigen::Index>(dof)]; };
@@ -55,7 +70,7 @@ void add_intervals(const PossibleTests& possible, report::ResponseShrink& shrink
 }  // namespace
 
 PossibleTest possible_test(const TestResponse& drawn, const TestResponse& completed) {
-  return {.nrmse = response_error(drawn, completed).nrmse,
+  return {.error = response_error(drawn, completed),
           .peaks_m = peaks_m(drawn, drawn.steps()),
           .energy_taken_j = energy_taken_j(drawn, drawn.steps())};
 }

@@ -13,7 +13,7 @@ namespace hybridtest {
 /// A test that might have been recorded if the completed model is right: with another draw of the noise of the sensors,
 /// and with other parameters within their intervals. What is kept of it.
 struct PossibleTest {
-  double nrmse = 0.0;  // that the completed model leaves of it
+  ResponseError error;  // that the completed model leaves of it
   Eigen::VectorXd peaks_m;
   double energy_taken_j = 0.0;
 };
@@ -38,8 +38,8 @@ struct PossibleTests {
 /// The intervals are of a test of the same structure and ground motion that is not recorded yet: of its peaks, its
 /// energy, and what the completed model leaves and removes of it. They go from the smallest to the largest of all
 /// draws, so they hold it in 95 % or more where the completed model has the right form. Where it has not, what it
-/// leaves beyond noise and doubt in the parameters comes back in each test: that widens what may be left, but not the
-/// intervals of peaks and energy.
+/// leaves beyond noise and doubt in the parameters comes back in each test: that widens what may be left of response,
+/// peaks and energy, but not the intervals of peaks and energy themselves.
 /// @param names   one per degree of freedom of the response.
 [[nodiscard]] report::ResponseShrink response_shrink(const TestResponse& recorded, const TestResponse& given,
                                                      const TestResponse& completed, const PossibleTests& possible,

@@ -110,6 +110,8 @@ Json response_entry(const report::ResponseShrink& shrink) {
   entry["variance_removed"] = shrink.variance_removed;
   if (shrink.ci95) entry["ci95"] = interval(*shrink.ci95);
   if (shrink.nrmse_after_ci95) entry["nrmse_after_ci95"] = interval(*shrink.nrmse_after_ci95);
+  if (shrink.peak_error_after_ci95) entry["peak_error_after_ci95"] = interval(*shrink.peak_error_after_ci95);
+  if (shrink.energy_error_after_ci95) entry["energy_error_after_ci95"] = interval(*shrink.energy_error_after_ci95);
   if (shrink.explainable_fraction) entry["explainable_fraction"] = *shrink.explainable_fraction;
   if (shrink.unknown_share) entry["unknown_share"] = *shrink.unknown_share;
   entry["peaks"] = Json::array();

@@ -27,7 +27,7 @@ std::string judged_link(const InterfaceGap& gap, bool is_main) {
       "<span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span><em>{}</em></li>\n",
       state, escaped(plain(gap.interface)), sees(gap.interface), percent(gap.share), between_percent(gap.share_ci95),
       100.0 * std::clamp(gap.share, 0.0, 1.0),
-      is_main            ? "✗ largest gap"
+      is_main            ? "✗ main fault"
       : gap.is_at_fault  ? "above its noise floor"
       : gap.is_corrected ? "✓ numbers slightly off"
                          : "✓ within its noise floor");
@@ -246,12 +246,14 @@ std::string energy_bar(const Shrink& shrink) {
   return html + "</div>" + legend + "</p>\n";
 }
 
-std::string before_after(std::string_view what, double before, double after) {
+std::string before_after(std::string_view what, double before, double after,
+                         const std::optional<Interval>& after_ci95 = std::nullopt) {
   const double widest = std::max({before, after, 1e-12});
   return fmt::format(
       "<tr><th>{}</th><td>{}</td><td class=\"wide\"><span class=\"bar before\"><i style=\"width:{:.1f}%\"></i></span>"
-      "<span class=\"bar after\"><i style=\"width:{:.1f}%\"></i></span></td><td>{}</td></tr>\n",
-      what, percent(before), 100.0 * before / widest, 100.0 * after / widest, percent(after));
+      "<span class=\"bar after\"><i style=\"width:{:.1f}%\"></i></span></td><td>{}{}</td></tr>\n",
+      what, percent(before), 100.0 * before / widest, 100.0 * after / widest, percent(after),
+      after_ci95 ? fmt::format(" (95 %: {})", between_percent(*after_ci95)) : "");
 }
 
 /// What of the response is removed, what is unknown, and the floor.
@@ -263,10 +265,8 @@ std::string response_sentence(const ResponseShrink& response) {
   if (response.explainable_fraction) {
     html += fmt::format(", {} of what a perfect model could remove", percent(*response.explainable_fraction));
   }
-  html += fmt::format("; {} is repeatable and unexplained. NRMSE {} after", percent(*response.unknown_share),
-                      percent(response.nrmse_after));
-  if (response.nrmse_after_ci95) html += fmt::format(" (95 %: {})", between_percent(*response.nrmse_after_ci95));
-  return html + fmt::format(", noise floor {}.</p>\n", percent(*response.floor_nrmse));
+  return html + fmt::format("; {} is repeatable and unexplained. Noise floor: NRMSE {}.</p>\n",
+                            percent(*response.unknown_share), percent(*response.floor_nrmse));
 }
 
 std::string predicted_row(const PredictedNumber& number, std::string_view what, std::string_view unit) {
@@ -290,10 +290,13 @@ std::string predicted_table(const ResponseShrink& response) {
 }
 
 std::string response_rows(const ResponseShrink& response) {
-  std::string rows = before_after("response of the whole test, NRMSE", response.nrmse_before, response.nrmse_after) +
-                     before_after("response, peak error", response.peak_error_before, response.peak_error_after);
+  std::string rows = before_after("response of the whole test, NRMSE", response.nrmse_before, response.nrmse_after,
+                                  response.nrmse_after_ci95) +
+                     before_after("response, peak error", response.peak_error_before, response.peak_error_after,
+                                  response.peak_error_after_ci95);
   if (response.energy_error_before && response.energy_error_after) {
-    rows += before_after("response, energy error", *response.energy_error_before, *response.energy_error_after);
+    rows += before_after("response, energy error", *response.energy_error_before, *response.energy_error_after,
+                         response.energy_error_after_ci95);
   }
   return rows;
 }

@@ -142,6 +142,8 @@ struct ResponseShrink {
   double variance_removed = 0.0;                 // at most 1; negative where the causes make the response worse
   std::optional<Interval> ci95{};                // of it, in a repetition of this test
   std::optional<Interval> nrmse_after_ci95{};    // likewise
+  std::optional<Interval> peak_error_after_ci95{};
+  std::optional<Interval> energy_error_after_ci95{};
   std::optional<double> explainable_fraction{};  // as Shrink
   std::optional<double> unknown_share{};         // as Shrink
   std::vector<PredictedNumber> peaks{};          // [m] of |displacement|, one per degree of freedom

@@ -110,13 +110,16 @@ std::string written_in_one_line(std::span<const EffectSetting> effects) {
 
 std::string response_in_words(const report::ResponseShrink& response) {
   std::string text = fmt::format("\n  response of the whole test against {}\n", response.recording);
-  const auto add = [&](std::string_view what, double before, double after) {
-    text += fmt::format("    {:<22} {:.4f} before, {:.4f} after\n", what, before, after);
+  const auto add = [&](std::string_view what, double before, double after,
+                       const std::optional<report::Interval>& interval) {
+    text += fmt::format("    {:<22} {:.4f} before, {:.4f}{} after\n", what, before, after,
+                        interval ? fmt::format(" [{:.4f}, {:.4f}]", interval->low, interval->high) : "");
   };
-  add("displacement, NRMSE", response.nrmse_before, response.nrmse_after);
-  add("peak error", response.peak_error_before, response.peak_error_after);
+  add("displacement, NRMSE", response.nrmse_before, response.nrmse_after, response.nrmse_after_ci95);
+  add("peak error", response.peak_error_before, response.peak_error_after, response.peak_error_after_ci95);
   if (response.energy_error_before && response.energy_error_after) {
-    add("energy error", *response.energy_error_before, *response.energy_error_after);
+    add("energy error", *response.energy_error_before, *response.energy_error_after,
+        response.energy_error_after_ci95);
   }
   if (!response.floor_nrmse || !response.unknown_share || !response.ci95) return text;
   text += fmt::format("    {:<22} {:.4f}\n", "noise floor, NRMSE", *response.floor_nrmse);

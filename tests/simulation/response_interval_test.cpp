@@ -170,6 +170,7 @@ TEST_F(ResponseInterval, WrongParameterWithoutDoubtMissesThePeak) {
     EXPECT_FALSE(holds(peak.ci95, peak.recorded)) << peak.of;
     EXPECT_TRUE(holds(peak.ci95, peak.predicted)) << peak.of;
   }
+  EXPECT_TRUE(holds(response.peak_error_after_ci95.value(), response.peak_error_after)) << "what is unknown comes back";
   EXPECT_GT(response.unknown_share.value(), 0.001);
   EXPECT_TRUE(holds(response.ci95.value(), response.variance_removed)) << "what is unknown comes back";
   // Known no better than that.
@@ -235,6 +236,8 @@ TEST_F(ResponseInterval, HoldsAHeldOutTestInNineOfTenDraws) {
   Coverage energy;
   Coverage removed;
   Coverage left;
+  Coverage peak_error;
+  Coverage energy_error;
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
     const Site site = drawn_site(draw);
     const std::filesystem::path run = tested(site, 2 * draw + 1);
@@ -245,11 +248,17 @@ TEST_F(ResponseInterval, HoldsAHeldOutTestInNineOfTenDraws) {
     energy.add(response.energy_taken.value().ci95, response.energy_taken.value().recorded);
     removed.add(response.ci95.value(), response.variance_removed);
     left.add(response.nrmse_after_ci95.value(), response.nrmse_after);
+    peak_error.add(response.peak_error_after_ci95.value(), response.peak_error_after);
+    energy_error.add(response.energy_error_after_ci95.value(), response.energy_error_after.value());
   }
   // 95 % in the long run, or more: of 40, one and a half deviations below are 0.90. More is no error: the draws allow
   // for a misfit that most of these sites do not have.
-  for (const auto& [what, coverage] :
-       {std::pair{"peaks", peaks}, {"energy", energy}, {"removed", removed}, {"left", left}}) {
+  for (const auto& [what, coverage] : {std::pair{"peaks", peaks},
+                                       {"energy", energy},
+                                       {"removed", removed},
+                                       {"left", left},
+                                       {"peak_error", peak_error},
+                                       {"energy_error", energy_error}}) {
     EXPECT_GE(coverage.share(), 0.9) << what;
     RecordProperty(what, std::to_string(coverage.share()));
   }

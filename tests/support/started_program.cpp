@@ -129,6 +129,8 @@ StartedProgram::StartedProgram(const std::filesystem::path& program, std::vector
   if (process_ < 0) throw std::runtime_error{program.string() + " cannot be started: " + std::strerror(error)};
 }
 
+bool send_signal(pid_t process, int number) { return process > 0 && ::kill(process, number) == 0; }
+
 StartedProgram::StartedProgram(StartedProgram&& other) noexcept
     : output_{std::move(other.output_)},
       process_{std::exchange(other.process_, -1)},
@@ -137,7 +139,7 @@ StartedProgram::StartedProgram(StartedProgram&& other) noexcept
 StartedProgram::~StartedProgram() {
   if (process_ <= 0 || !is_running()) return;
   kill_descendants(process_);
-  ::kill(process_, SIGKILL);
+  send_signal(process_, SIGKILL);
   ::waitpid(process_, nullptr, 0);
 }
 
@@ -155,7 +157,7 @@ std::optional<int> StartedProgram::wait(std::chrono::milliseconds patience) {
 }
 
 void StartedProgram::signal(int number) const {
-  if (!exit_code_) ::kill(process_, number);
+  if (!exit_code_) send_signal(process_, number);
 }
 
 std::string StartedProgram::standard_output() const { return text_of(output_.string() + ".out"); }

@@ -57,6 +57,10 @@ class StartedProgram {
   std::optional<int> exit_code_;
 };
 
+/// As kill(2), but 0 and -1 are no process: there kill(2) would stop or end the tests themselves.
+/// @return whether the signal was sent.
+bool send_signal(pid_t process, int number);
+
 /// Whether the process is there and is no zombie.
 [[nodiscard]] bool is_alive(pid_t process);
 

@@ -40,7 +40,7 @@ class Ends : public SystemTest {
     pid_t process = 0;
     ASSERT_TRUE(wait_until([&] { return (process = participant_of(run, id)) != 0; }, std::chrono::seconds{20}))
         << run.standard_error();
-    ASSERT_EQ(::kill(process, signal), 0);
+    ASSERT_TRUE(send_signal(process, signal));
   }
   void expect_end(StopReason reason, const std::string& who, const std::string& why) const {
     const nlohmann::json summary = recorded("run").summary();

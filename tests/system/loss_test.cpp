@@ -64,7 +64,7 @@ TEST_F(Loss, KilledSiteEndsTestWithinLeaseAndKeepsItsRecord) {
   const pid_t site = run.child({"--id", "storey_1"});
   ASSERT_NE(site, 0);
   const auto killed = std::chrono::steady_clock::now();
-  ASSERT_EQ(::kill(site, SIGKILL), 0);
+  ASSERT_TRUE(send_signal(site, SIGKILL));
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_LE(seconds_since(killed), kLease_s + kMargin_s);
   EXPECT_THAT(run.standard_error(), HasSubstr("'storey_1' is lost"));
@@ -104,7 +104,7 @@ TEST_F(Loss, KilledCoordinatorBringsOthersToRest) {
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t coordinator = participant_of(run, kCoordinatorId);
   ASSERT_NE(coordinator, 0);
-  ASSERT_EQ(::kill(coordinator, SIGKILL), 0);
+  ASSERT_TRUE(send_signal(coordinator, SIGKILL));
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_THAT(run.standard_output(), HasSubstr("ENDED: THE COORDINATOR WAS LOST (coordinator, at"));
   EXPECT_THAT(run.standard_output(), HasSubstr("DATA INVALID"));
@@ -127,12 +127,12 @@ TEST_F(Loss, FrozenSiteEndsTestWithinLeaseAndExitsWhenResumed) {
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t site = run.child({"--id", "storey_1"});
   ASSERT_NE(site, 0);
-  ASSERT_EQ(::kill(site, SIGSTOP), 0);
+  ASSERT_TRUE(send_signal(site, SIGSTOP));
   const auto frozen = std::chrono::steady_clock::now();
   const bool coordinator_left =
       wait_until([&] { return run.child({"--scenario"}) == 0 || run.children().size() == 1; });
   const double left_after_s = seconds_since(frozen);
-  ::kill(site, SIGCONT);
+  send_signal(site, SIGCONT);
   ASSERT_TRUE(coordinator_left);
   EXPECT_LE(left_after_s, kLease_s + kMargin_s);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
@@ -155,7 +155,7 @@ TEST_F(Loss, KilledParentStopsEveryProcessSafely) {
   ASSERT_THAT(run.wait(), Optional(128 + SIGKILL));
   EXPECT_TRUE(wait_until([&] { return std::ranges::none_of(children, is_alive); }));
   for (const pid_t child : children) {
-    if (is_alive(child)) ::kill(child, SIGKILL);
+    if (is_alive(child)) send_signal(child, SIGKILL);
   }
 
   const RecordedRun record = recorded("run");

@@ -231,7 +231,7 @@ TEST_F(OpenSeesLeads, KilledOpenSeesEndsTheTest) {
   ASSERT_TRUE(wait_until([&] { return has_recorded("run", kCoordinatorId, 500); })) << run.standard_error();
   const pid_t opensees = opensees_of(run);
   ASSERT_NE(opensees, 0);
-  kill(opensees, SIGKILL);
+  send_signal(opensees, SIGKILL);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   const nlohmann::json summary = recorded("run").summary();
   EXPECT_EQ(summary["stop_reason"], "opensees_lost");
@@ -247,7 +247,7 @@ TEST_F(OpenSeesLeads, StoppedOpenSeesEndsTheTestAfterItsSilence) {
   ASSERT_TRUE(wait_until([&] { return has_recorded("run", kCoordinatorId, 500); })) << run.standard_error();
   const pid_t opensees = opensees_of(run);
   ASSERT_NE(opensees, 0);
-  kill(opensees, SIGSTOP);
+  send_signal(opensees, SIGSTOP);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "opensees_lost");
   EXPECT_THAT(recorded("run").summary()["end"]["why"].get<std::string>(), HasSubstr("asked for nothing for 1"));
@@ -259,7 +259,7 @@ TEST_F(OpenSeesLeads, OpenSeesEndsWithAKilledCoordinator) {
   StartedProgram run = start_run(own_copy("shear_frame"), "run");
   ASSERT_TRUE(wait_until([&] { return has_recorded("run", kCoordinatorId, 500); })) << run.standard_error();
   const pid_t opensees = opensees_of(run);
-  kill(participant_of(run, kCoordinatorId), SIGKILL);
+  send_signal(participant_of(run, kCoordinatorId), SIGKILL);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "coordinator_lost");
   EXPECT_TRUE(wait_until([&] { return !is_alive(opensees); }));
@@ -270,7 +270,7 @@ TEST_F(OpenSeesLeads, OpenSeesEndsWithAKilledSite) {
   StartedProgram run = start_run(own_copy("shear_frame"), "run");
   ASSERT_TRUE(wait_until([&] { return has_recorded("run", kCoordinatorId, 500); })) << run.standard_error();
   const pid_t opensees = opensees_of(run);
-  kill(participant_of(run, "storey_1"), SIGKILL);
+  send_signal(participant_of(run, "storey_1"), SIGKILL);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "participant_lost");
   EXPECT_FALSE(is_alive(opensees));

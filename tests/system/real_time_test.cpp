@@ -35,7 +35,7 @@ class RealTimeRun : public SystemTest {
   void send(const StartedProgram& run, const std::string& id, int signal) const {
     const pid_t process = participant_of(run, id);
     ASSERT_NE(process, 0) << id;
-    ASSERT_EQ(::kill(process, signal), 0) << id;
+    ASSERT_TRUE(send_signal(process, signal)) << id;
   }
   /// What the participant `id` did not do in time ended the test.
   void expect_deadlines_missed(const std::string& id) const {

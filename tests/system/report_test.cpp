@@ -113,7 +113,7 @@ TEST_F(Report, OfAnotherCompensatorIsComparedInFigures) {
 TEST_F(Report, OfAKilledSiteSaysSo) {
   StartedProgram program = start_run(shipped_scenario("two_storey_one_site"), "run", {"--set", "time.duration_s=600"});
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << program.standard_error();
-  ASSERT_EQ(::kill(participant_of(program, "storey_1"), SIGKILL), 0);
+  ASSERT_TRUE(send_signal(participant_of(program, "storey_1"), SIGKILL));
   ASSERT_THAT(program.wait(), Optional(kExitEndedEarly)) << program.standard_error();
   const std::string html = page("run");
   EXPECT_THAT(html, HasSubstr("✗ Ended: a participant was lost (storey_1"));

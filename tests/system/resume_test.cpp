@@ -44,7 +44,7 @@ class Resume : public SystemTest {
     for (const std::string& id : ids) {
       const pid_t process = participant_of(run, id);
       ASSERT_NE(process, 0) << id;
-      ASSERT_EQ(::kill(process, SIGKILL), 0);
+      ASSERT_TRUE(send_signal(process, SIGKILL));
     }
     ASSERT_TRUE(wait_until([&] { return run.standard_error().find("To go on, type") != std::string::npos; }))
         << run.standard_error();
@@ -270,7 +270,7 @@ TEST_F(Resume, CoordinatorThatDiesTwiceGoesOnTwice) {
   kill_at_step(run, 1000.0, {"coordinator"});
   StartedProgram second = resume("second");
   ASSERT_TRUE(has_recorded("run", "coordinator", 3000.0)) << second.standard_error();
-  ASSERT_EQ(::kill(participant_of(second, kCoordinatorId), SIGKILL), 0);
+  ASSERT_TRUE(send_signal(participant_of(second, kCoordinatorId), SIGKILL));
   StartedProgram third = resume("third");
   ASSERT_THAT(third.wait(), Optional(kExitCompleted)) << third.standard_error() << second.standard_error();
   EXPECT_THAT(second.wait(), Optional(kExitEndedEarly)) << second.standard_error();
@@ -293,7 +293,7 @@ TEST_F(Resume, RefusesOtherScenariosAndLostSites) {
   expect_refused("the scenario differs from that of the recording", "other");
   std::ofstream{scenario} << text;
   const pid_t site = participant_of(run, "storey_1");
-  ASSERT_EQ(::kill(site, SIGKILL), 0);
+  ASSERT_TRUE(send_signal(site, SIGKILL));
   expect_refused("A site cannot be restarted in the middle of a test", "site");
   expect_ends(run);
 }

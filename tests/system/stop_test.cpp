@@ -73,7 +73,7 @@ TEST_F(Stop, CtrlCAtASiteStopsTheWholeTest) {
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t site = run.child({"--id", "storey_1"});
   ASSERT_NE(site, 0);
-  ASSERT_EQ(::kill(site, SIGINT), 0);
+  ASSERT_TRUE(send_signal(site, SIGINT));
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   expect_stopped_in_order(StopReason::interrupted);
 }
@@ -113,7 +113,7 @@ TEST_F(Stop, EmergencyStopReachesTheSiteWithoutTheCoordinator) {
   ASSERT_TRUE(has_recorded("run", "coordinator", 1000.0)) << run.standard_error();
   const pid_t coordinator = participant_of(run, kCoordinatorId);
   ASSERT_NE(coordinator, 0);
-  ASSERT_EQ(::kill(coordinator, SIGSTOP), 0);
+  ASSERT_TRUE(send_signal(coordinator, SIGSTOP));
   Arguments arguments{"emergency-stop", test_name()};
   for (const std::string& argument : network()) arguments.push_back(argument);
   StartedProgram command = start_hybridtest(arguments, "emergency_stop");
@@ -122,7 +122,7 @@ TEST_F(Stop, EmergencyStopReachesTheSiteWithoutTheCoordinator) {
   EXPECT_THAT(command.standard_output(), HasSubstr("storey_1"));
   EXPECT_THAT(command.standard_error(), HasSubstr("NOT found: coordinator"));
   ASSERT_TRUE(wait_until([&] { return run.child({"--id", "storey_1"}) == 0; })) << "the site goes on";
-  ::kill(coordinator, SIGCONT);
+  send_signal(coordinator, SIGCONT);
   ASSERT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "emergency_stop");
 }

@@ -226,7 +226,7 @@ TEST_F(UdpRigTest, DeadSiteDropsTheEnableAtController) {
   EXPECT_THAT(controller.program().standard_output(), ::testing::Not(HasSubstr("enable off")));
   const pid_t site = udp.child({"--id", "storey_1"});
   ASSERT_NE(site, 0);
-  ASSERT_EQ(::kill(site, SIGKILL), 0);
+  ASSERT_TRUE(send_signal(site, SIGKILL));
   EXPECT_TRUE(wait_until([&] {
     return controller.program().standard_output().find(
                "enable off: watchdog: the control loop of the site did not run") != std::string::npos;

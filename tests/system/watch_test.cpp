@@ -191,13 +191,13 @@ TEST_F(Watch, TestThatWaitsForALinkIsShownAsHeld) {
   ASSERT_TRUE(page.reaches_step(500)) << run.standard_error();
   const pid_t site = participant_of(run, "storey_1");
   ASSERT_NE(site, 0);
-  ASSERT_EQ(::kill(site, SIGSTOP), 0);  // it is there and nobody hears it, as behind a link that is down
+  ASSERT_TRUE(send_signal(site, SIGSTOP));  // it is there and nobody hears it, as behind a link that is down
   ASSERT_TRUE(page.reaches("held")) << run.standard_error();
   EXPECT_EQ(page.state("storey_1"), "not heard by the coordinator, which waits for its link");
   const json held = page.ask();
   EXPECT_THAT(held["test"]["verdict"].get<std::string>(), HasSubstr("Held: nothing from 'storey_1' for"));
   EXPECT_THAT(held["test"]["verdict"].get<std::string>(), HasSubstr("waiting up to 60 s for its link"));
-  ASSERT_EQ(::kill(site, SIGCONT), 0);
+  ASSERT_TRUE(send_signal(site, SIGCONT));
   ASSERT_TRUE(page.reaches("running")) << run.standard_error();
   EXPECT_EQ(page.state("storey_1"), "running");
   EXPECT_TRUE(page.reaches_step(held["test"]["step"].get<int>() + 100));
@@ -213,7 +213,7 @@ TEST_F(Watch, KilledSiteIsSeenWithinTheLease) {
   ASSERT_TRUE(page.reaches_step(500)) << run.standard_error();
   const pid_t site = participant_of(run, "storey_1");
   ASSERT_NE(site, 0);
-  ASSERT_EQ(::kill(site, SIGKILL), 0);
+  ASSERT_TRUE(send_signal(site, SIGKILL));
   const auto killed = std::chrono::steady_clock::now();
   ASSERT_TRUE(wait_until([&] { return page.state("storey_1") == "lost"; }));
   const auto seen = std::chrono::steady_clock::now() - killed;
@@ -292,7 +292,7 @@ TEST_F(Watch, PageOfAKilledRunShowsItsEndAndLeaves) {
   EXPECT_TRUE(is_alive(watch));
   // Nobody asks any more: it leaves after a minute.
   EXPECT_TRUE(wait_until([&] { return !is_alive(watch); }, 90s));
-  if (is_alive(watch)) ::kill(watch, SIGKILL);
+  if (is_alive(watch)) send_signal(watch, SIGKILL);
 }
 
 TEST_F(Watch, RefusesWrongOptionsInOneLine) {

@@ -47,13 +47,6 @@ std::optional<ParticipantStatus> Peers::silent(const InstanceHandle& instance) {
   return known == peers_.end() ? std::nullopt : report(*known);
 }
 
-std::optional<ParticipantStatus> Peers::silent(const GuidPrefix& prefix) {
-  const std::lock_guard lock{mutex_};
-  const auto known = std::find_if(peers_.begin(), peers_.end(),
-                                  [&](const Peer& peer) { return peer.prefix == prefix && is_missed(peer); });
-  return known == peers_.end() ? std::nullopt : report(*known);
-}
-
 bool Peers::is_missed(const Peer& peer) noexcept { return can_move(peer.last.state) && !peer.reported; }
 
 std::optional<ParticipantStatus> Peers::report(Peer& peer) {

@@ -26,8 +26,6 @@ class Peers {
   /// No status arrived in the instance within the deadline. While nothing can move (a rig that takes
   /// long to connect), statuses may pause; then it is not a loss.
   [[nodiscard]] std::optional<ParticipantStatus> silent(const InstanceHandle& instance);
-  /// The same for the statuses of one participant.
-  [[nodiscard]] std::optional<ParticipantStatus> silent(const GuidPrefix& prefix);
 
  private:
   struct Peer {

@@ -141,12 +141,6 @@ class DdsInbox final : public Inbox<Message>, private dds::DataReaderListener {
     participant_.waker.signal();
   }
 
-  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override {
-    if constexpr (kWatchesPeers) {
-      if (status.not_alive_count_change > 0) miss(peers_.silent(prefix_of(status.last_publication_handle)));
-    }
-  }
-
   void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus& status) override {
     if constexpr (kWatchesPeers) {
       miss(peers_.silent(status.last_instance_handle));

@@ -22,10 +22,8 @@ void set_delivery(const Delivery& delivery, std::int32_t depth, const FastDdsSet
   // Data sharing uses files shared by processes; files of a killed process block the others.
   qos.data_sharing().off();
   if (delivery.heartbeat) {
-    // Each sample says that its writer is alive, to those who hear it. Otherwise Fast DDS says so in addition, for each
-    // participant to each other one.
-    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
-    qos.liveliness().lease_duration = to_dds(settings.lease);
+    // Not its liveliness as well: where a reader has a lease, Fast DDS 2.9 goes through the list of all readers of the
+    // process when a sample arrives, without a lock. The process ended when another reader was made at that moment.
     qos.deadline().period = to_dds(settings.heartbeat_deadline);
   }
 }
@@ -58,7 +56,6 @@ dds::DataReaderQos reader_qos(const Delivery& delivery, const FastDdsSettings& s
   dds::DataReaderQos qos;
   set_delivery(delivery, delivery.reader_depth > 0 ? delivery.reader_depth : delivery.depth, settings, qos);
   if (settings.is_observer) {
-    qos.liveliness() = dds::DataReaderQos{}.liveliness();
     qos.deadline() = dds::DataReaderQos{}.deadline();
   }
   if (settings.reads_best_effort && !delivery.for_late_joiners) {

@@ -16,7 +16,7 @@ namespace hybridtest::fast_dds {
 struct Delivery {
   bool reliable = true;
   bool for_late_joiners = false;  // transient local
-  bool heartbeat = false;         // liveliness and deadline detect lost participants
+  bool heartbeat = false;         // its deadline detects lost participants
   std::int32_t depth = 16;        // newest samples kept per instance, by each end
   std::int32_t reader_depth = 0;  // kept by the reader, if different
   std::int32_t instances = 1;     // largest number of keys at one endpoint

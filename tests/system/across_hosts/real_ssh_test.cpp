@@ -130,7 +130,7 @@ TEST_F(RealSsh, RefusedLoginsAreToldAndNobodyIsAsked) {
 
 TEST_F(RealSsh, KilledRemoteParticipantEndsTheTestInWords) {
   StartedProgram test = running_test();
-  for (const pid_t site : words_there("/experimental_site")) kill(site, SIGKILL);
+  for (const pid_t site : words_there("/experimental_site")) send_signal(site, SIGKILL);
   EXPECT_THAT(test.wait(), Optional(kExitEndedEarly)) << test.standard_error();
   EXPECT_THAT(test.standard_error(), HasSubstr("storey_1: killed by signal 9 (Killed)"));
   EXPECT_EQ(recorded("run").summary()["stop_reason"], "participant_lost");

@@ -93,7 +93,7 @@ void SshServer::start() {
 }
 
 void SshServer::cut_connections() const {
-  for (const pid_t session : server_->children()) kill(session, SIGKILL);
+  for (const pid_t session : server_->children()) send_signal(session, SIGKILL);
 }
 
 }  // namespace hybridtest

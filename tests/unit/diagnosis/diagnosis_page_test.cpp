@@ -117,6 +117,9 @@ TEST(DiagnosisPage, ShowsResponseWithFloorAndIntervals) {
   response.variance_removed = 0.75;
   response.ci95 = {0.71, 0.78};
   response.nrmse_after_ci95 = {0.0031, 0.0052};
+  response.peak_error_before = 0.06;
+  response.peak_error_after = 0.012;
+  response.peak_error_after_ci95 = {0.005, 0.021};
   response.explainable_fraction = 0.82;
   response.unknown_share = 0.16;
   response.peaks = {{.of = "floor <1>", .recorded = 0.0511, .predicted = 0.0512, .ci95 = {0.0508, 0.0515}}};
@@ -125,7 +128,9 @@ TEST(DiagnosisPage, ShowsResponseWithFloorAndIntervals) {
   const std::string page = diagnosis_page(report);
   EXPECT_THAT(page, HasSubstr("<b>75 %</b> removed (95 % in a repetition of the test: 71 % to 78 %), "
                               "82 % of what a perfect model could remove; 16 % is repeatable"));
-  EXPECT_THAT(page, HasSubstr("noise floor 0.30 %"));
+  EXPECT_THAT(page, HasSubstr("Noise floor: NRMSE 0.30 %"));
+  EXPECT_THAT(page, HasSubstr("<td>0.40 % (95 %: 0.31 % to 0.52 %)</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>1.2 % (95 %: 0.50 % to 2.1 %)</td>"));
   EXPECT_THAT(page, HasSubstr("<th>peak of floor &lt;1&gt;</th><td>51.1 mm</td><td>51.2 mm</td>"
                               "<td>50.8 mm to 51.5 mm</td><td></td>"));
   EXPECT_THAT(page, HasSubstr("1.21 kJ to 1.26 kJ</td><td class=\"warn\">the recorded one lies outside"));

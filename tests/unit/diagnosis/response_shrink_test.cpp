@@ -79,7 +79,12 @@ TEST(ResponseShrink, IntervalsAreTheExtremesOfTheDraws) {
   EXPECT_NEAR(shrink.peaks[0].predicted, 1.0, kRounding);
   EXPECT_NEAR(shrink.peaks[0].ci95.low, 1.01, kRounding);
   EXPECT_NEAR(shrink.peaks[0].ci95.high, 1.04, kRounding);
+  // Of 1.01, 1.02, 1.03 and 1.04.
+  EXPECT_NEAR(shrink.peak_error_after, 0.02 / 1.02, kRounding);
+  EXPECT_NEAR(shrink.peak_error_after_ci95.value().low, 0.01 / 1.01, kRounding);
+  EXPECT_NEAR(shrink.peak_error_after_ci95.value().high, 0.04 / 1.04, kRounding);
   // 100 N over 3 cm, in each of them.
+  EXPECT_NEAR(shrink.energy_error_after_ci95.value().high, 0.0, kRounding);
   EXPECT_NEAR(shrink.energy_taken.value().recorded, 3.0, kRounding);
   EXPECT_NEAR(shrink.energy_taken.value().ci95.high, 3.0, kRounding);
   const auto left = [](double noise_m) { return noise_m * noise_m / (1.0 + noise_m * noise_m); };
@@ -101,6 +106,9 @@ TEST(ResponseShrink, WhatRepeatsWidensTheLowerEnd) {
   EXPECT_NEAR(wrong.nrmse_after_ci95.value().low, 0.01 / std::sqrt(1.0 + 1e-4), kRounding);
   EXPECT_NEAR(wrong.nrmse_after_ci95.value().high, wrong.nrmse_after, kRounding);
   EXPECT_NEAR(wrong.ci95.value().low, wrong.variance_removed, kRounding);
+  EXPECT_NEAR(right.peak_error_after_ci95.value().high, 0.01 / 1.01, kRounding) << "control";
+  EXPECT_NEAR(wrong.peak_error_after_ci95.value().low, 0.01 / 1.01, kRounding);
+  EXPECT_NEAR(wrong.peak_error_after_ci95.value().high, wrong.peak_error_after, kRounding) << "1.11 and not 1";
   EXPECT_EQ(wrong.peaks[0].ci95.high, right.peaks[0].ci95.high);
 }
 
