@@ -1,5 +1,6 @@
 #include "diagnosis/progress.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -49,7 +50,9 @@ void PartProgress::report(std::string_view stage, std::size_t done, std::size_t 
   if (!shared_) return;
   const double share = all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1.0;
   const std::scoped_lock lock{shared_->mutex};
-  shared_->last = {.stage = stage, .done = done, .all = all, .share = std::lerp(from_, to_, share)};
+  // A search that starts again goes through its stages once more.
+  const double reached = std::max(shared_->last.share, std::lerp(from_, to_, share));
+  shared_->last = {.stage = stage, .done = done, .all = all, .share = reached};
   shared_->send();
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "transport/fast_dds/connection_watch.hpp"
 #include "transport/fast_dds/receiving_transport.hpp"
 
 namespace hybridtest::fast_dds {
@@ -122,7 +123,9 @@ class TcpTransport final : public ReceivingTransport {
   }
 
   bool OpenOutputChannel(rtps::SendResourceList& resources, const Locator& locator) override {
-    return !is_own(locator) && begin() && ReceivingTransport::OpenOutputChannel(resources, locator);
+    if (is_own(locator) || !begin()) return false;
+    watch_.expect(locator);
+    return ReceivingTransport::OpenOutputChannel(resources, locator);
   }
 
  private:
@@ -144,6 +147,7 @@ class TcpTransport final : public ReceivingTransport {
                const Locator&) override {}
 
   TcpDescriptor descriptor_;
+  ConnectionWatch watch_;
   std::map<std::uint16_t, std::unique_ptr<Gate>> gates_;  // by logical port
   bool is_begun_ = false;
 };

@@ -17,6 +17,7 @@ namespace hybridtest::fast_dds {
 ///   one mark for all connections, so that one takes away the receiver which another is about to use.
 /// - Nobody connects to himself. Fast DDS does when a participant reads what it writes, takes the accepted end of that
 ///   connection for the other one, and leaves a thread behind that outlives the transport.
+/// - A connection over which nothing comes is made again, see ConnectionWatch.
 /// Of the messages that arrive, Fast DDS gets what a PacketFilter admits. TLS is taken off before.
 /// @param lower     the transport of Fast DDS.
 /// @param own       where others connect to this participant; nothing when nobody can.

@@ -243,6 +243,17 @@ TEST(PartProgress, SharesOfPartsLieInTheWhole) {
   EXPECT_DOUBLE_EQ(share, 0.6);
 }
 
+TEST(PartProgress, ShareStaysWhereASearchStartsAgain) {
+  ProgressReport last;
+  const PartProgress whole{[&](const ProgressReport& report) { last = report; }};
+  whole.report("fits", 3, 4);
+  whole.report("fits", 1, 4);
+  EXPECT_EQ(last.done, 1U);
+  EXPECT_EQ(last.share, 0.75);
+  whole.report("fits", 4, 4);
+  EXPECT_EQ(last.share, 1.0);
+}
+
 TEST(PartProgress, RepeatsReportAfterASecondOfSilence) {
   Instant now{};
   std::vector<ProgressReport> reports;
