@@ -138,15 +138,15 @@ struct ResponseShrink {
   std::optional<double> energy_error_before{};  // in the substructures, over the input of the ground motion
   std::optional<double> energy_error_after{};
   // What follows is known where the test was also run with drawn noise and drawn parameters.
-  std::optional<double> floor_nrmse{};           // what a right model leaves, because of the noise in the recorded test
-  double variance_removed = 0.0;                 // at most 1; negative where the causes make the response worse
-  std::optional<Interval> ci95{};                // of it, in a repetition of this test
-  std::optional<Interval> nrmse_after_ci95{};    // likewise
+  std::optional<double> floor_nrmse{};         // what a right model leaves, because of the noise in the recorded test
+  double variance_removed = 0.0;               // at most 1; negative where the causes make the response worse
+  std::optional<Interval> ci95{};              // of it, in a repetition of this test
+  std::optional<Interval> nrmse_after_ci95{};  // likewise
   std::optional<Interval> peak_error_after_ci95{};
   std::optional<Interval> energy_error_after_ci95{};
-  std::optional<double> explainable_fraction{};  // as Shrink
-  std::optional<double> unknown_share{};         // as Shrink
-  std::vector<PredictedNumber> peaks{};          // [m] of |displacement|, one per degree of freedom
+  std::optional<double> explainable_fraction{};   // as Shrink
+  std::optional<double> unknown_share{};          // as Shrink
+  std::vector<PredictedNumber> peaks{};           // [m] of |displacement|, one per degree of freedom
   std::optional<PredictedNumber> energy_taken{};  // [J] by the substructures, by the end
 };
 

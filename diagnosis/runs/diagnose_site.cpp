@@ -118,8 +118,7 @@ std::string response_in_words(const report::ResponseShrink& response) {
   add("displacement, NRMSE", response.nrmse_before, response.nrmse_after, response.nrmse_after_ci95);
   add("peak error", response.peak_error_before, response.peak_error_after, response.peak_error_after_ci95);
   if (response.energy_error_before && response.energy_error_after) {
-    add("energy error", *response.energy_error_before, *response.energy_error_after,
-        response.energy_error_after_ci95);
+    add("energy error", *response.energy_error_before, *response.energy_error_after, response.energy_error_after_ci95);
   }
   if (!response.floor_nrmse || !response.unknown_share || !response.ci95) return text;
   text += fmt::format("    {:<22} {:.4f}\n", "noise floor, NRMSE", *response.floor_nrmse);

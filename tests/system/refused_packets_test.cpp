@@ -6,7 +6,8 @@
 #include "tests/support/rtps_packets.hpp"
 #include "tests/support/system_fixture.hpp"
 
-/// Whole tests to whose participants somebody sends packets that would keep Fast DDS busy for years, or end the process.
+/// Whole tests to whose participants somebody sends packets that would keep Fast DDS busy for years, or end the
+/// process.
 namespace hybridtest {
 namespace {
 
@@ -59,8 +60,7 @@ class RefusedPacketsLive : public SystemTest {
       // A port of discovery and one of messages.
       EXPECT_EQ(one["refused_packets"]["harmful"], 2 * kEach) << id;
       EXPECT_EQ(one["refused_packets"]["in_plain_text"], 0) << id;
-      EXPECT_THAT(log_of(id),
-                  HasSubstr("packets refused by the packet filter: 40 that would hang or end the process"));
+      EXPECT_THAT(log_of(id), HasSubstr("packets refused by the packet filter: 40 that would hang or end the process"));
     }
     EXPECT_THAT(run.standard_output(), HasSubstr("packets refused"));
     expect_same_as_simulated();

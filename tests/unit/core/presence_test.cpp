@@ -50,12 +50,14 @@ TEST_F(PresenceTest, SendsFourHeartbeatsPerLeaseAndOnStateChange) {
 
 TEST_F(PresenceTest, SendsAgainWhatTheTransportDidNotTake) {
   RingPort<ParticipantStatus> full{1};
-  while (full.send(ParticipantStatus{})) {}
+  while (full.send(ParticipantStatus{})) {
+  }
   Presence presence{Identity{"site", Role::experimental_site, 5, {}}, seconds{2}, inbox_, full, events_};
   const Instant again = presence.advance(at(seconds{1}));
   EXPECT_EQ(again, at(milliseconds{1010}));
   ParticipantStatus sent;
-  while (full.take(sent)) {}
+  while (full.take(sent)) {
+  }
   EXPECT_EQ(presence.advance(again), at(milliseconds{1510})) << "a quarter of a lease after it was taken";
   ASSERT_TRUE(full.take(sent));
   EXPECT_EQ(sent.id, ParticipantId{"site"});

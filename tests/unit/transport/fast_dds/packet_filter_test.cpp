@@ -147,7 +147,8 @@ TEST(PacketFilter, RefusesDataThatAreNotThere) {
   EXPECT_FALSE(admits(data(kData, 0xfff0, Bytes(8)))) << "the same, as a signed number";
   EXPECT_FALSE(admits(data(kData, 400, Bytes(8)))) << "behind the packet";
   EXPECT_FALSE(admits(data(kParameters, 16, parameter(0x71, bytes({0, 0, 0, 3}))))) << "parameters without an end";
-  EXPECT_FALSE(admits(data(kParameters, 16, bytes({0x71, 0, 0xff, 0xff}) + Bytes(8)))) << "parameter with a false length";
+  EXPECT_FALSE(admits(data(kParameters, 16, bytes({0x71, 0, 0xff, 0xff}) + Bytes(8))))
+      << "parameter with a false length";
   EXPECT_FALSE(admits(part(0x15, Bytes(12)))) << "too short";
 }
 
