@@ -22,7 +22,7 @@ ReplayedChannel replayed(const SiteModel& model, const Segment& segment) {
   const double output = mean_square(segment.measured);
   if (output > 0.0) {
     channel.nrmse = std::sqrt(mean_square(residual) / output);
-    channel.floor_nrmse = noise_floor(model, segment) / std::sqrt(output);
+    channel.floor_nrmse = noise_floor(segment, input_errors(model, segment)) / std::sqrt(output);
   }
   return channel;
 }

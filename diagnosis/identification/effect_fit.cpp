@@ -300,10 +300,31 @@ double allowed_energy(const FitSegment& fit) {
   return allowed * allowed * fit.measured.squaredNorm() / static_cast<double>(fit.measured.size());
 }
 
-/// Two parts. One is how much blocks disagree (Liang and Zeger, Biometrika 73, 1986, blocks as clusters, corrected for
-/// their small number): noise of any colour and distribution. The other is what repeats of the residual and that no
+/// How noise of the input and smoothing move the parameters: a law that is not linear answers noise that rides on the
+/// motion with less force, and a part of it looks like another number of the law. One row per kind of error. The shift
+/// is known to first order only, so that it counts as doubt and nothing is taken off (Cook and Stefanski, Journal of
+/// the American Statistical Association 89, 1994, extrapolate it).
+Eigen::MatrixXd pull_of_input(const VariableProjection& projection, const IdentificationProblem& problem,
+                              const Sandwich& fitted) {
+  std::vector<Eigen::RowVectorXd> kinds;
+  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
+    const FitSegment& fit = problem.segments[projection.touched()[t]];
+    const Eigen::MatrixXd weights = fitted.weights(projection.first_row(t), fit.measured.size());
+    for (std::size_t kind = 0; kind < fit.input_errors.size(); ++kind) {
+      if (kind == kinds.size()) kinds.emplace_back(Eigen::RowVectorXd::Zero(weights.cols()));
+      kinds[kind] += fit.weight * fit.input_errors[kind].transpose() * weights;
+    }
+  }
+  Eigen::MatrixXd pull(static_cast<Eigen::Index>(kinds.size()), fitted.covariance().cols());
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) pull.row(static_cast<Eigen::Index>(kind)) = kinds[kind];
+  return pull;
+}
+
+/// Three parts. One is how much blocks disagree (Liang and Zeger, Biometrika 73, 1986, blocks as clusters, corrected
+/// for their small number): noise of any colour and distribution. Another is what repeats of the residual and that no
 /// difference between blocks shows: the discrepancy term, of which each feature may take as much as all take here on
-/// average, also along the columns of the parameters (random effects).
+/// average, also along the columns of the parameters (random effects). The third is what the error of the input does
+/// to a law that is not linear.
 ///
 /// Beside wrong numbers both have a lower limit. So few blocks may agree by chance: noise that is the same throughout
 /// would move the parameters at least as much. And a misfit that fits the parameters leaves nothing to be seen: it is
@@ -362,6 +383,7 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
     wrong.add_pull(fit.discrepancy->pull(at_least, wrong.weights(begin, rows)));
     predicting.add_pull(fit.discrepancy->pull(at_least, predicting.weights(begin, rows)));
   }
+  wrong.add_pull(pull_of_input(projection, problem, wrong));
   const auto unit = size.head(count).cwiseInverse().asDiagonal();
   const double scale = tuning::kIntervalScale * tuning::kIntervalScale;
   return {.variances = (unit * right.covariance() * unit).diagonal(),

@@ -209,29 +209,37 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   return predicted;
 }
 
-double input_floor(const SiteModel& model, const Segment& segment,
-                   const std::function<double(std::span<const double>)>& root_mean_square) {
-  if (segment.noise.empty()) return 0.0;
+InputErrors input_errors(const SiteModel& model, const Segment& segment) {
+  if (segment.noise.empty()) return {};
   const auto predicted = [&](const std::vector<Motion>& input) {
     Segment other = segment;
     other.input = input;
     return predict(model, other);
   };
-  const auto change = [&](std::vector<double> values, const std::vector<double>& from) {
+  const auto change = [](std::vector<double> values, const std::vector<double>& from) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] -= from[i];
-    return root_mean_square(values);
+    return values;
   };
   const std::vector<double> wide = predict(model, segment);
-  const double noise = change(predicted(sum(segment.input, segment.noise)), wide);
-  if (segment.narrow_input.empty()) return noise;
+  InputErrors errors;
+  errors.of_noise = change(predicted(sum(segment.input, segment.noise)), wide);
+  if (segment.narrow_input.empty()) return errors;
   const std::vector<double> narrow = predicted(segment.narrow_input);
-  const double narrow_noise = change(predicted(sum(segment.narrow_input, segment.narrow_noise)), narrow);
-  const double taken_off = std::pow(change(narrow, wide), 2) - std::pow(narrow_noise, 2);
-  return std::sqrt(noise * noise + std::max(0.0, taken_off));
+  errors.of_window = change(narrow, wide);
+  errors.of_narrow_noise = change(predicted(sum(segment.narrow_input, segment.narrow_noise)), narrow);
+  return errors;
 }
 
-double noise_floor(const SiteModel& model, const Segment& segment) {
-  const double of_input = input_floor(model, segment, [](std::span<const double> values) {
+double input_floor(const InputErrors& errors, const std::function<double(std::span<const double>)>& root_mean_square) {
+  const auto squared = [&](const std::vector<double>& values) {
+    return values.empty() ? 0.0 : std::pow(root_mean_square(values), 2);
+  };
+  const double taken_off = std::max(0.0, squared(errors.of_window) - squared(errors.of_narrow_noise));
+  return std::sqrt(squared(errors.of_noise) + taken_off);
+}
+
+double noise_floor(const Segment& segment, const InputErrors& errors) {
+  const double of_input = input_floor(errors, [](std::span<const double> values) {
     double squares = 0.0;
     for (const double value : values) squares += value * value;
     return std::sqrt(squares / static_cast<double>(values.size()));

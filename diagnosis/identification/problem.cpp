@@ -373,13 +373,18 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment, 
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
   fit.smoothing_floor = fit.segment.smoothing_error;
-  fit.channel_sample_floor = noise_floor(model, fit.segment);
+  const InputErrors errors = input_errors(model, fit.segment);
+  fit.channel_sample_floor = noise_floor(fit.segment, errors);
   const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
-  fit.channel_floor = std::hypot(fit.segment.measured_noise / std::sqrt(independent),
-                                 input_floor(model, fit.segment, [&](std::span<const double> values) {
-                                   return root_mean_square(fit.average(values));
-                                 }));
+  fit.channel_floor = std::hypot(
+      fit.segment.measured_noise / std::sqrt(independent),
+      input_floor(errors, [&](std::span<const double> values) { return root_mean_square(fit.average(values)); }));
   fit.channel_floor = std::hypot(fit.channel_floor, fit.segment.step_noise, fit.smoothing_floor);
+  std::vector<std::vector<double>> wrong{errors.of_noise, errors.of_window, fit.segment.smoothing_errors};
+  if (!law_is_spring) wrong.push_back(change_by_smoothing(model, fit.segment));
+  for (const std::vector<double>& values : wrong) {
+    if (!values.empty()) fit.input_errors.push_back(fit.average(values));
+  }
   fit.block_begins = blocks_of(fit);
   add_nuisances(model, law_is_spring, fit);
   add_number_slopes(model, fit);

@@ -76,6 +76,8 @@ struct FitSegment {
   double channel_floor = 0.0;
   double channel_sample_floor = 0.0;
   double smoothing_floor = 0.0;
+  // What the prediction has wrong by noise of its input and by smoothing, each in its averaged samples.
+  std::vector<Eigen::VectorXd> input_errors;
   // Of a measured displacement: what of the force that answers it no function of the command explains. Empty without.
   Eigen::VectorXd answering_force;
   // Of a measured force: the displacement that was commanded, which rests without noise. Empty without.

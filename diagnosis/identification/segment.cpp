@@ -209,6 +209,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
     result.inputs.values.insert(result.inputs.values.end(), segment.inputs.at(i), segment.inputs.at(i + 1));
   }
   result.measured = every(segment.measured);
+  result.smoothing_errors = every(segment.smoothing_errors);
   if (segment.history) result.history = std::make_shared<const Segment>(thinned(*segment.history, rate_hz));
   return result;
 }
@@ -249,18 +250,19 @@ bool can_be_smoothed(const Segment& segment) {
   return segment.to == Channel::measured_force && !segment.is_quasi_static;
 }
 
-/// See Segment::smoothing_error.
-double smoothing_error(const SiteModel& model, const Segment& smooth, const DofRecording& dof, double deviation) {
+/// See Segment::smoothing_errors.
+std::vector<double> smoothing_errors(const SiteModel& model, const Segment& smooth, const DofRecording& dof,
+                                     double deviation) {
   Segment plain = smooth;
   plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(dof.of(smooth.from));
   plain.unjudged = 0;
-  const std::vector<double> first_force = FlatSmoother{deviation}.smooth(predict(model, plain));
+  std::vector<double> errors = FlatSmoother{deviation}.smooth(predict(model, plain));
   const std::vector<double> first_motion = predict(model, smooth);
-  double squares = 0.0;
-  for (std::size_t i = smooth.unjudged; i + smooth.unjudged < first_force.size(); ++i) {
-    squares += std::pow(first_force[i] - first_motion[i], 2);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const bool is_judged = i >= smooth.unjudged && i + smooth.unjudged < errors.size();
+    errors[i] = is_judged ? errors[i] - first_motion[i] : 0.0;
   }
-  return std::sqrt(squares / static_cast<double>(first_force.size()));
+  return errors;
 }
 
 double squared_difference(const std::vector<double>& values, const std::vector<double>& others) {
@@ -289,7 +291,8 @@ Deviation best_deviation(const Segment& segment, const DofRecording& dof, Square
 Segment smoothed_by(const SiteModel& model, const Segment& segment, const DofRecording& dof, double best) {
   const double deviation = tuning::kSmoothingNextStep * best;
   Segment smooth = smoothed_alike(segment, dof, deviation);
-  smooth.smoothing_error = smoothing_error(model, smooth, dof, deviation);
+  smooth.smoothing_errors = smoothing_errors(model, smooth, dof, deviation);
+  smooth.smoothing_error = std::sqrt(mean_square(smooth.smoothing_errors));
   return smooth;
 }
 
@@ -317,6 +320,13 @@ double left_beside(const SiteModel& model, const std::vector<double>& force_n, c
   return (right - columns * columns.colPivHouseholderQr().solve(right)).squaredNorm() / static_cast<double>(judged);
 }
 
+/// The motion alone smoothed, the force as it is.
+Segment with_smooth_motion(const Segment& segment, double deviation) {
+  Segment result = segment;
+  result.input = smooth_motion(FlatSmoother{deviation}, segment.input);
+  return result;
+}
+
 /// Smoothed alike where there is a gap of which a mass that the model lacks explains more than half: the noise of an
 /// acceleration that is not smoothed hides most of such a mass.
 std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
@@ -336,6 +346,23 @@ std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& 
 }
 
 }  // namespace
+
+std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& segment) {
+  if (!can_be_smoothed(segment) || segment.noise.empty() || segment.is_smoothed) return {};
+  std::vector<Deviation> tried;
+  for (const double deviation : tuning::kSmoothingDeviations) {
+    tried.push_back({deviation, left_beside(model, segment.measured, with_smooth_motion(segment, deviation), false)});
+  }
+  const double least = std::ranges::min(tried, {}, &Deviation::squares).squares;
+  // Wider ones cut the corners of the law off.
+  const auto enough = std::ranges::find_if(
+      tried, [&](const Deviation& one) { return one.squares <= tuning::kSmoothingLeaves * least; });
+  if (!(enough->value > 0.0)) return {};
+  std::vector<double> change = predict(model, with_smooth_motion(segment, enough->value));
+  const std::vector<double> as_it_is = predict(model, segment);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= as_it_is[i];
+  return change;
+}
 
 std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
                                        std::size_t position) {

@@ -55,8 +55,10 @@ struct Segment {
   // Standard deviation of the noise of `measured`, and number of neighbouring samples that share the same noise.
   double measured_noise = 0.0;
   double noise_span = 1.0;
-  // Root mean square by which the model's force, smoothed, differs from its force for the smoothed motion: where the
-  // law is not linear they differ, and a correct model leaves that.
+  // By how much the model's force, smoothed, differs from its force for the smoothed motion, and the root mean square
+  // of that: where the law is not linear they differ, and a correct model leaves that. Empty where nothing was
+  // smoothed.
+  std::vector<double> smoothing_errors;
   double smoothing_error = 0.0;
   // Standard deviation of the error of a coarse converter in `measured`, which may be correlated. 0: none found.
   double step_noise = 0.0;
@@ -98,15 +100,30 @@ struct Segment {
 [[nodiscard]] std::vector<double> predict(const SiteModel& model, const Segment& segment,
                                           std::span<const EffectSetting> added = {});
 
+/// What a prediction has wrong because its input is not exactly known, by what the same again would change: the noise
+/// that the input still has, and a window half as wide where it was smoothed. One value per sample; empty: none.
+struct InputErrors {
+  std::vector<double> of_noise;
+  std::vector<double> of_window;
+  std::vector<double> of_narrow_noise;  // of that in the narrower window
+};
+[[nodiscard]] InputErrors input_errors(const SiteModel& model, const Segment& segment);
+
+/// What the prediction of a force changes by where the motion alone is smoothed, just as far as it helps: until it is
+/// about as near to the recorded force as it gets, beside a spring and a damper that the model may lack. So much the
+/// noise that rides on the motion has changed it, coloured noise too. One value per sample; empty where nothing helps,
+/// and of other channels.
+[[nodiscard]] std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& segment);
+
 /// Standard deviation of the error of the prediction due to noise of the input and due to smoothing; 0 if the input is
 /// exact. The error due to smoothing is estimated from the change of the prediction with half the window, minus the
 /// noise of that window.
 /// @param root_mean_square   of a prediction: per sample, or after averaging.
-[[nodiscard]] double input_floor(const SiteModel& model, const Segment& segment,
+[[nodiscard]] double input_floor(const InputErrors& errors,
                                  const std::function<double(std::span<const double>)>& root_mean_square);
 
 /// Standard deviation per sample of the residual of a correct model, from noise in both channels.
-[[nodiscard]] double noise_floor(const SiteModel& model, const Segment& segment);
+[[nodiscard]] double noise_floor(const Segment& segment, const InputErrors& errors);
 
 /// The segments of one degree of freedom that a model predicts, along the chain. If the modelled force depends on
 /// velocity or acceleration, which displacement sensors measure badly, force and motion are smoothed equally

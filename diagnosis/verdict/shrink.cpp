@@ -59,7 +59,7 @@ double floor_of(const SiteModel& model, const Segment& segment, std::span<const 
     energy += fit.sample_floor * fit.sample_floor;
     alike += 1.0;
   }
-  return std::max(noise_floor(model, segment), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
+  return std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
 }
 
 void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,

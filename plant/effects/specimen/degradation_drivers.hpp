@@ -24,8 +24,8 @@ class TravelledPath {
   static constexpr std::string_view kUnit = "m";
   static constexpr std::string_view kSource = "after Baber and Wen (1981)";
   static constexpr bool kNeedsTime = false;
-  static constexpr DegradationWords kStiffness{"F = F0(x / (1 + S / L)), S = travelled path", "half_life_m",
-                                               "L, path after which it is half as stiff"};
+  static constexpr DegradationWords kStiffness{"F = s^q F0(x s^(1 - q)), s = 1 / (1 + S / L), S = travelled path",
+                                               "half_life_m", "L, path after which it is half as stiff"};
   static constexpr DegradationWords kStrength{"F = s F0(x / s), s = exp(-S / L), S = travelled path", "path_m",
                                               "L, path after which 37 % of the strength are left"};
 
@@ -45,8 +45,9 @@ class LargestDisplacement {
   static constexpr std::string_view kUnit = "m";
   static constexpr std::string_view kSource = "after Park and Ang (1985)";
   static constexpr bool kNeedsTime = false;
-  static constexpr DegradationWords kStiffness{"F = F0(x / (1 + X / L)), X = largest displacement so far",
-                                               "half_life_m", "L, largest displacement at which it is half as stiff"};
+  static constexpr DegradationWords kStiffness{
+      "F = s^q F0(x s^(1 - q)), s = 1 / (1 + X / L), X = largest displacement so far", "half_life_m",
+      "L, largest displacement at which it is half as stiff"};
   static constexpr DegradationWords kStrength{"F = s F0(x / s), s = exp(-X / L), X = largest displacement so far",
                                               "decay_m",
                                               "L, largest displacement at which 37 % of the strength are left"};
@@ -67,8 +68,8 @@ class DissipatedEnergy {
   static constexpr std::string_view kUnit = "J";
   static constexpr std::string_view kSource = "Baber and Wen (1981)";
   static constexpr bool kNeedsTime = false;
-  static constexpr DegradationWords kStiffness{"F = F0(x / (1 + E / L)), E = dissipated energy", "half_life_j",
-                                               "L, energy after which it is half as stiff"};
+  static constexpr DegradationWords kStiffness{"F = s^q F0(x s^(1 - q)), s = 1 / (1 + E / L), E = dissipated energy",
+                                               "half_life_j", "L, energy after which it is half as stiff"};
   static constexpr DegradationWords kStrength{"F = s F0(x / s), s = exp(-E / L), E = dissipated energy", "decay_j",
                                               "L, energy after which 37 % of the strength are left"};
 
@@ -100,8 +101,8 @@ class CountedCycles {
   static constexpr std::string_view kUnit = "";
   static constexpr std::string_view kSource = "after Krawinkler and Zohrei (1983)";
   static constexpr bool kNeedsTime = false;
-  static constexpr DegradationWords kStiffness{"F = F0(x / (1 + N / L)), N = cycles so far", "half_life_cycles",
-                                               "L, cycles after which it is half as stiff"};
+  static constexpr DegradationWords kStiffness{"F = s^q F0(x s^(1 - q)), s = 1 / (1 + N / L), N = cycles so far",
+                                               "half_life_cycles", "L, cycles after which it is half as stiff"};
   static constexpr DegradationWords kStrength{"F = s F0(x / s), s = exp(-N / L), N = cycles so far", "decay_cycles",
                                               "L, cycles after which 37 % of the strength are left"};
 
@@ -130,7 +131,7 @@ class ElapsedTime {
   static constexpr std::string_view kUnit = "s";
   static constexpr std::string_view kSource = "after Makris (1998)";
   static constexpr bool kNeedsTime = true;
-  static constexpr DegradationWords kStiffness{"F = F0(x / (1 + t / L)), t = time", "half_life_s",
+  static constexpr DegradationWords kStiffness{"F = s^q F0(x s^(1 - q)), s = 1 / (1 + t / L), t = time", "half_life_s",
                                                "L, time after which it is half as stiff"};
   static constexpr DegradationWords kStrength{"F = s F0(x / s), s = exp(-t / L), t = time", "decay_s",
                                               "L, time after which 37 % of the strength are left"};

@@ -26,7 +26,7 @@ constexpr std::size_t kHalf = kWhole / 2;
 /// A spring that loses half its stiffness over 0.5 m of path.
 SiteModel degrading_model() {
   SiteModel model = made_model();
-  model.effects.push_back({find_effect(EffectInterface::specimen, "stiffness_degradation"), {0.5}});
+  model.effects.push_back({find_effect(EffectInterface::specimen, "stiffness_degradation"), {0.5, 0.0}});
   return model;
 }
 

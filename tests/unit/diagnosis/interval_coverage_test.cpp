@@ -9,6 +9,7 @@
 #include "core/time.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/tuning.hpp"
+#include "mechanics/laws/bilinear.hpp"
 #include "plant/transfer_systems/first_order.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -114,6 +115,45 @@ TEST(IntervalCoverage, WrongNumbersBesideWidenTheInterval) {
   EXPECT_GE(held / kDraws, 0.87);  // of 60 three deviations are 8 %
   EXPECT_GT(width, width_beside_right_ones);
   RecordProperty("coverage", std::to_string(held / kDraws));
+}
+
+/// Noise of the transducer that is not white rides on the motion of a law that yields: the law answers it with less
+/// force, and its stiffness comes out too low.
+TEST(IntervalCoverage, NoiseThatRidesOnTheMotionWidensTheInterval) {
+  constexpr int kDraws = 40;
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{
+        .stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 1.6e4, .hardening_ratio = 0.05});
+  };
+  const EffectSetting truth{.type = find_effect(specimen, "stiffness_error"), .values = {-0.03, 0.0}};
+  double held = 0.0;
+  double held_without = 0.0;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    Recording recording = made_recording(
+        made_motion_m, [](double) { return 0.0; }, 0.0, draw);
+    DofRecording& dof = recording.dofs[0];
+    std::vector<double> force_n = predict(model, modelled_segments(model, recording, 0, 0).back(), {&truth, 1});
+    const std::vector<double> noise_n = made_noise({}, recording.samples, 20.0, kSitePeriod_s, draw);
+    const std::vector<double> noise_m = made_noise({.correlation = 0.8}, recording.samples, 1e-4, kSitePeriod_s, draw);
+    for (std::size_t i = 0; i < recording.samples; ++i) {
+      dof.of(Channel::measured_displacement)[i] += noise_m[i];
+      force_n[i] += noise_n[i];
+    }
+    dof.of(Channel::measured_force) = std::move(force_n);
+    IdentificationProblem problem = make_problem(model, {modelled_segments(model, recording, 0, 0).back()});
+    const auto holds = [&] {
+      const ParameterEstimate found = refit_effects(problem, {truth}, false).parameters[0][0];
+      return std::abs(found.value - truth.values[0]) <= half_interval_95(found) ? 1.0 : 0.0;
+    };
+    held += holds();
+    for (FitSegment& fit : problem.segments) fit.input_errors.clear();
+    held_without += holds();
+  }
+  EXPECT_GE(held / kDraws, 0.85);          // of 40 three deviations are 10 %
+  EXPECT_LT(held_without / kDraws, 0.85);  // control
+  RecordProperty("coverage", std::to_string(held / kDraws));
+  RecordProperty("coverage_without", std::to_string(held_without / kDraws));
 }
 
 /// A rig of this project as it might be anywhere: motion, size and noise are drawn, a wrong number stands beside the

@@ -48,7 +48,7 @@ TEST(ModelledSegments, MassIsCorrectWithinAccelerationNoise) {
   const SiteModel model = mass_only();
   const auto segments = modelled_segments(model, recording, 0, 0);
   const Segment& smooth = of_force(segments);
-  const double floor_n = noise_floor(model, smooth);
+  const double floor_n = noise_floor(smooth, input_errors(model, smooth));
   // One draw of noise against another one over 6000 samples of some tens of independent ones each.
   EXPECT_NEAR(residual_n(model, smooth), floor_n, 0.15 * floor_n);
   // Windows as wide as the displacement alone bears leave more.

@@ -125,7 +125,7 @@ TEST(Gap, PassesMotionBeyondTheGap) {
 }
 
 TEST(StiffnessDegradation, HalvesStiffnessAfterHalfLife) {
-  const auto effect = made(kSpecimen, "stiffness_degradation", {4.0});
+  const auto effect = made(kSpecimen, "stiffness_degradation", {4.0, 0.0});
   const auto forces =
       along(*effect, {0.0, 1.0, -1.0, 0.0, 1.0}, [](const Motion& m) { return 10.0 * m.displacement_m; });
   EXPECT_NEAR(forces[1], 10.0 / 1.25, 1e-12);
@@ -136,7 +136,7 @@ double elastic_n(const Motion& m) { return 10.0 * m.displacement_m; }
 double plastic_n(const Motion& m) { return std::clamp(100.0 * m.displacement_m, -10.0, 10.0); }
 
 TEST(StiffnessDegradation, FollowsTheLargestDisplacement) {
-  const auto effect = made(kSpecimen, "stiffness_degradation_with_peak", {4.0});
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_peak", {4.0, 0.0});
   const auto forces = along(*effect, {0.0, 1.0, -1.0, 0.5, 2.0, 1.0}, elastic_n);
   EXPECT_NEAR(forces[3], 5.0 / 1.25, 1e-12);
   EXPECT_NEAR(forces[4], 20.0 / 1.5, 1e-12);
@@ -144,7 +144,7 @@ TEST(StiffnessDegradation, FollowsTheLargestDisplacement) {
 }
 
 TEST(StiffnessDegradation, FollowsTheCycles) {
-  const auto effect = made(kSpecimen, "stiffness_degradation_with_cycles", {2.0});
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_cycles", {2.0, 0.0});
   const auto forces = along(*effect, {0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.05, -0.05, 0.05}, elastic_n);
   EXPECT_NEAR(forces[1], 10.0, 1e-12);
   EXPECT_NEAR(forces[2], -10.0 / 1.25, 1e-12);  // half a cycle
@@ -153,16 +153,27 @@ TEST(StiffnessDegradation, FollowsTheCycles) {
 }
 
 TEST(StiffnessDegradation, FollowsTheTime) {
-  const auto effect = made(kSpecimen, "stiffness_degradation_with_time", {4.0 * kBenchPeriod_s});
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_time", {4.0 * kBenchPeriod_s, 0.0});
   const auto forces = along(*effect, {1.0, 1.0, 1.0, 1.0, 1.0}, elastic_n);
   EXPECT_NEAR(forces[0], 10.0, 1e-12);
   EXPECT_NEAR(forces[4], 5.0, 1e-12);
 }
 
+TEST(StiffnessDegradation, LosesStrengthWithItsExponent) {
+  const std::vector<double> path{0.0, 0.02, 2.0, 4.0};  // 100 N/m up to 10 N; at 4 m a half of the stiffness is left
+  const auto at_end = [&](double exponent) {
+    return along(*made(kSpecimen, "stiffness_degradation_with_peak", {4.0, exponent}), path, plastic_n);
+  };
+  EXPECT_NEAR(at_end(0.0).back(), 10.0, 1e-12);
+  EXPECT_NEAR(at_end(0.5).back(), 10.0 * std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(at_end(1.0).back(), 5.0, 1e-12);
+  for (const double exponent : {0.0, 0.5, 1.0}) EXPECT_NEAR(at_end(exponent)[1], 2.0 / 1.005, 1e-12) << exponent;
+}
+
 /// Stiffness under degradation with energy, over that without, after cycles of a base's force.
 double stiffness_left(const std::function<double(const Motion&)>& base, double half_life_j) {
-  const auto effect = made(kSpecimen, "stiffness_degradation_with_energy", {half_life_j});
-  const auto unchanged = made(kSpecimen, "stiffness_degradation_with_energy", {1e12});
+  const auto effect = made(kSpecimen, "stiffness_degradation_with_energy", {half_life_j, 0.0});
+  const auto unchanged = made(kSpecimen, "stiffness_degradation_with_energy", {1e12, 0.0});
   const Driver driver = sine(0.5, 20.0);
   const double last = response(*effect, driver, 2500, base).back();
   return last / response(*unchanged, driver, 2500, base).back();

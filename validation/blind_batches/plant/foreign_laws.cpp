@@ -120,7 +120,7 @@ const std::map<std::string, LawEntry>& entries() {
        {"energy",
         {"bouc_wen_baber_noori"},
         {"stiffness_degradation_with_energy", "strength_degradation_with_energy"},
-        {}}},
+        {"yielding"}}},
       {"fading_with_peak",
        {"peak",
         {"peak_oriented", "takeda"},
@@ -166,19 +166,23 @@ Spring foreign_law(const PlantEffect& effect) {
   }
   const std::string_view with = entries().at(effect.law).fades_with;
   Fading fading{with, with.empty() ? 1.0 : effect.of("scale")};
+  const auto stored_j = [numbers](double force, double left) {
+    return 0.5 * force * force / (left * numbers.stiffness);
+  };
   if (effect.law == "slip_lock" || effect.law == "fading_slip_lock") {
-    return [fading, law = SlipLock{numbers, effect.of("locked_share"), effect.of("slot_share")}](
+    return [fading, stored_j, law = SlipLock{numbers, effect.of("locked_share"), effect.of("slot_share")}](
                const MotionPoint& at) mutable {
-      const double force = law.force(at.displacement_m, fading.left());
-      fading.after(at, force);
+      const double left = fading.left();
+      const double force = law.force(at.displacement_m, left);
+      fading.after(at, force, stored_j(force, left));
       return force;
     };
   }
-  return [fading, law = IwanStack{{numbers.stiffness, numbers.yield_force, numbers.hardening, 0.4}}](
+  return [fading, stored_j, law = IwanStack{{numbers.stiffness, numbers.yield_force, numbers.hardening, 0.4}}](
              const MotionPoint& at) mutable {
     const double left = fading.left();
     const double force = law.force(at.displacement_m, left, std::sqrt(left));
-    fading.after(at, force);
+    fading.after(at, force, stored_j(force, left));
     return force;
   };
 }
@@ -199,8 +203,8 @@ PlantEffect draw_foreign_law(const CaseSetting& setting, RandomStream& random) {
   const auto nearly = [&](double number) { return number * (1.0 + random.sign() * random.uniform(0.01, 0.05)); };
   const double stroke_m = setting.scales.displacement_m;
   const LawEntry& entry = entries().at(effect.law);
-  // A spring that only fades does not yield when the model does not.
-  const bool only_fades = is_elastic && effect.law.starts_with("fading_with");
+  // A spring that only fades does not yield when the model does not; but what does not yield dissipates nothing.
+  const bool only_fades = is_elastic && effect.law.starts_with("fading_with") && entry.fades_with != "energy";
   const double yield_m = only_fades ? 20.0 * stroke_m : stroke_m * random.uniform(0.2, 0.6);
   Parameters& p = effect.parameters;
   p["stiffness_n_per_m"] = nearly(users.stiffness_n_per_m);

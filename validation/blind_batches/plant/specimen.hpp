@@ -110,18 +110,19 @@ class MovingSlot {
   std::array<double, kSlots> pin_m_{};
 };
 
-/// exp(-d / D), d: path, largest displacement, work, or time.
+/// exp(-d / D), d: path, largest displacement, energy dissipated, or time.
 class Fading {
  public:
   Fading(std::string_view with, double scale) : with_{with}, scale_{scale} {}
   [[nodiscard]] double left() const { return std::exp(-spent_ / scale_); }
-  void after(const MotionPoint& at, double force) {
+  /// @param stored_j   what of the work of the force comes back where it unloads.
+  void after(const MotionPoint& at, double force, double stored_j = 0.0) {
     const double step = at.displacement_m - x_;
     x_ = at.displacement_m;
     work_ += force * step;
     if (with_ == "path") spent_ += std::abs(step);
     if (with_ == "peak") spent_ = std::max(spent_, std::abs(x_));
-    if (with_ == "energy") spent_ = std::max(spent_, work_);
+    if (with_ == "energy") spent_ = std::max(spent_, work_ - stored_j);
     if (with_ == "time") spent_ = at.time_s;
   }
 
