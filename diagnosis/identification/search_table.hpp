@@ -67,6 +67,11 @@ namespace search_table {
 using enum EffectInterface;
 using Scale = ParameterScale;
 
+/// The strength that goes with a stiffness that degrades.
+constexpr SearchRange strength_exponent_of(std::string_view effect) {
+  return {specimen, effect, "strength_exponent", Scale::one, 0.0, 1.0, {.beside = LawUse::with_strength}};
+}
+
 /// Every parameter that is searched, in the order of the effect library. A parameter without a row keeps its fallback:
 /// a seed cannot be found, and the exponent of the Bouc-Wen law is held at 1. Reference and nominal value of an input
 /// come from the recordings (left_out()).
@@ -147,45 +152,15 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "pinching", "pinching_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "pinching", "pinching_width_m", Scale::displacement_m, 0.02, 2.0},
     SearchRange{specimen, "stiffness_degradation", "half_life_m", Scale::displacement_m, 3.0, 3000.0},
-    SearchRange{specimen,
-                "stiffness_degradation",
-                "strength_exponent",
-                Scale::one,
-                0.0,
-                1.0,
-                {.beside = LawUse::with_strength}},
+    strength_exponent_of("stiffness_degradation"),
     SearchRange{specimen, "stiffness_degradation_with_peak", "half_life_m", Scale::displacement_m, 0.1, 300.0},
-    SearchRange{specimen,
-                "stiffness_degradation_with_peak",
-                "strength_exponent",
-                Scale::one,
-                0.0,
-                1.0,
-                {.beside = LawUse::with_strength}},
+    strength_exponent_of("stiffness_degradation_with_peak"),
     SearchRange{specimen, "stiffness_degradation_with_energy", "half_life_j", Scale::energy_j, 0.3, 3000.0},
-    SearchRange{specimen,
-                "stiffness_degradation_with_energy",
-                "strength_exponent",
-                Scale::one,
-                0.0,
-                1.0,
-                {.beside = LawUse::with_strength}},
+    strength_exponent_of("stiffness_degradation_with_energy"),
     SearchRange{specimen, "stiffness_degradation_with_cycles", "half_life_cycles", Scale::one, 0.5, 3000.0},
-    SearchRange{specimen,
-                "stiffness_degradation_with_cycles",
-                "strength_exponent",
-                Scale::one,
-                0.0,
-                1.0,
-                {.beside = LawUse::with_strength}},
+    strength_exponent_of("stiffness_degradation_with_cycles"),
     SearchRange{specimen, "stiffness_degradation_with_time", "half_life_s", Scale::time_s, 0.3, 30000.0},
-    SearchRange{specimen,
-                "stiffness_degradation_with_time",
-                "strength_exponent",
-                Scale::one,
-                0.0,
-                1.0,
-                {.beside = LawUse::with_strength}},
+    strength_exponent_of("stiffness_degradation_with_time"),
     SearchRange{specimen, "strength_degradation", "path_m", Scale::displacement_m, 3.0, 3000.0},
     SearchRange{specimen, "strength_degradation_with_peak", "decay_m", Scale::displacement_m, 0.1, 300.0},
     SearchRange{specimen, "strength_degradation_with_energy", "decay_j", Scale::energy_j, 0.3, 3000.0},

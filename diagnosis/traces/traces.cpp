@@ -178,6 +178,17 @@ double refined(const Readings& readings, double rough) {
   return 0.5 * (low + high);
 }
 
+/// A converter so coarse that only a few of its steps are in the span is found by a part of its step, as readings at
+/// whole steps are at halves of them too. Of less than two steps nothing can be told: most readings are near one place.
+double whole_steps(const Readings& readings, double steps) {
+  constexpr double kFewest = 2.0;
+  const double enough = tuning::kStepAsCoherent * readings.coherence(steps);
+  for (double parts = std::floor(steps / kFewest); parts > 1.0; parts -= 1.0) {
+    if (readings.coherence(steps / parts) >= enough) return steps / parts;
+  }
+  return steps;
+}
+
 }  // namespace
 
 ReadingSteps steps_of_readings(std::span<const double> values) {
@@ -209,7 +220,7 @@ ReadingSteps steps_of_readings(std::span<const double> values) {
   const double tried = static_cast<double>(end - begin);
   const double by_few = std::sqrt(std::log(tried + 2.0) / readings.samples_that_count());
   if (*peak < std::max(tuning::kStepCoherenceMin, tuning::kStepOverChance * std::max(by_chance, by_few))) return {};
-  const double steps = refined(readings, rough);
+  const double steps = whole_steps(readings, refined(readings, rough));
   ReadingSteps result{.step = readings.span / steps, .coherence = readings.coherence(steps)};
   return result.coherence < tuning::kStepCoherenceMin ? ReadingSteps{} : result;
 }

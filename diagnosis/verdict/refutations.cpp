@@ -371,10 +371,11 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
     if (!estimate.at_bound || range == nullptr || estimate.value == left_out(problem, effect, i)) continue;
     const double scale = problem.scales.of(range->scale);
     const bool is_upper = estimate.value > 0.5 * scale * (range->low + range->high);
-    const bool is_chosen = is_upper
-                               ? scale * range->high < parameter.high
-                               : range->low < 0.0 && scale * range->low > parameter.low &&
-                                     !range->restriction.is_amount && range->restriction.limit == SearchLimit::none;
+    const bool is_low_chosen = range->low < 0.0 && scale * range->low > parameter.low &&
+                               !range->restriction.is_amount && range->restriction.limit == SearchLimit::none;
+    // Smaller than it is looked for, and not yet absent.
+    const bool is_too_small = range->low > 0.0 && parameter.neutral < scale * range->low;
+    const bool is_chosen = is_upper ? scale * range->high < parameter.high : is_low_chosen || is_too_small;
     if (is_chosen) return true;
   }
   return false;

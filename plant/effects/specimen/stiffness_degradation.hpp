@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/parameter_limits.hpp"
@@ -32,7 +31,7 @@ class StiffnessDegradation final : public Effect {
                       .what = "q, 0: it keeps its strength, 1: it loses as much of it as of its stiffness",
                       .low = 0.0,
                       .high = 1.0,
-                      .neutral = std::numeric_limits<double>::quiet_NaN(),
+                      .neutral = kNoNeutral,
                       .fallback = 0.0}};
 
   StiffnessDegradation(std::span<const double> values, double /*sample_period_s*/)

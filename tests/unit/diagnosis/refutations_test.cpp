@@ -195,6 +195,10 @@ TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {
   Candidate friction = fit_of(specimen, "coulomb_friction", {100.0, 0.0, 1e-6});
   friction.fit.parameters[0][2].at_bound = true;  // as sharp as is searched
   EXPECT_FALSE(is_cut_off(problem, friction.fit, 0));
+  Candidate deadband = fit_of(transfer_system, "deadband", {2e-5});
+  EXPECT_FALSE(is_cut_off(problem, deadband.fit, 0));
+  deadband.fit.parameters[0][0].at_bound = true;  // smaller than is searched, and not absent
+  EXPECT_TRUE(is_cut_off(problem, deadband.fit, 0));
 }
 
 TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {

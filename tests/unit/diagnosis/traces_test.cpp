@@ -58,6 +58,15 @@ TEST(ReadingSteps, FoundDespiteConverterOffset) {
   EXPECT_NEAR(steps_of_readings(values).step, step, 0.01 * step / 40.0);
 }
 
+TEST(ReadingSteps, FoundThoughOnlyAFewAreInTheSpan) {
+  for (const double steps : {4.1, 5.3}) {
+    const double step = span_of(motion_m()) / steps;
+    const std::vector<double> values = with_noise(in_steps(motion_m(), step), 0.01 * step);
+    // Five standard deviations of the noise over the span of the levels.
+    EXPECT_NEAR(steps_of_readings(values).step, step, 0.05 * step / std::floor(steps)) << steps;
+  }
+}
+
 TEST(ReadingSteps, NotFoundInSmoothSignal) {
   const double span = span_of(motion_m());
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
