@@ -37,22 +37,27 @@ class StiffnessDegradation final : public Effect {
   StiffnessDegradation(std::span<const double> values, double /*sample_period_s*/)
       : half_life_{values[0]}, strength_exponent_{values[1]} {}
   void before(const StageSample& sample, Motion& motion) noexcept override {
-    const double stiffness_left = 1.0 / (1.0 + driver_.after(sample) / half_life_);
-    strength_left_ = std::pow(stiffness_left, strength_exponent_);
-    motion.displacement_m *= stiffness_left / strength_left_;
-    motion.velocity_m_per_s *= stiffness_left / strength_left_;
+    const double left = 1.0 / (1.0 + driver_.after(sample) / half_life_);
+    if (left != stiffness_left_) {
+      stiffness_left_ = left;
+      strength_left_ = strength_exponent_ == 0.0 ? 1.0 : std::pow(left, strength_exponent_);
+    }
+    motion.displacement_m *= stiffness_left_ / strength_left_;
+    motion.velocity_m_per_s *= stiffness_left_ / strength_left_;
   }
   void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& force_n) noexcept override {
     force_n *= strength_left_;
   }
   void reset() noexcept override {
     driver_ = {};
+    stiffness_left_ = 1.0;
     strength_left_ = 1.0;
   }
 
  private:
   double half_life_;
   double strength_exponent_;
+  double stiffness_left_ = 1.0;
   double strength_left_ = 1.0;
   Driver driver_;
 };
