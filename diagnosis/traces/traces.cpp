@@ -179,11 +179,10 @@ double refined(const Readings& readings, double rough) {
 }
 
 /// A converter so coarse that only a few of its steps are in the span is found by a part of its step, as readings at
-/// whole steps are at halves of them too. Of less than two steps nothing can be told: most readings are near one place.
+/// whole steps are at halves of them too. Two steps, that is three levels, are the fewest that show a distance twice.
 double whole_steps(const Readings& readings, double steps) {
-  constexpr double kFewest = 2.0;
   const double enough = tuning::kStepAsCoherent * readings.coherence(steps);
-  for (double parts = std::floor(steps / kFewest); parts > 1.0; parts -= 1.0) {
+  for (double parts = std::floor(0.5 * steps); parts > 1.0; parts -= 1.0) {
     if (readings.coherence(steps / parts) >= enough) return steps / parts;
   }
   return steps;
