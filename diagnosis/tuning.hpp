@@ -375,8 +375,8 @@ inline constexpr double kCauseActs = 0.1;
 /// first effect of a set was right more often than the scores alone predict.
 inline constexpr double kTemperature = 0.5;
 /// Probability that the cause is among the candidates at all: by Laplace's rule of succession, (right + 1) / (answers +
-/// 2), from two blind batches that are opened (seeds 694127777 and 1893848761), in which 378 of 404 answers with a cause
-/// were right, effects below the noise among them.
+/// 2), from two blind batches that are opened (seeds 694127777 and 1893848761), in which 378 of 404 answers with a
+/// cause were right, effects below the noise among them.
 inline constexpr double kAnswerRight = 379.0 / 406.0;
 /// A set holds the most probable effects until they are this probable together.
 inline constexpr double kCredible = 0.9;
