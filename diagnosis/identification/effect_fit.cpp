@@ -300,24 +300,16 @@ double allowed_energy(const FitSegment& fit) {
   return allowed * allowed * fit.measured.squaredNorm() / static_cast<double>(fit.measured.size());
 }
 
-/// How noise of the input and smoothing move the parameters: a law that is not linear answers noise that rides on the
-/// motion with less force, and a part of it looks like another number of the law. One row per kind of error. The shift
-/// is known to first order only, so that it counts as doubt and nothing is taken off (Cook and Stefanski, Journal of
-/// the American Statistical Association 89, 1994, extrapolate it).
-Eigen::MatrixXd pull_of_input(const VariableProjection& projection, const IdentificationProblem& problem,
-                              const Sandwich& fitted) {
-  std::vector<Eigen::RowVectorXd> kinds;
-  for (std::size_t t = 0; t < projection.touched().size(); ++t) {
-    const FitSegment& fit = problem.segments[projection.touched()[t]];
-    const Eigen::MatrixXd weights = fitted.weights(projection.first_row(t), fit.measured.size());
-    for (std::size_t kind = 0; kind < fit.input_errors.size(); ++kind) {
-      if (kind == kinds.size()) kinds.emplace_back(Eigen::RowVectorXd::Zero(weights.cols()));
-      kinds[kind] += fit.weight * fit.input_errors[kind].transpose() * weights;
-    }
+/// Adds how noise of the input and smoothing move the parameters, one row per kind of error: a law that is not linear
+/// answers noise that rides on the motion with less force, and a part of it looks like another number of the law. The
+/// shift is known to first order only, so that it counts as doubt and nothing is taken off (Cook and Stefanski, Journal
+/// of the American Statistical Association 89, 1994, extrapolate it).
+void add_pull_of_input(const FitSegment& fit, const Eigen::MatrixXd& weights, Eigen::MatrixXd& pull) {
+  const auto kinds = static_cast<Eigen::Index>(fit.input_errors.size());
+  if (kinds > pull.rows()) pull.conservativeResizeLike(Eigen::MatrixXd::Zero(kinds, weights.cols()));
+  for (Eigen::Index kind = 0; kind < kinds; ++kind) {
+    pull.row(kind) += fit.weight * fit.input_errors[static_cast<std::size_t>(kind)].transpose() * weights;
   }
-  Eigen::MatrixXd pull(static_cast<Eigen::Index>(kinds.size()), fitted.covariance().cols());
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind) pull.row(static_cast<Eigen::Index>(kind)) = kinds[kind];
-  return pull;
 }
 
 /// Three parts. One is how much blocks disagree (Liang and Zeger, Biometrika 73, 1986, blocks as clusters, corrected
@@ -373,6 +365,7 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
   wrong.widen_to(by_noise);
   predicting.widen_to(by_noise_alone);
   wrong.add_prior(noise * precision);
+  Eigen::MatrixXd by_input(0, count + beside);
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     const Eigen::Index begin = projection.first_row(t);
@@ -380,10 +373,12 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
     const double repeatable = fit.discrepancy->repeatable(residual.segment(begin, rows));
     right.add_pull(fit.discrepancy->pull(repeatable, right.weights(begin, rows)));
     const double at_least = std::max(repeatable, allowed_energy(fit));
-    wrong.add_pull(fit.discrepancy->pull(at_least, wrong.weights(begin, rows)));
+    const Eigen::MatrixXd weights = wrong.weights(begin, rows);
+    wrong.add_pull(fit.discrepancy->pull(at_least, weights));
+    add_pull_of_input(fit, weights, by_input);
     predicting.add_pull(fit.discrepancy->pull(at_least, predicting.weights(begin, rows)));
   }
-  wrong.add_pull(pull_of_input(projection, problem, wrong));
+  wrong.add_pull(by_input);
   const auto unit = size.head(count).cwiseInverse().asDiagonal();
   const double scale = tuning::kIntervalScale * tuning::kIntervalScale;
   return {.variances = (unit * right.covariance() * unit).diagonal(),

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "diagnosis/identification/effect_fit.hpp"
+#include "mechanics/laws/bilinear.hpp"
+#include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -96,6 +98,27 @@ TEST(ModelledSegments, ConverterStepsAreSmoothed) {
   EXPECT_EQ(predict(coarse, smooth), predict(mass_only(), smooth));
   // Of an even error between half a step each way less than half is left.
   EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
+}
+
+TEST(ChangeBySmoothing, IsWhatNoiseOnTheMotionOfAYieldingLawChanged) {
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{
+        .stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 1.6e4, .hardening_ratio = 0.05});
+  };
+  Recording recording = made_recording(made_motion_m, [](double) { return 0.0; });
+  DofRecording& dof = recording.dofs[0];
+  dof.of(Channel::measured_force) = predict(model, segments_of(recording, 0, 0).back());
+  EXPECT_TRUE(change_by_smoothing(model, segments_of(recording, 0, 0).back()).empty());  // control: no such noise
+  const std::vector<double> noise_m = made_noise({.correlation = 0.8}, recording.samples, 1e-4, kSitePeriod_s, 1);
+  for (std::size_t i = 0; i < recording.samples; ++i) dof.of(Channel::measured_displacement)[i] += noise_m[i];
+  const Segment noisy = segments_of(recording, 0, 0).back();
+  std::vector<double> left = change_by_smoothing(model, noisy);
+  ASSERT_EQ(left.size(), recording.samples);
+  const std::vector<double> predicted = predict(model, noisy);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += predicted[i] - noisy.measured[i];
+  // Of the force that the noise took, no more than a half is left.
+  EXPECT_LT(root_mean_square(left), 0.5 * residual_n(model, noisy));
 }
 
 TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {
