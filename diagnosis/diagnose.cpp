@@ -470,7 +470,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
   std::vector<Segment> segments = segments_in_role(
       model, recordings, RecordingRole::fit, settings.dof, [&](const Recording& recording, std::size_t position) {
-        return segments_to_search(model, recording, settings.dof, position);
+        return segments_to_search(model, recording, settings.dof, position, progress);
       });
   // Random network faults are found by their traces only.
   std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
@@ -486,6 +486,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   }
   IdentificationProblem problem = make_problem(model, segments);
   problem.progress = progress;
+  progress.alive();
   std::vector<Stage> stages =
       judge_stages(model, segments, problem, settings, progress.part(tuning::kPrepared, tuning::kSelected));
   std::vector<Judgement*> all_judgements;
@@ -496,7 +497,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const SiteModel completed = is_smoothed ? with_effects(model, causes_of(stages, {})) : model;
   const std::vector<Segment> held_out = segments_in_role(
       model, recordings, RecordingRole::held_out, settings.dof, [&](const Recording& recording, std::size_t position) {
-        return modelled_segments(model, recording, settings.dof, position, completed);
+        return modelled_segments(model, recording, settings.dof, position, completed, progress);
       });
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {

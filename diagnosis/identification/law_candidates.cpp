@@ -11,7 +11,11 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/bouc_wen.hpp"
 #include "mechanics/laws/bouc_wen_baber_noori.hpp"
+#include "mechanics/laws/elastomer.hpp"
+#include "mechanics/laws/friction_pendulum.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "mechanics/laws/lead_rubber.hpp"
+#include "mechanics/laws/mr_damper.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/pinched_reloading.hpp"
 #include "mechanics/laws/ramberg_osgood.hpp"
@@ -87,12 +91,78 @@ constexpr Searched kLossOfStrength{"strength_loss", "", "uy over L of strength",
 constexpr Searched kLossOfUnloading{"unloading_loss", "", "uy over L of unloading", Scale::one, 0.0, 0.1};
 constexpr Searched kLossOfReloading{"reloading_loss", "", "uy over L of reloading", Scale::one, 0.0, 0.1};
 
+constexpr Searched kIsotropic{"isotropic_hardening", "", "a1 and a3 for a2 = a4 = 1", Scale::one, 0.0, 0.5};
+constexpr Searched kHeating{"heating", "", "uy over L", Scale::one, 0.0, 0.5};
+
+// What slides.
+constexpr Searched kFriction{"friction_force_n", "N", "while it slides fast", Scale::force_n, 0.0, 1.5, 0.0};
+constexpr Searched kPresliding{"presliding_displacement_m", "m",  "from rest until it slides",
+                               Scale::displacement_m,       1e-3, 0.5};
+// Down to a restoring force of a thousandth of the friction: the law has no flat dish.
+constexpr Searched kRestoring{"restoring_per_m", "1/m", "1 / (mu R)", Scale::per_m, 1e-3, 30.0};
+constexpr Searched kSlowRatio{"slow_friction_ratio", "", "mu_slow over mu_fast", Scale::one, 0.0, 1.0};
+constexpr Searched kFrictionRate{"friction_rate_s_per_m", "s/m", "a", Scale::s_per_m, 1.0, 100.0};
+constexpr Searched kHysteretic{"hysteretic_displacement_m", "m", "xh", Scale::displacement_m, 1e-3, 0.5};
+constexpr Searched kSpringShare{"spring_per_m", "1/m", "k over Fh", Scale::per_m, 0.0, 10.0};
+constexpr Searched kDashpotShare{"dashpot_s_per_m", "s/m", "c over Fh", Scale::s_per_m, 0.0, 20.0};
+
+// Filled rubber.
+constexpr Searched kPayneDisplacement{"payne_displacement_m", "m",  "that overcomes the filler",
+                                      Scale::displacement_m,  0.01, 1.0};
+constexpr Searched kLargeMotionShare{"large_motion_ratio", "",   "stiffness in large motions over that in small ones",
+                                     Scale::one,           0.02, 1.0};
+constexpr Searched kStiffening{"stiffening_displacement_m", "m", "at which the cubic part is as large as the linear",
+                               Scale::displacement_m,       0.3, 30.0};
+constexpr Searched kMullins{"mullins_softening", "", "d", Scale::one, 0.0, 0.8};
+constexpr Searched kMullinsDisplacement{"mullins_displacement_m", "m", "xm", Scale::displacement_m, 0.05, 3.0};
+
 Bilinear::Parameters bilinear(Values v) {
   return {.stiffness_n_per_m = v[0], .yield_force_n = v[0] * v[1], .hardening_ratio = v[2]};
 }
 
 GiuffreMenegottoPinto::Parameters giuffre_menegotto_pinto(Values v) {
-  return {.stiffness_n_per_m = v[0], .yield_force_n = v[0] * v[1], .hardening_ratio = v[2], .r0 = v[3]};
+  const double isotropic = v.size() > 4 ? v[4] : 0.0;
+  return {.stiffness_n_per_m = v[0],
+          .yield_force_n = v[0] * v[1],
+          .hardening_ratio = v[2],
+          .r0 = v[3],
+          .a1 = isotropic,
+          .a3 = isotropic};
+}
+
+LeadRubber::Parameters lead_rubber(Values v) {
+  return {.rubber_stiffness_n_per_m = v[2] * v[0],
+          .lead_strength_n = (1.0 - v[2]) * v[0] * v[1],
+          .yield_displacement_m = v[1],
+          .heating_path_m = v[3] > 0.0 ? v[1] / v[3] : 0.0};  // 0: no heating
+}
+
+/// Weight and curvature show in the force as their ratio alone: of a dish of 1 m.
+FrictionPendulum::Parameters friction_pendulum(Values v) {
+  constexpr double kRadius_m = 1.0;
+  return {.weight_n = v[0] * v[2] * kRadius_m,
+          .radius_m = kRadius_m,
+          .friction_coefficient = 1.0 / (v[2] * kRadius_m),
+          .slow_friction_ratio = v[3],
+          .friction_rate_s_per_m = v[4],
+          .presliding_displacement_m = v[1]};
+}
+
+MrDamper::Parameters mr_damper(Values v) {
+  return {.damping_n_s_per_m = v[0] * v[3],
+          .stiffness_n_per_m = v[0] * v[2],
+          .hysteretic_force_n = v[0],
+          .hysteretic_displacement_m = v[1]};
+}
+
+Elastomer::Parameters elastomer(Values v) {
+  const double large_n_per_m = v[0] * v[2];
+  return {.stiffness_n_per_m = large_n_per_m,
+          .stiffening_n_per_m3 = large_n_per_m / (v[3] * v[3]),
+          .mullins_softening = v[4],
+          .mullins_displacement_m = v[5],
+          .payne_force_n = (v[0] - large_n_per_m) * v[1],
+          .payne_displacement_m = v[1]};
 }
 
 BoucWen::Parameters bouc_wen(Values v) {
@@ -195,6 +265,15 @@ constexpr LawReplacement replacement(std::string_view law, std::string_view in_w
 constexpr LawReplacement kBilinear = replacement<Bilinear, bilinear>("bilinear", "yields");
 constexpr LawReplacement kGiuffre = replacement<GiuffreMenegottoPinto, giuffre_menegotto_pinto>(
     "giuffre_menegotto_pinto", "yields with rounded corners");
+constexpr LawReplacement kLeadRubber =
+    replacement<LeadRubber, lead_rubber>("lead_rubber", "yields and loses strength as it heats up");
+constexpr LawReplacement kFrictionPendulum = replacement<FrictionPendulum, friction_pendulum>(
+    "friction_pendulum",
+    "slides on a dish with a friction that grows with the velocity (W / R and mu W can be told, R is given as 1 m)");
+constexpr LawReplacement kMrDamper =
+    replacement<MrDamper, mr_damper>("mr_damper", "is a magnetorheological damper at one current");
+constexpr LawReplacement kElastomer = replacement<Elastomer, elastomer>(
+    "elastomer", "is softer below the largest displacement so far and in large motions, like filled rubber");
 constexpr LawReplacement kRambergOsgood =
     replacement<RambergOsgood, ramberg_osgood>("ramberg_osgood", "softens smoothly without a plateau");
 constexpr LawReplacement kSelfCentring =
@@ -219,13 +298,19 @@ struct Table {
   std::vector<LawCandidate> laws;
 
   explicit Table(bool law_is_spring) {
-    laws.reserve(16);  // entries point at each other
+    laws.reserve(32);  // entries point at each other
     const std::string_view name = law_is_spring ? "yielding" : "hysteresis_law";
     add(name, kBilinear, "elastic to Fy, then with the stiffness b k", "Simo and Hughes (1998)",
         {kStiffness, kYield, kHardening});
+    const std::string_view form = "hysteresis_law";
+    add(form, kLeadRubber, "F = kr x + Q z, Q = Q0 / (1 + s / L) after the plastic path s",
+        "Kalpakidis and Constantinou (2009)", {kStiffness, kYield, kHardening, kHeating});
+    refine({0.01});
     add(name, kGiuffre, "curved from k to b k at Fy", "Menegotto and Pinto (1973)",
         {kStiffness, kYield, kHardening, kCurvature});
-    const std::string_view form = "hysteresis_law";
+    add(name, kGiuffre, "curved from k to b k at Fy, which grows with the largest displacement",
+        "Filippou et al. (1983)", {kStiffness, kYield, kHardening, kCurvature, kIsotropic});
+    refine({0.01});
     add(form, kRambergOsgood, "x / xy = F / Fy + (F / Fy)^n on the first branch", "Ramberg and Osgood (1943)",
         {kStiffness, kYield, kRoundness});
     add(form, kSelfCentring, "flag of height beta Fa above Fa", "Christopoulos et al. (2002)",
@@ -254,6 +339,15 @@ struct Table {
         pinched);
     // Half-way between none and much of each, so that a search sees the slopes of all.
     refine({0.01, 0.05, 0.6, 0.1, 0.1, 0.3, 0.01, 0.3});
+    add(form, kFrictionPendulum, "F = W x / R + mu(v) W z", "Constantinou, Mokha and Reinhorn (1990)",
+        {kFriction, kPresliding, kRestoring, kSlowRatio, kFrictionRate});
+    special({.family = EffectFamily::rate, .needs_time = true});
+    add(form, kMrDamper, "F = c v + k x + Fh z", "Spencer et al. (1997)",
+        {kFriction, kHysteretic, kSpringShare, kDashpotShare});
+    special({.family = EffectFamily::rate, .follows_derivatives = true, .needs_time = true});
+    add(form, kElastomer, "F = eta (k x + k3 x^3) + Fp z", "Ogden and Roxburgh (1999), Berg (1998)",
+        {kStiffness, kPayneDisplacement, kLargeMotionShare, kStiffening, kMullins, kMullinsDisplacement});
+    special({.family = EffectFamily::amplitude});
   }
 
   void add(std::string_view name, const LawReplacement& law, std::string_view equation, std::string_view source,
@@ -288,6 +382,10 @@ struct Table {
   void refine(std::vector<double> start) {
     laws.back().refines = &laws[laws.size() - 2].type;
     laws.back().start = std::move(start);
+  }
+  void special(const EffectTraits& traits) {
+    laws.back().type.traits = traits;
+    laws.back().is_special = true;
   }
 };
 

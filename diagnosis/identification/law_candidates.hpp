@@ -10,9 +10,9 @@ namespace hybridtest {
 
 /// A law that may take the place of the specimen's own, with its search ranges.
 ///
-/// Searched are the initial stiffness, in which every law of this table is linear (variable projection), the
-/// displacement at which it yields, and ratios without a unit: so the ranges fit any specimen, and the stiffness that
-/// the user's model has plays no part. written() gives the law's own parameters.
+/// Searched are the initial stiffness, or the friction of what slides, in which the force is linear (variable
+/// projection), the displacement at which it yields or slides, and ratios: so the ranges fit any specimen, and the
+/// stiffness that the user's model has plays no part. written() gives the law's own parameters.
 struct LawCandidate {
   EffectType type;
   std::vector<SearchRange> ranges;  // one per parameter of the effect
@@ -20,6 +20,8 @@ struct LawCandidate {
   const EffectType* refines = nullptr;
   // Where the search begins for the parameters that it has beyond that law's.
   std::vector<double> start;
+  // Of a special device, and searched only where everything else leaves something to explain.
+  bool is_special = false;
 };
 
 /// Laws of increasing detail. Beside a spring, a law that yields is called `yielding`: it is what the user's model

@@ -39,6 +39,8 @@ double SignalScales::of(ParameterScale scale) const noexcept {
       return ratio_or_one(force_n, displacement_m * displacement_m * displacement_m);
     case ParameterScale::compliance_m_per_n: return ratio_or_one(displacement_m, force_n);
     case ParameterScale::energy_j: return ratio_or_one(force_n * displacement_m, 1.0);
+    case ParameterScale::per_m: return ratio_or_one(1.0, displacement_m);
+    case ParameterScale::s_per_m: return ratio_or_one(1.0, velocity_m_per_s);
     case ParameterScale::mass_kg: return ratio_or_one(force_n, acceleration_m_per_s2);
     case ParameterScale::duration_s: return ratio_or_one(duration_s, 1.0);
     case ParameterScale::one:

@@ -26,6 +26,8 @@ enum class ParameterScale : std::uint8_t {
   stiffness_n_per_m3,   // peak force over the cube of the peak displacement
   compliance_m_per_n,   // peak displacement over peak force
   energy_j,             // peak force times peak displacement
+  per_m,                // one over the peak displacement
+  s_per_m,              // one over the peak velocity
 };
 
 /// Beside which law of a specimen a parameter is searched; beside another law it keeps its fallback.

@@ -279,9 +279,11 @@ struct Deviation {
 
 /// @param squares   that one deviation leaves of the recorded force.
 template <class Squares>
-Deviation best_deviation(const Segment& segment, const DofRecording& dof, Squares&& squares) {
+Deviation best_deviation(const Segment& segment, const DofRecording& dof, const PartProgress& progress,
+                         Squares&& squares) {
   Deviation best;
   for (const double deviation : tuning::kSmoothingDeviations) {
+    progress.alive();
     const double here = squares(smoothed_alike(segment, dof, deviation));
     if (here < best.squares) best = {deviation, here};
   }
@@ -296,9 +298,11 @@ Segment smoothed_by(const SiteModel& model, const Segment& segment, const DofRec
   return smooth;
 }
 
-Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
-  const Deviation best = best_deviation(
-      segment, dof, [&](const Segment& tried) { return squared_difference(segment.measured, predict(model, tried)); });
+Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofRecording& dof,
+                      const PartProgress& progress) {
+  const Deviation best = best_deviation(segment, dof, progress, [&](const Segment& tried) {
+    return squared_difference(segment.measured, predict(model, tried));
+  });
   return smoothed_by(model, segment, dof, best.value);
 }
 
@@ -329,9 +333,10 @@ Segment with_smooth_motion(const Segment& segment, double deviation) {
 
 /// Smoothed alike where there is a gap of which a mass that the model lacks explains more than half: the noise of an
 /// acceleration that is not smoothed hides most of such a mass.
-std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof) {
+std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof,
+                                         const PartProgress& progress) {
   const Deviation best = best_deviation(
-      segment, dof, [&](const Segment& tried) { return left_beside(model, segment.measured, tried, true); });
+      segment, dof, progress, [&](const Segment& tried) { return left_beside(model, segment.measured, tried, true); });
   if (!(best.value > 0.0)) return {};
   Segment smooth = smoothed_by(model, segment, dof, best.value);
   const double output = std::sqrt(mean_square(segment.measured));
@@ -370,22 +375,23 @@ std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& 
 }
 
 std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
-                                       std::size_t position, const SiteModel& completed) {
+                                       std::size_t position, const SiteModel& completed, const PartProgress& progress) {
   std::vector<Segment> segments;
   for (Segment& segment : segments_of(recording, dof, position)) {
     if (!is_modelled(model, segment)) continue;
     const bool is_smoothed = can_be_smoothed(segment) && follows_derivatives(completed);
-    segments.push_back(is_smoothed ? best_smoothed(completed, segment, recording.dofs[dof]) : std::move(segment));
+    segments.push_back(is_smoothed ? best_smoothed(completed, segment, recording.dofs[dof], progress)
+                                   : std::move(segment));
   }
   return segments;
 }
 
 std::vector<Segment> segments_to_search(const SiteModel& model, const Recording& recording, std::size_t dof,
-                                        std::size_t position) {
-  std::vector<Segment> segments = modelled_segments(model, recording, dof, position);
+                                        std::size_t position, const PartProgress& progress) {
+  std::vector<Segment> segments = modelled_segments(model, recording, dof, position, model, progress);
   for (Segment& segment : segments) {
     if (!can_be_smoothed(segment) || follows_derivatives(model)) continue;
-    if (auto smooth = smoothed_for_mass(model, segment, recording.dofs[dof])) segment = std::move(*smooth);
+    if (auto smooth = smoothed_for_mass(model, segment, recording.dofs[dof], progress)) segment = std::move(*smooth);
   }
   return segments;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnosis/progress.hpp"
 #include "diagnosis/recording.hpp"
 #include "plant/effects/effect.hpp"
 #include "plant/effects/effect_type.hpp"
@@ -130,14 +131,17 @@ struct InputErrors {
 /// (smoothed_alike()). The deviation is chosen so that the prediction is nearest to the recorded force: less smoothing
 /// leaves noise in the derivatives, more smoothing reduces their peaks.
 /// @param completed   the model whose force decides on the smoothing: the same, or with the causes that were found.
+/// @param progress    told of each smoothing that is tried.
 [[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
-                                                     std::size_t dof, std::size_t position, const SiteModel& completed);
+                                                     std::size_t dof, std::size_t position, const SiteModel& completed,
+                                                     const PartProgress& progress = {});
 [[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
                                                      std::size_t dof, std::size_t position);
 
 /// The same for a search of causes: force and motion are smoothed equally, too, where a mass that the model lacks would
 /// explain most of its residual.
 [[nodiscard]] std::vector<Segment> segments_to_search(const SiteModel& model, const Recording& recording,
-                                                      std::size_t dof, std::size_t position);
+                                                      std::size_t dof, std::size_t position,
+                                                      const PartProgress& progress = {});
 
 }  // namespace hybridtest

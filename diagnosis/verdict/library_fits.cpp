@@ -139,6 +139,7 @@ double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit
 bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
   if (!problem.law_is_spring) return false;
   return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
+    if (effect.type->replacement != nullptr) return false;
     const std::ptrdiff_t position = &effect - fit.effects.data();
     if (slides_as_in_model(problem, fit, static_cast<std::size_t>(position))) return false;
     const auto at = [&](std::string_view name) {
@@ -322,7 +323,7 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
     }
   }
   for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
-    if (law.refines == nullptr && touches_a_gap(problem, law.type)) effects.push_back(&law.type);
+    if (law.refines == nullptr && !law.is_special && touches_a_gap(problem, law.type)) effects.push_back(&law.type);
   }
   return effects;
 }
@@ -393,6 +394,24 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
       },
       counted(progress.part(tuning::kLibrarySearched, 1.0), "effects fitted at the full rate"));
   candidates = best_first(std::move(refined));
+  drop_refuted(problem, candidates);
+  return candidates;
+}
+
+std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                        std::size_t threads, const PartProgress& progress) {
+  std::vector<const EffectType*> laws;
+  for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
+    if (law.is_special && touches_a_gap(problem, law.type)) laws.push_back(&law.type);
+  }
+  std::vector<std::optional<Candidate>> fitted(laws.size());
+  for_each_in_parallel(
+      laws.size(), threads,
+      [&](std::size_t i) {
+        if (std::optional<Candidate> found = fit_one(coarse, *laws[i], 0.0)) fitted[i] = refine(problem, *found);
+      },
+      counted(progress, "laws of isolators and dampers"));
+  std::vector<Candidate> candidates = best_first(std::move(fitted));
   drop_refuted(problem, candidates);
   return candidates;
 }

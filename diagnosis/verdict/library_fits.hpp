@@ -60,7 +60,8 @@ using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
                           const FitProgress& progress);
 
-/// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves.
+/// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves, but
+/// for those of special devices.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
 /// Gain of a candidate on held-out blocks above which it explains something [nats]: log(n / a) for n judged effects and
@@ -83,6 +84,11 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
                                                  const IdentificationProblem& coarse, std::size_t threads,
                                                  const PartProgress& progress);
+
+/// The laws of special devices (LawCandidate::is_special), each by itself, best first; refuted ones are omitted.
+[[nodiscard]] std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem,
+                                                      const IdentificationProblem& coarse, std::size_t threads,
+                                                      const PartProgress& progress);
 
 /// Scores of the same fits after the noise of the problem has changed, best first.
 void score_again(const IdentificationProblem& problem, std::vector<Candidate>& candidates);

@@ -249,6 +249,19 @@ std::string instant_refuted(const Suspect& suspect) {
                      report::quantity(instant_s, "s"));
 }
 
+/// An axial load larger than is looked for, over its column's height, would push any specimen over that gives this
+/// force: it can only be a part of two numbers that cancel each other, the load and a stiffness.
+std::string load_refuted(const Suspect& suspect) {
+  const SignalScales& scales = suspect.problem.scales;
+  const double stiffness_n_per_m = scales.of(ParameterScale::stiffness_n_per_m);
+  const double load_n = std::abs(suspect.parameter("axial_force_n").value);
+  const double most_n = search_range(*suspect.effect.type, suspect.effect.type->parameters.front())->high /
+                        tuning::kHeightOverStroke * stiffness_n_per_m * suspect.parameter("height_m").value;
+  if (load_n <= most_n) return {};
+  return fmt::format("{}: no specimen of {} would stand under that load", suspect.name(),
+                     report::quantity(stiffness_n_per_m, "N/m"));
+}
+
 /// What speaks against an effect beyond its interval.
 struct Check {
   EffectInterface interface;
@@ -267,6 +280,7 @@ constexpr std::array kChecks{
     Check{force_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_n_per_s", "N"); }},
     Check{displacement_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_m_per_s", "m"); }},
     Check{specimen, "fracture", instant_refuted},
+    Check{specimen, "geometric_stiffness", load_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
     Check{specimen, "friction_with_input", friction_refuted},

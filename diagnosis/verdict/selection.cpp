@@ -9,6 +9,7 @@
 #include <optional>
 #include <typeinfo>
 
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 
@@ -561,7 +562,47 @@ bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcom
   return false;
 }
 
+/// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
+/// itself, and what it needs beside it.
+void try_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                      std::size_t threads, const PartProgress& progress, Growth& growth) {
+  if (!gap_energy(problem, growth.fit).is_clear()) return;
+  std::vector<Candidate> laws = fit_special_laws(problem, coarse, threads, progress);
+  const double before = score_of(problem, growth.fit);
+  if (laws.empty() || laws.front().score <= before + decisive_gain(problem)) return;
+  std::vector<double> scores = scores_of(laws);
+  scores.push_back(before);
+  const double probability = softmax(scores).front();
+  Candidate& law = laws.front();
+  growth = {.fit = law.fit, .accepted = {{law.type, probability}}};
+  for (double& other : selection.probabilities) other *= 1.0 - probability;
+  selection.probabilities.insert(selection.probabilities.begin(), probability);
+  selection.library.insert(selection.library.begin(), std::move(law));
+  selection.alike.clear();
+  grow_further(problem, coarse, selection, threads, progress, growth);
+}
+
+/// Whether a fit left nothing of an effect.
+bool is_gone(const IdentificationProblem& problem, const EffectSetting& effect) {
+  if (place_of(problem.model, *effect.type) != nullptr) return false;
+  bool has_size = false;
+  for (std::size_t i = 0; i < effect.values.size(); ++i) {
+    const EffectParameter& parameter = effect.type->parameters[i];
+    if (std::isnan(parameter.neutral) || is_fixed(problem, *effect.type, parameter)) continue;
+    has_size = true;
+    if (effect.values[i] != parameter.neutral) return false;
+  }
+  return has_size;
+}
+
 }  // namespace
+
+void drop_gone(const IdentificationProblem& problem, FitOutcome& fit) {
+  std::vector<EffectSetting> left = fit.effects;
+  std::erase_if(left, [&](const EffectSetting& effect) { return is_gone(problem, effect); });
+  if (left.empty() || left.size() == fit.effects.size()) return;
+  fit = refit_effects(problem, left, false);
+}
 
 Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, std::size_t threads,
                          const PartProgress& progress) {
@@ -585,12 +626,17 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
     return !selection.library.empty() &&
            selection.library.front().score >= held_out_score(problem, selection.baseline) + decisive_gain(problem);
   };
-  if (!is_explained()) return selection;
-  Growth growth = find_effects(problem, coarse, selection, threads, progress);
+  Growth growth{.fit = selection.baseline, .accepted = {}};
+  if (is_explained()) growth = find_effects(problem, coarse, selection, threads, progress);
   if (drop_law_without_loop(problem, growth.fit, selection)) {
-    if (!is_explained()) return selection;
-    growth = find_effects(problem, coarse, selection, threads, progress);
+    growth = {.fit = selection.baseline, .accepted = {}};
+    if (is_explained()) growth = find_effects(problem, coarse, selection, threads, progress);
   }
+  try_special_laws(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen),
+                   growth);
+  if (growth.fit.effects.empty()) return selection;
+  // Of what was chosen at the lower rate, the full rate may leave nothing.
+  drop_gone(problem, growth.fit);
   selection.shares = cause_shares(coarse, growth.fit.effects, progress.part(tuning::kEffectsChosen, 1.0));
   selection.chosen = std::move(growth.fit);
   for (const EffectSetting& effect : selection.chosen.effects) {

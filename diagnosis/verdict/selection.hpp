@@ -40,6 +40,9 @@ struct Selection {
 [[nodiscard]] Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse,
                                        std::size_t threads, const PartProgress& progress);
 
+/// Of several effects, drops those that a fit left nothing of and that the model does not have.
+void drop_gone(const IdentificationProblem& problem, FitOutcome& fit);
+
 /// Whether the gap of a suspect segment exceeds this multiple of its floor.
 [[nodiscard]] bool stands_above_floor(const IdentificationProblem& problem, const FitOutcome& baseline,
                                       double multiple);

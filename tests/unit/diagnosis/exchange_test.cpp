@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/verdict/causes.hpp"
+#include "diagnosis/verdict/selection.hpp"
 #include "mechanics/laws/bouc_wen.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -96,6 +98,28 @@ TEST(SettleSet, DoubtAboutTheLargestShareStaysASet) {  // control
   settle_set(report);
   EXPECT_EQ(report.verdict, Verdict::set);
   EXPECT_TRUE(report.ranking[2].is_cause);
+}
+
+/// A stiffness 5 % off, and the friction that was searched with it; the real one helps the motion, so that none is
+/// left.
+TEST(DropGone, EffectOfSizeZeroIsDropped) {
+  for (const double friction_n : {-300.0, 300.0}) {
+    const Recording recording = made_recording(made_motion_m, [&](double t) {
+      return 1.05 * kMadeStiffness_n_per_m * made_motion_m(t) +
+             (made_velocity_m_per_s(t) > 0.0 ? friction_n : -friction_n);
+    });
+    const IdentificationProblem problem = make_problem(made_model(), modelled_segments(made_model(), recording, 0, 0));
+    FitOutcome fit = refit_effects(
+        problem,
+        {{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, 0.05 * kMadeStiffness_n_per_m}},
+         {find_effect(EffectInterface::specimen, "coulomb_friction"), {100.0, 0.0, 1e-5}}},
+        false);
+    ASSERT_EQ(fit.effects.size(), 2U);
+    drop_gone(problem, fit);
+    // Control: a friction that is there stays.
+    EXPECT_EQ(fit.effects.size(), friction_n > 0.0 ? 2U : 1U);
+    EXPECT_EQ(fit.effects.front().type->name, "stiffness_error");
+  }
 }
 
 }  // namespace

@@ -53,6 +53,15 @@ TEST(Refutation, LoadCellLimitThatReadingsPass) {
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
 }
 
+/// A column of 1 m under the load whose P / h is the specimen's stiffness; and one of which a stiffness that is as much
+/// off takes nearly all back.
+TEST(Refutation, LoadUnderWhichNoSpecimenWouldStand) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "geometric_stiffness", {kMadeStiffness_n_per_m, 1.0})), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "geometric_stiffness", {100.0 * kMadeStiffness_n_per_m, 1.0})),
+              HasSubstr("would stand under that load"));
+}
+
 TEST(Refutation, StrokeAndSpeedLimitThatMotionPasses) {
   const auto stopped_m = [](double t) { return std::clamp(made_motion_m(t), -0.02, 0.02); };
   const IdentificationProblem stopped = problem_of(made_recording(stopped_m, spring_n));

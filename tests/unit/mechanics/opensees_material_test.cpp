@@ -15,7 +15,7 @@
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
 #include "mechanics/laws/viscous.hpp"
-#include "tests/unit/mechanics/material_path.hpp"
+#include "tests/support/material_path.hpp"
 
 /// Each law along a path of displacements, compared with the force that a material of OpenSees gives on it
 /// (tests/reference/laws.tcl and others).

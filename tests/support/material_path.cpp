@@ -1,4 +1,4 @@
-#include "tests/unit/mechanics/material_path.hpp"
+#include "tests/support/material_path.hpp"
 
 #include <fstream>
 #include <stdexcept>
