@@ -139,10 +139,9 @@ LeadRubber::Parameters lead_rubber(Values v) {
 
 /// Weight and curvature show in the force as their ratio alone: of a dish of 1 m.
 FrictionPendulum::Parameters friction_pendulum(Values v) {
-  constexpr double kRadius_m = 1.0;
-  return {.weight_n = v[0] * v[2] * kRadius_m,
-          .radius_m = kRadius_m,
-          .friction_coefficient = 1.0 / (v[2] * kRadius_m),
+  return {.weight_n = v[0] * v[2],
+          .radius_m = 1.0,
+          .friction_coefficient = 1.0 / v[2],
           .slow_friction_ratio = v[3],
           .friction_rate_s_per_m = v[4],
           .presliding_displacement_m = v[1]};

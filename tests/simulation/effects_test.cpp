@@ -44,6 +44,8 @@ double scale_of(const SearchRange& range) {
     case ParameterScale::stiffness_n_per_m3: return 1.0e9;
     case ParameterScale::compliance_m_per_n: return 1.0e-7;
     case ParameterScale::energy_j: return 400.0;
+    case ParameterScale::per_m: return 50.0;
+    case ParameterScale::s_per_m: return 10.0;
     case ParameterScale::one:
     case ParameterScale::time_s: return 1.0;
   }
