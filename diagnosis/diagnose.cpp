@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnosis/identification/continuation.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
@@ -70,10 +71,11 @@ struct Stage {
   }
 };
 
-/// Of a law in place of the specimen's own, over the recording in which it has lost most; 0 for an effect.
+/// Of a law in place of the specimen's own, over the recording in which it has lost most; 0 for an effect, and for a
+/// law that does not soften.
 double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetting& cause) {
   double most = 0.0;
-  if (cause.type->replacement == nullptr) return most;
+  if (cause.type->replacement == nullptr || !law_candidate(*cause.type).softens) return most;
   const std::unique_ptr<Law> law = cause.type->replacement->make(cause.values);
   for (const FitSegment& fit : problem.segments) {
     if (law != nullptr && fit.segment.to == Channel::measured_force) {

@@ -1,6 +1,7 @@
 #include "diagnosis/identification/law_candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <deque>
@@ -103,7 +104,7 @@ constexpr Searched kRestoring{"restoring_per_m", "1/m", "1 / (mu R)", Scale::per
 constexpr Searched kSlowRatio{"slow_friction_ratio", "", "mu_slow over mu_fast", Scale::one, 0.0, 1.0};
 constexpr Searched kFrictionRate{"friction_rate_s_per_m", "s/m", "a", Scale::s_per_m, 1.0, 100.0};
 constexpr Searched kHysteretic{"hysteretic_displacement_m", "m", "xh", Scale::displacement_m, 1e-3, 0.5};
-constexpr Searched kSpringShare{"spring_per_m", "1/m", "k over Fh", Scale::per_m, 0.0, 10.0};
+constexpr Searched kSpringShare{"spring_per_m", "1/m", "k over Fh", Scale::per_m, 0.0, 10.0, 0.0};
 constexpr Searched kDashpotShare{"dashpot_s_per_m", "s/m", "c over Fh", Scale::s_per_m, 0.0, 20.0};
 
 // Filled rubber.
@@ -291,6 +292,9 @@ constexpr LawReplacement kBoucWen = replacement<BoucWen, bouc_wen>("bouc_wen", "
 constexpr LawReplacement kBaberNoori = replacement<BoucWenBaberNoori, bouc_wen_baber_noori>(
     "bouc_wen_baber_noori", "pinches and degrades smoothly with the energy that it dissipates");
 
+/// The laws that may unload with less than their initial stiffness. Others only curve.
+constexpr std::array<std::string_view, 4> kSoftening{"takeda", "peak_oriented", "pinching", "bouc_wen_baber_noori"};
+
 /// Builds the table. Parameters stand in deques: entries point at them.
 struct Table {
   std::deque<std::vector<EffectParameter>> parameters;
@@ -375,6 +379,7 @@ struct Table {
                       .traits = {.family = EffectFamily::amplitude},
                       .parameters = list,
                       .replacement = &law};
+    candidate.softens = std::ranges::find(kSoftening, law.law) != kSoftening.end();
     laws.push_back(std::move(candidate));
   }
   /// The last law refines the one before it.

@@ -20,6 +20,8 @@ struct LawCandidate {
   const EffectType* refines = nullptr;
   // Where the search begins for the parameters that it has beyond that law's.
   std::vector<double> start;
+  // It unloads the softer, the more it went through.
+  bool softens = false;
   // Of a special device, and searched only where everything else leaves something to explain.
   bool is_special = false;
 };

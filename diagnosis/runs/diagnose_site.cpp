@@ -19,6 +19,7 @@
 #include "diagnosis/runs/prediction_file.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/structure/structure_diagnosis.hpp"
+#include "diagnosis/tuning.hpp"
 #include "recording/error.hpp"
 #include "runtime/version.hpp"
 
@@ -26,15 +27,6 @@ namespace hybridtest {
 namespace {
 
 using report::Verdict;
-
-/// Above the floor: a channel with much noise has no large gap.
-double largest_gap(const Diagnosis& diagnosis) {
-  double largest = 0.0;
-  for (const report::InterfaceGap& gap : diagnosis.report.where) {
-    largest = std::max(largest, std::pow(gap.nrmse, 2) - std::pow(gap.floor_nrmse, 2));
-  }
-  return largest;
-}
 
 void write_file(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out{file, std::ios::binary};
@@ -199,6 +191,16 @@ void require_match(const SiteModelFile& model, std::span<const Recording> record
   if (!issues.empty()) throw ConfigError{std::move(issues)};
 }
 
+GapOfDof gap_of(const report::DiagnosisReport& report) {
+  GapOfDof largest{.has_verdict = report.verdict != Verdict::none && report.verdict != Verdict::not_excited};
+  for (const report::InterfaceGap& gap : report.where) {
+    const double floor = std::hypot(gap.floor_nrmse, tuning::kModelAllowance);
+    largest.is_clear = largest.is_clear || gap.nrmse > tuning::kNearFloor * floor;
+    largest.above_floor = std::max(largest.above_floor, std::pow(gap.nrmse, 2) - std::pow(gap.floor_nrmse, 2));
+  }
+  return largest;
+}
+
 SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,
                             DiagnoseSettings settings) {
   settings.site = model.name.empty() ? model.file.stem().string() : model.name;
@@ -214,8 +216,8 @@ SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recordin
     settings.progress = whole.round(dof, dofs);
     all.push_back({diagnose(model.dofs[dof], recordings, settings), dof, {}, {}, {}});
   }
-  const auto gap_of = [](const SiteDiagnosis& one) { return largest_gap(one.diagnosis); };
-  const auto largest = std::ranges::max_element(all, {}, gap_of);
+  const auto largest =
+      std::ranges::max_element(all, {}, [](const SiteDiagnosis& one) { return gap_of(one.diagnosis.report); });
   SiteDiagnosis worst = std::move(*largest);
   all.erase(largest);
   std::vector<std::string>& notes = worst.diagnosis.report.notes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <compare>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -35,8 +36,20 @@ struct SiteDiagnosis {
 ///         the model.
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings);
 
-/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap. A note tells of each other degree of
-/// freedom that has one, with its causes.
+/// Of one degree of freedom: whether there is more to tell than numbers slightly off, whether a channel shows a gap
+/// clear of its floor, and the largest gap above a floor [variance over variance]. A channel with much noise has no
+/// large gap, and half of a gap may be in its floor. In this order the larger one comes first.
+struct GapOfDof {
+  bool has_verdict = false;  // other than `none` and `not_excited`
+  bool is_clear = false;
+  double above_floor = 0.0;
+
+  auto operator<=>(const GapOfDof&) const = default;
+};
+[[nodiscard]] GapOfDof gap_of(const report::DiagnosisReport& report);
+
+/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap_of(). A
+/// note tells of each other degree of freedom that has one, with its causes.
 /// @param settings   what it says of model and version is filled in here.
 /// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,

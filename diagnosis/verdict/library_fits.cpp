@@ -398,6 +398,19 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
   return candidates;
 }
 
+namespace {
+
+/// Whether the law is not told by all its parameters: one that cannot be absent is at a limit.
+bool is_half_told(const Candidate& law) {
+  const std::vector<ParameterEstimate>& estimates = law.fit.parameters.front();
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    if (estimates[i].at_bound && std::isnan(law.type->parameters[i].neutral)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                         std::size_t threads, const PartProgress& progress) {
   std::vector<const EffectType*> laws;
@@ -413,6 +426,7 @@ std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem, co
       counted(progress, "laws of isolators and dampers"));
   std::vector<Candidate> candidates = best_first(std::move(fitted));
   drop_refuted(problem, candidates);
+  std::erase_if(candidates, is_half_told);
   return candidates;
 }
 

@@ -85,7 +85,9 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
                                                  const IdentificationProblem& coarse, std::size_t threads,
                                                  const PartProgress& progress);
 
-/// The laws of special devices (LawCandidate::is_special), each by itself, best first; refuted ones are omitted.
+/// The laws of special devices (LawCandidate::is_special), each by itself, best first. Omitted are refuted ones, and
+/// those of which a parameter that cannot be absent is at the limit of its range: a rubber without Mullins effect is
+/// none.
 [[nodiscard]] std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem,
                                                       const IdentificationProblem& coarse, std::size_t threads,
                                                       const PartProgress& progress);

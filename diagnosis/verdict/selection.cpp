@@ -563,7 +563,7 @@ bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcom
 }
 
 /// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
-/// itself, and what it needs beside it.
+/// itself. Nothing is looked for beside it: what it leaves is told as left.
 void try_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                       std::size_t threads, const PartProgress& progress, Growth& growth) {
   if (!gap_energy(problem, growth.fit).is_clear()) return;
@@ -579,7 +579,6 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   selection.probabilities.insert(selection.probabilities.begin(), probability);
   selection.library.insert(selection.library.begin(), std::move(law));
   selection.alike.clear();
-  grow_further(problem, coarse, selection, threads, progress, growth);
 }
 
 /// Whether a fit left nothing of an effect.

@@ -199,6 +199,8 @@ TEST(MagnetorheologicalDamper, LocatesCurrentEffectAtSpecimen) {
       EXPECT_EQ(cause.type->interface, EffectInterface::specimen);
     }
   }
+  // What it is: a damper, 1.06 kN and 6.0 kN s/m (a smooth hysteresis and a damping by themselves: 1.1 kN, 6.2 kN s/m).
+  EXPECT_EQ(diagnosis.report.ranking[0].law, "mr_damper");
   EXPECT_GE(diagnosis.report.interface_shrink->variance_removed, 0.9);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "diagnosis/runs/diagnose_run.hpp"
+#include "diagnosis/runs/diagnose_site.hpp"
 #include "diagnosis/runs/rerun.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "plant/effects/effect_type.hpp"
@@ -324,6 +325,21 @@ TEST_F(DiagnosisLoop, SkipsSiteRecordedOnAnotherHost) {
   std::ostringstream said;
   diagnose_run(scenario, directory_ / "empty", {}, {}, said);
   EXPECT_THAT(said.str(), testing::HasSubstr("storey_1 is not diagnosed: its recording is not in"));
+}
+
+/// A large gap that may be noise, and a small one that cannot.
+TEST(GapOfDof, ClearGapComesBeforeALargerOneInNoise) {
+  const auto with = [](double nrmse, double floor_nrmse, report::Verdict verdict = report::Verdict::partial) {
+    report::DiagnosisReport report;
+    report.verdict = verdict;
+    report.where.push_back({.interface = "specimen", .nrmse = nrmse, .floor_nrmse = floor_nrmse});
+    return gap_of(report);
+  };
+  EXPECT_GT(with(0.006, 0.001), with(0.026, 0.020));
+  EXPECT_GT(with(0.060, 0.020), with(0.006, 0.001)) << "of two that are clear the larger one";
+  EXPECT_GT(with(0.026, 0.020), with(0.020, 0.0195)) << "of two that are not, too";
+  EXPECT_LT(with(0.0004, 0.0), with(0.006, 0.001)) << "computed channels without noise";
+  EXPECT_LT(with(0.060, 0.001, report::Verdict::none), with(0.006, 0.005)) << "numbers slightly off, beside a cause";
 }
 
 }  // namespace

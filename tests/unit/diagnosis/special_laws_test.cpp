@@ -59,6 +59,7 @@ TEST_P(SpecialLaw, IsNamedWithItsParameters) {
   const report::RankedCause& cause = diagnosis.report.ranking.front();
   EXPECT_EQ(std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause), 1);
   EXPECT_EQ(cause.law, GetParam().law);
+  EXPECT_EQ(cause.lost_stiffness, 0.0) << "it curves, and does not soften";
   for (const auto& [name, value] : GetParam().parameters) {
     EXPECT_NEAR(parameter_of(cause, name).value, value, GetParam().tolerance * value) << name;
   }
