@@ -133,15 +133,18 @@ struct RestGap {
   double gap = 0.0;
 };
 
+/// Where a prediction is set to what was measured there is no gap to read.
 std::vector<RestGap> gaps_at_rest(const FitSegment& fit, std::span<const double> input_m) {
   std::vector<RestGap> gaps;
+  const std::size_t first = fit.segment.unjudged;
+  const std::size_t last = input_m.size() - std::min(input_m.size(), fit.segment.unjudged);
   for (const RestStretch& rest : rest_stretches(input_m, fit.segment.period_s)) {
-    const auto begin = static_cast<Eigen::Index>(rest.begin / fit.averaged);
-    const auto count = static_cast<Eigen::Index>(rest.count / fit.averaged);
-    if (count == 0 || begin + count > fit.measured.size()) continue;
+    const auto begin = static_cast<Eigen::Index>((std::max(rest.begin, first) + fit.averaged - 1) / fit.averaged);
+    const auto end = static_cast<Eigen::Index>(std::min(rest.begin + rest.count, last) / fit.averaged);
+    if (end <= begin || end > fit.measured.size()) continue;
     gaps.push_back({.begin_s = static_cast<double>(rest.begin) * fit.segment.period_s,
                     .place_m = input_m[rest.begin],
-                    .gap = (fit.measured - fit.baseline).segment(begin, count).mean()});
+                    .gap = (fit.measured - fit.baseline).segment(begin, end - begin).mean()});
   }
   return gaps;
 }
@@ -161,7 +164,8 @@ std::string bias_refuted(const Suspect& suspect, std::string_view name, std::str
     if (!suspect.ends_at(fit)) continue;
     const std::vector<double> input_m = input_of(fit);
     const std::vector<RestGap> gaps = gaps_at_rest(fit, input_m);
-    if (gaps.empty() || gaps.front().begin_s > 0.0) continue;
+    const double judged_from_s = static_cast<double>(fit.segment.unjudged) * fit.segment.period_s;
+    if (gaps.empty() || gaps.front().begin_s > judged_from_s) continue;
     if (std::abs(gaps.front().place_m) > reversal_threshold_m(input_m)) continue;
     if (!is_nearer_to_none(gaps.front().gap, bias)) continue;
     return fmt::format("{} by {}: at rest before the test the reading differs from the model by {}", suspect.name(),

@@ -53,6 +53,20 @@ TEST(Refutation, LoadCellLimitThatReadingsPass) {
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
 }
 
+/// A second of the rest is not judged, as where a recording is smoothed: the prediction is set to the readings there.
+TEST(Refutation, BiasIsReadWhereItIsJudged) {
+  constexpr double kBias_n = 2e3;
+  IdentificationProblem problem = problem_of(
+      made_recording(between_rests_m, [](double t) { return kMadeStiffness_n_per_m * between_rests_m(t) + kBias_n; }));
+  FitSegment& fit = problem.segments.back();
+  ASSERT_EQ(fit.segment.to, Channel::measured_force);
+  fit.segment.unjudged = static_cast<std::size_t>(1.5 / kSitePeriod_s);
+  const auto unjudged = static_cast<Eigen::Index>(fit.segment.unjudged / fit.averaged);
+  fit.baseline.head(unjudged) = fit.measured.head(unjudged);
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "bias", {kBias_n})), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "bias", {3.0 * kBias_n})), HasSubstr("at rest before the test"));
+}
+
 /// A column of 1 m under the load whose P / h is the specimen's stiffness; and one of which a stiffness that is as much
 /// off takes nearly all back.
 TEST(Refutation, LoadUnderWhichNoSpecimenWouldStand) {
