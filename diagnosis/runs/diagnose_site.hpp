@@ -48,8 +48,8 @@ struct GapOfDof {
 };
 [[nodiscard]] GapOfDof gap_of(const report::DiagnosisReport& report);
 
-/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap_of(). A
-/// note tells of each other degree of freedom that has one, with its causes.
+/// Diagnoses every degree of freedom; returns the diagnosis with the largest gap_of(). A note tells of each other
+/// degree of freedom that has one, with its causes.
 /// @param settings   what it says of model and version is filled in here.
 /// @throws ConfigError as require_match().
 [[nodiscard]] SiteDiagnosis diagnose_site(const SiteModelFile& model, std::span<const Recording> recordings,

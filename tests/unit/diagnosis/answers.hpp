@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
 
 namespace hybridtest {
+
+/// Of one recording that is fitted, on two threads.
+inline Diagnosis diagnosis_of(const SiteModel& model, const Recording& recording) {
+  DiagnoseSettings settings;
+  settings.threads = 2;
+  return diagnose(model, {&recording, 1}, settings);
+}
+
+/// null: the cause has none of that name.
+inline const report::ReportedParameter* find_parameter(const report::RankedCause& cause, std::string_view name) {
+  const auto found = std::ranges::find(cause.parameters, name, &report::ReportedParameter::name);
+  return found == cause.parameters.end() ? nullptr : &*found;
+}
 
 /// `coulomb_friction`; of one that follows a recorded input `force_with_input:current_a`.
 inline std::vector<std::string> effects_of(const std::vector<report::RankedCause>& entries) {

@@ -26,10 +26,7 @@ std::unique_ptr<Law> smooth_law(double strength) {
 }
 
 Diagnosis diagnosis_with(const SiteModel& model, const std::function<double(double)>& force_n) {
-  const Recording recording = made_recording(made_motion_m, force_n);
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(model, {&recording, 1}, settings);
+  return diagnosis_of(model, made_recording(made_motion_m, force_n));
 }
 
 TEST(Exchange, LawGivesWayToItsNumbersWhenDampingIsKnown) {

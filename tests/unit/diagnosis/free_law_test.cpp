@@ -10,6 +10,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "mechanics/laws/presliding_element.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 // A friction or a hysteretic element that the user's model has is free, down to none and up: what the user believes of
@@ -99,12 +100,6 @@ SiteModel believed_model(const Element& element, const Belief& belief) {
   model.make_law = [belief] { return std::make_unique<Elastic>(belief.stiffness * kMadeStiffness_n_per_m); };
   if (belief.force > 0.0) model.effects.push_back(believed(element, belief));
   return model;
-}
-
-Diagnosis diagnosis_of(const SiteModel& model, const Recording& recording) {
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(model, {&recording, 1}, settings);
 }
 
 /// Of a completed model.

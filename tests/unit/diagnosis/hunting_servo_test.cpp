@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Motion of the actuator that does not follow from its command. It looks like noise of the displacement transducer,
@@ -53,12 +54,6 @@ double floor_m(const Recording& recording) {
   return 0.0;
 }
 
-Diagnosis diagnosis_of(const Recording& recording) {
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(made_model(), {&recording, 1}, settings);
-}
-
 std::optional<Verdict> verdict_at(const Diagnosis& diagnosis, std::string_view interface) {
   for (const report::InterfaceGap& gap : diagnosis.report.where) {
     if (gap.interface == interface) return gap.verdict;
@@ -74,14 +69,14 @@ TEST(HuntingServo, MotionThatTheSpecimenAnswersIsNoNoise) {
 }
 
 TEST(HuntingServo, IsUnknownAtTheTransferSystem) {
-  const Diagnosis diagnosis = diagnosis_of(site_with(1.0, of_motion));
+  const Diagnosis diagnosis = diagnosis_of(made_model(), site_with(1.0, of_motion));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "transfer_system"), Verdict::unknown);
 }
 
 TEST(HuntingServo, IsUnknownBesideANumberThatIsCorrected) {
-  const Diagnosis diagnosis =
-      diagnosis_of(site_with(1.02, [](double, double moved_m) { return 1.015 * kMadeStiffness_n_per_m * moved_m; }));
+  const Diagnosis diagnosis = diagnosis_of(
+      made_model(), site_with(1.02, [](double, double moved_m) { return 1.015 * kMadeStiffness_n_per_m * moved_m; }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "transfer_system"), Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "specimen"), std::nullopt);

@@ -10,6 +10,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// A specimen whose law has another form than that of the model.
@@ -40,12 +41,6 @@ SiteModel elastic_model(double stiffness_n_per_m) {
   return model;
 }
 
-Diagnosis diagnosis_of(const SiteModel& model, const Recording& recording) {
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(model, {&recording, 1}, settings);
-}
-
 const report::RankedCause& only_cause(const Diagnosis& diagnosis) {
   const auto count = std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause);
   EXPECT_EQ(count, 1);
@@ -53,8 +48,8 @@ const report::RankedCause& only_cause(const Diagnosis& diagnosis) {
 }
 
 double value_of(const report::RankedCause& cause, std::string_view name) {
-  const auto found = std::ranges::find(cause.parameters, name, &report::ReportedParameter::name);
-  return found == cause.parameters.end() ? std::nan("") : found->value;
+  const report::ReportedParameter* const parameter = find_parameter(cause, name);
+  return parameter == nullptr ? std::nan("") : parameter->value;
 }
 
 /// An amplifier gives way before its limit: no effect of the library has quite that curve. A self-centring law whose

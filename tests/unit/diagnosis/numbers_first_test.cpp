@@ -55,9 +55,7 @@ Diagnosis diagnosis_with(const Damped& beyond) {
     return law_n + beyond.damping_n_s_per_m * made_velocity_m_per_s(t) +
            cubic_n_per_m3(beyond.softening) * std::pow(x_m, 3);
   });
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(model, {&recording, 1}, settings);
+  return diagnosis_of(model, recording);
 }
 
 double first_parameter_of(const Diagnosis& diagnosis, std::string_view effect) {

@@ -53,7 +53,8 @@ TEST(Refutation, LoadCellLimitThatReadingsPass) {
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
 }
 
-/// A second of the rest is not judged, as where a recording is smoothed: the prediction is set to the readings there.
+/// A second and a half of the rest is not judged, as where a recording is smoothed: the prediction is set to the
+/// readings there.
 TEST(Refutation, BiasIsReadWhereItIsJudged) {
   constexpr double kBias_n = 2e3;
   IdentificationProblem problem = problem_of(

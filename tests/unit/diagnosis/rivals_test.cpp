@@ -10,6 +10,7 @@
 #include "core/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "mechanics/laws/bilinear.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 // Effects of the same signature on a recording are a set, whichever of them is the true one.
@@ -82,9 +83,7 @@ Recording recording_of(const Site& site, const std::unique_ptr<Law>& law) {
 report::DiagnosisReport answer_to(const Recording& recording, std::unique_ptr<Law> (*law)()) {
   SiteModel model = made_model();
   model.make_law = law;
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(model, {&recording, 1}, settings).report;
+  return diagnosis_of(model, recording).report;
 }
 
 std::vector<std::string> causes_in(const report::DiagnosisReport& answer) {

@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -17,6 +15,7 @@
 #include "mechanics/laws/lead_rubber.hpp"
 #include "mechanics/laws/mr_damper.hpp"
 #include "tests/support/material_path.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Isolators and dampers, and steel that hardens, of which the user's model knows nothing but a spring.
@@ -32,18 +31,6 @@ struct Device {
 
 void PrintTo(const Device& device, std::ostream* stream) { *stream << device.law; }
 
-Diagnosis diagnosis_of(const Recording& recording) {
-  DiagnoseSettings settings;
-  settings.threads = 2;
-  return diagnose(made_model(), {&recording, 1}, settings);
-}
-
-const report::ReportedParameter& parameter_of(const report::RankedCause& cause, const std::string& name) {
-  const auto found = std::ranges::find(cause.parameters, name, &report::ReportedParameter::name);
-  if (found == cause.parameters.end()) throw std::out_of_range{name};
-  return *found;
-}
-
 class SpecialLaw : public testing::TestWithParam<Device> {};
 
 TEST_P(SpecialLaw, IsNamedWithItsParameters) {
@@ -53,7 +40,7 @@ TEST_P(SpecialLaw, IsNamedWithItsParameters) {
     real->commit();
     return force_n;
   });
-  const Diagnosis diagnosis = diagnosis_of(recording);
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
   EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
   ASSERT_FALSE(diagnosis.report.ranking.empty());
   const report::RankedCause& cause = diagnosis.report.ranking.front();
@@ -61,7 +48,9 @@ TEST_P(SpecialLaw, IsNamedWithItsParameters) {
   EXPECT_EQ(cause.law, GetParam().law);
   EXPECT_EQ(cause.lost_stiffness, 0.0) << "it curves, and does not soften";
   for (const auto& [name, value] : GetParam().parameters) {
-    EXPECT_NEAR(parameter_of(cause, name).value, value, GetParam().tolerance * value) << name;
+    const report::ReportedParameter* const parameter = find_parameter(cause, name);
+    ASSERT_NE(parameter, nullptr) << name;
+    EXPECT_NEAR(parameter->value, value, GetParam().tolerance * value) << name;
   }
 }
 
@@ -125,7 +114,7 @@ TEST(SpecialLawOfOpenSees, IsAFrictionPendulum) {
     recording.dofs[0].of(Channel::measured_force).push_back(point.force_n + kNoise_n * random.normal());
   }
   recording.samples = recording.dofs[0].of(Channel::measured_force).size();
-  const Diagnosis diagnosis = diagnosis_of(recording);
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
   EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
   ASSERT_FALSE(diagnosis.report.ranking.empty());
   const report::RankedCause& cause = diagnosis.report.ranking.front();
@@ -134,14 +123,17 @@ TEST(SpecialLawOfOpenSees, IsAFrictionPendulum) {
   const std::map<std::string, double> real{
       {"slow_friction_ratio", 0.5}, {"friction_rate_s_per_m", 50.0}, {"presliding_displacement_m", 0.001}};
   for (const auto& [name, value] : real) {
-    const auto& interval = parameter_of(cause, name).ci95;
-    ASSERT_TRUE(interval.has_value()) << name;
-    EXPECT_LT(interval->low, value) << name;
-    EXPECT_GT(interval->high, value) << name;
+    const report::ReportedParameter* const parameter = find_parameter(cause, name);
+    ASSERT_NE(parameter, nullptr) << name;
+    ASSERT_TRUE(parameter->ci95.has_value()) << name;
+    EXPECT_LT(parameter->ci95->low, value) << name;
+    EXPECT_GT(parameter->ci95->high, value) << name;
   }
   // Noise of a thousandth, and few samples in which it slides fast: a hundredth.
-  const double friction_n = parameter_of(cause, "weight_n").value * parameter_of(cause, "friction_coefficient").value;
-  EXPECT_NEAR(friction_n, 32.0e3, 320.0);
+  const report::ReportedParameter* const weight_n = find_parameter(cause, "weight_n");
+  const report::ReportedParameter* const coefficient = find_parameter(cause, "friction_coefficient");
+  ASSERT_TRUE(weight_n != nullptr && coefficient != nullptr);
+  EXPECT_NEAR(weight_n->value * coefficient->value, 32.0e3, 320.0);
 }
 
 }  // namespace
