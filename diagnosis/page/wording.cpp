@@ -200,7 +200,9 @@ std::string plain_parameter(std::string_view name, std::string_view unit) {
       ending += "_per_";
     } else if (letter == ' ' || letter == '*') {
       ending += '_';
-    } else {
+    } else if (letter == '\xB2' || letter == '\xB3') {  // the last byte of a raised 2 or 3
+      ending += letter == '\xB2' ? '2' : '3';
+    } else if (letter != '\xC2') {  // the first byte of both
       ending += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     }
   }

@@ -300,6 +300,7 @@ TEST(Wording, QuantitiesUseReadableUnits) {
   EXPECT_EQ(quantity(0.0, "m"), "0\u00a0m");
   EXPECT_EQ(plain_parameter("friction_force_n", "N"), "friction force");
   EXPECT_EQ(plain_parameter("damping_n_s_per_m", "N s/m"), "damping");
+  EXPECT_EQ(plain_parameter("stiffening_n_per_m3", "N/m³"), "stiffening");
   EXPECT_EQ(plain_parameter("exponent", ""), "exponent");
 }
 
