@@ -15,6 +15,8 @@ IS_REQUIRED = os.environ.get("HYBRIDTEST_REQUIRE_DATA") == "1"
 # As root, on a machine without a graphics processor, without any request of the browser's own.
 FLAGS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync",
+         # Containers have little shared memory, and the participants of the tests keep theirs there.
+         "--disable-dev-shm-usage",
          # Each window is a person who looks, though they cover each other.
          "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding", "--hide-scrollbars")
 

@@ -291,7 +291,8 @@ TEST_F(BadNetworks, RealTimeBridgesWhatTheNetworkLoses) {
   lossy.loss = 0.03;
   connect(lossy);
   const Arguments arguments =
-      settings(kSteps, {"time.mode=real_time", "excitation.scale=10.0",
+      // A weak motion: on a machine that is late most answers are bridged, and no interlock may end the test for that.
+      settings(kSteps, {"time.mode=real_time", "excitation.scale=1.0",
                         "bridging={type: polynomial, order: 1, deadline_s: 0.006, start_anyway: true, most_in_a_row: " +
                             std::to_string(kMost) + "}"});
   start(arguments);
