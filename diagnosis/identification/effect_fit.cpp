@@ -115,11 +115,12 @@ double squares_without(const Eigen::VectorXd& residual, Eigen::Index first, Eige
 }
 
 /// The block's residual when it is not fitted. A Gauss-Newton step of the fit to the other blocks, which is the whole
-/// way for linear parameters; otherwise it is halved until it improves that fit, or not taken.
+/// way for linear parameters, and for others where it is no longer than the step of their numeric derivatives;
+/// otherwise it is halved until it improves that fit, or not taken.
 Eigen::VectorXd left_out(const MovedFit& fit, const Eigen::VectorXd& residual, const Eigen::MatrixXd& inside,
                          const Eigen::VectorXd& step, Eigen::Index first) {
   Eigen::VectorXd block = residual.segment(first, inside.rows());
-  if (fit.is_linear()) return block - inside * step;
+  if (fit.is_linear() || step.cwiseAbs().maxCoeff() <= tuning::kResolution) return block - inside * step;
   const double before = squares_without(residual, first, inside.rows());
   double share = 1.0;
   for (int halvings = 0; halvings < tuning::kRelinearisations; ++halvings, share *= 0.5) try {
