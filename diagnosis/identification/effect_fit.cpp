@@ -552,9 +552,35 @@ bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fi
   return false;
 }
 
+/// Whether a parameter that a scenario may leave out is at a limit of its range, and not where it may be left out.
+bool has_optional_at_limit(const FitOutcome& fit) {
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const ParameterEstimate& estimate = fit.parameters[i][j];
+      const double fallback = parameters[j].fallback;
+      if (estimate.at_bound && !std::isnan(fallback) && estimate.value != fallback) return true;
+    }
+  }
+  return false;
+}
+
+/// Held-out log predictive density that the one fit has over the other [nats].
+double lost_without(const IdentificationProblem& problem, const FitOutcome& all, const FitOutcome& required) {
+  double lost = 0.0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    if (!all.segments[i].touched) continue;
+    const FitSegment& fit = problem.segments[i];
+    const double left = required.segments[i].held_out_mean_square(fit) / all.segments[i].held_out_mean_square(fit);
+    lost += 0.5 * fit.independent * std::log(left);
+  }
+  return lost;
+}
+
 /// Parameters that a scenario may leave out are left out where the blocks cannot hold them: when they are fitted, but
-/// predict a block that was left out much worse than the others alone do. The shape of an effect that the model has is
-/// the model's where nothing is left of it.
+/// predict a block that was left out much worse than the others alone do; and where one of them goes to a limit of its
+/// range but is not worth its place in the score. The shape of an effect that the model has is the model's where
+/// nothing is left of it.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
   FitOutcome all = fit_free(problem, effects, start, look, with_nuisance, {});
@@ -569,9 +595,13 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
   freedoms.assign(effects.size(), Freedom::required);
   const bool has_optional =
       plan_search(problem, effects, freedoms).searched.size() < plan_search(problem, effects).searched.size();
-  if (!has_optional || squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted) return all;
+  if (!has_optional) return all;
+  const bool is_held = squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted;
+  const bool is_at_limit = has_optional_at_limit(all);
+  if (is_held && !is_at_limit) return all;
   FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, freedoms);
-  return squares_of(problem, required).held_out < squares.held_out ? required : all;
+  const bool is_as_good = is_at_limit && lost_without(problem, all, required) < tuning::kParameterPrior;
+  return is_as_good || squares_of(problem, required).held_out < squares.held_out ? required : all;
 }
 
 }  // namespace

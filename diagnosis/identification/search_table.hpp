@@ -116,6 +116,7 @@ inline constexpr std::array kRows{
     SearchRange{displacement_sensor, "bias", "bias_m", Scale::displacement_m, -0.5, 0.5},
     SearchRange{displacement_sensor, "drift", "drift_m_per_s", Scale::displacement_m, -0.2, 0.2},
     SearchRange{displacement_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 0.1},
+    SearchRange{displacement_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{displacement_sensor, "quantization", "step_m", Scale::displacement_m, 1e-4, 0.3},
     SearchRange{
         specimen, "stiffness_error", "stiffness_error_ratio", Scale::one, -1.0, 2.0, {.beside = LawUse::with_strength}},
@@ -198,6 +199,7 @@ inline constexpr std::array kRows{
     SearchRange{force_sensor, "bias", "bias_n", Scale::force_n, -0.5, 0.5},
     SearchRange{force_sensor, "drift", "drift_n_per_s", Scale::force_n, -0.2, 0.2},
     SearchRange{force_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 0.1},
+    SearchRange{force_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{force_sensor, "saturation", "limit_n", Scale::force_n, 0.3, 1.1},
     SearchRange{force_sensor, "quantization", "step_n", Scale::force_n, 1e-4, 0.3},
     SearchRange{force_sensor, "time_skew", "skew_s", Scale::time_s, 0.0, 0.05},

@@ -17,14 +17,12 @@ const std::map<std::string, std::map<std::string, std::string>>& renamed() {
       {"transfer_system.backlash", {{"width_m", "clearance_m"}}},
       {"transfer_system.stiction", {{"breakaway_m", "stick_displacement_m"}}},
       {"displacement_sensor.bias", {{"bias_m", "bias_m"}}},
-      {"displacement_sensor.lag", {{"time_constant_s", "time_constant_s"}}},
       {"displacement_sensor.quantization", {{"step_m", "step_m"}}},
       {"specimen.viscous_damping", {{"damping_n_s_per_m", "damping_n_s_per_m"}}},
       {"specimen.backlash", {{"width_m", "clearance_m"}}},
       {"specimen.inertia", {{"mass_kg", "mass_kg"}}},
       {"specimen.fracture", {{"lost_ratio", "lost_ratio"}, {"time_s", "instant_s"}}},
       {"force_sensor.bias", {{"bias_n", "bias_n"}}},
-      {"force_sensor.lag", {{"time_constant_s", "time_constant_s"}}},
       {"force_sensor.quantization", {{"step_n", "step_n"}}},
       {"force_sensor.time_skew", {{"skew_s", "skew_s"}}},
   };
@@ -74,6 +72,7 @@ Parameters in_library_terms(const Site& site, const PlantEffect& effect) {
   const std::string& name = effect.name;
   if (name == "gain") return {{"gain_error", effect.of("gain") - 1.0}};
   if (name == "bandwidth") return of_bandwidth(effect);
+  if (name == "lag") return {{"time_constant_s", effect.of("time_constant_s")}, {"second_order_ratio", 0.25}};
   if (name == "bandwidth_error") return of_bandwidth_error(site.transfer_system, effect);
   if (name == "coulomb_friction" || name == "stribeck_friction") return of_friction(effect);
   if (name == "yielding") return of_yielding(site, effect);

@@ -21,7 +21,8 @@ IdentificationProblem damped_and_too_large() {
   return make_problem(made_model(), segments_of(made_recording(made_motion_m, force_n), 0, 0));
 }
 
-/// A lag of the load cell is searched; viscous damping and the cell's gain are linear, though not together.
+/// A lag of the load cell is searched, its time constant and its shape; viscous damping and the cell's gain are linear,
+/// though not together.
 VariableProjection of_lag_damping_and_gain(const IdentificationProblem& problem) {
   return {problem,
           plan_search(problem, {find_effect(force_sensor, "lag"), find_effect(specimen, "viscous_damping"),
@@ -32,25 +33,27 @@ VariableProjection of_lag_damping_and_gain(const IdentificationProblem& problem)
 TEST(VariableProjection, SlopesGiveTheGradientOfTheCost) {
   const IdentificationProblem problem = damped_and_too_large();
   const VariableProjection projection = of_lag_damping_and_gain(problem);
-  ASSERT_EQ(projection.plan().searched.size(), 1U);
-  const auto cost_at = [&](double place) {
-    return projection.solve(Eigen::VectorXd::Constant(1, place)).residual.squaredNorm();
-  };
-  for (const double place : {0.2, 0.45, 0.8}) {
-    const Eigen::VectorXd places = Eigen::VectorXd::Constant(1, place);
+  ASSERT_EQ(projection.plan().searched.size(), 2U);
+  const double step = tuning::kResolution;
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d{0.2, 0.5}, {0.45, 0.2}, {0.8, 0.7}}) {
+    const Eigen::VectorXd places = place;
     const Projected solution = projection.solve(places);
-    const double gradient = 2.0 * projection.slopes(places, solution).col(0).dot(solution.residual);
-    const double step = tuning::kResolution;
-    const double by_cost = (cost_at(place + step) - cost_at(place - step)) / (2.0 * step);
-    // The linear parameters are settled to a thousandth of the cost, which is the step of the slopes, too.
-    EXPECT_NEAR(gradient, by_cost, 5.0 * tuning::kResolution * std::abs(by_cost)) << place;
+    const Eigen::VectorXd gradient = 2.0 * projection.slopes(places, solution).transpose() * solution.residual;
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      const auto cost_beside = [&](double by) {
+        return projection.solve(places + by * Eigen::VectorXd::Unit(2, i)).residual.squaredNorm();
+      };
+      const double by_cost = (cost_beside(step) - cost_beside(-step)) / (2.0 * step);
+      // The linear parameters are settled to a thousandth of the cost, which is the step of the slopes, too.
+      EXPECT_NEAR(gradient[i], by_cost, 5.0 * step * std::abs(by_cost)) << places.transpose();
+    }
   }
 }
 
 TEST(VariableProjection, SlopesLeaveOutWhatTheLinearParametersFollow) {
   const IdentificationProblem problem = damped_and_too_large();
   const VariableProjection projection = of_lag_damping_and_gain(problem);
-  const Eigen::VectorXd places = Eigen::VectorXd::Constant(1, 0.3);
+  const Eigen::VectorXd places = Eigen::Vector2d{0.3, 0.5};
   const Projected solution = projection.solve(places);
   const Eigen::VectorXd slope = projection.slopes(places, solution).col(0);
   // Control: the change of the prediction alone has a large part along the columns.

@@ -1,4 +1,4 @@
-#include "plant/effects/transfer_system/bandwidth.hpp"
+#include "plant/effects/second_order_lag.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,23 +12,21 @@ constexpr double kPolesApart = 0.2;
 
 }  // namespace
 
-Bandwidth::Bandwidth(std::span<const double> values, double sample_period_s) {
-  const double time_constant_s = values[0];
-  const double ratio = values[1];
-  is_resonant_ = ratio > kPolesApart && time_constant_s > FirstOrderLag::kShortest * sample_period_s;
+SecondOrderLag::SecondOrderLag(double time_constant_s, double ratio, double period_s) {
+  is_resonant_ = ratio > kPolesApart && time_constant_s > FirstOrderLag::kShortest * period_s;
   if (!is_resonant_) {
     // Partial fractions: (T1 / (1 + T1 s) - T2 / (1 + T2 s)) / (T1 - T2), T1 + T2 = T, T1 T2 = r T^2.
     const double real_ratio = std::min(ratio, kPolesApart);
     const double slow = 0.5 * (1.0 + std::sqrt(1.0 - 4.0 * real_ratio));
     const double fast = real_ratio / slow;
-    slow_ = {slow * time_constant_s, sample_period_s};
-    fast_ = {fast * time_constant_s, sample_period_s};
+    slow_ = {slow * time_constant_s, period_s};
+    fast_ = {fast * time_constant_s, period_s};
     slow_share_ = slow / (slow - fast);
     fast_share_ = fast / (slow - fast);
     return;
   }
-  // The command and its rise over the sample make the system autonomous.
-  const double angle = sample_period_s / time_constant_s;
+  // The signal and its rise over the sample make the system autonomous.
+  const double angle = period_s / time_constant_s;
   const Eigen::Matrix4d generator{{0.0, angle, 0.0, 0.0},
                                   {-angle / ratio, -angle / ratio, angle / ratio, 0.0},
                                   {0.0, 0.0, 0.0, 1.0},
@@ -39,22 +37,18 @@ Bandwidth::Bandwidth(std::span<const double> values, double sample_period_s) {
   from_previous_ = exponential.block<2, 1>(0, 2) - from_newest_;
 }
 
-void Bandwidth::before(const StageSample& /*sample*/, Motion& command) noexcept {
-  const double newest_m = command.displacement_m;
-  if (is_resonant_) {
-    state_ = (transition_ * state_ + from_previous_ * previous_m_ + from_newest_ * newest_m).eval();
-    previous_m_ = newest_m;
-    command.displacement_m = state_[0];
-  } else {
-    command.displacement_m = slow_share_ * slow_.step(newest_m) - fast_share_ * fast_.step(newest_m);
-  }
+double SecondOrderLag::step(double newest) noexcept {
+  if (!is_resonant_) return slow_share_ * slow_.step(newest) - fast_share_ * fast_.step(newest);
+  state_ = (transition_ * state_ + from_previous_ * previous_ + from_newest_ * newest).eval();
+  previous_ = newest;
+  return state_[0];
 }
 
-void Bandwidth::reset() noexcept {
+void SecondOrderLag::reset() noexcept {
   slow_.reset();
   fast_.reset();
   state_.setZero();
-  previous_m_ = 0.0;
+  previous_ = 0.0;
 }
 
 }  // namespace hybridtest
