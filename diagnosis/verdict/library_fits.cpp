@@ -487,7 +487,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
       effects.size(), threads,
       [&](std::size_t i) {
         try {
-          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, false)};
+          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, true)};
           candidate.score = held_out_score(extended, candidate.fit);
           screened[i] = std::move(candidate);
         } catch (const ConfigError&) {
