@@ -131,7 +131,9 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
     const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
     const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
-    RankedCause cause = ranked(stage.problem.model, fit, 0);
+    // Beside numbers of the model it need not come first.
+    const auto own = std::ranges::find(fit.effects, candidate.type, &EffectSetting::type);
+    RankedCause cause = ranked(stage.problem.model, fit, static_cast<std::size_t>(own - fit.effects.begin()));
     cause.probability = tuning::kAnswerRight * selection.probabilities[i];
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;

@@ -180,17 +180,11 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& normal, const Eigen::Vector
   return matrix.partialPivLu().solve(vector);
 }
 
-/// The norm of each column; 1 for one that is zero.
-Eigen::VectorXd norms(const Eigen::MatrixXd& columns) {
-  Eigen::VectorXd norms = columns.colwise().norm().transpose();
-  for (double& value : norms) value = value > 0.0 ? value : 1.0;
-  return norms;
-}
-
 /// Least squares within bounds: parameters that leave their bounds are held there, one after the other.
 Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& right,
                                       const std::vector<Bounds>& bounds, std::vector<bool>& held) {
-  const Eigen::VectorXd scale = norms(columns);
+  Eigen::VectorXd scale = columns.colwise().norm().transpose();
+  for (double& value : scale) value = value > 0.0 ? value : 1.0;
   const Eigen::MatrixXd scaled = columns * scale.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd normal = scaled.transpose() * scaled;
   const Eigen::VectorXd projected = scaled.transpose() * right;
@@ -312,25 +306,6 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
   return best;
 }
 
-Eigen::MatrixXd VariableProjection::slopes(const Eigen::VectorXd& places, const Projected& solution) const {
-  // Without linear parameters the residual is that of this very prediction.
-  const Eigen::VectorXd here = plan_.linear.empty() ? measured_ - solution.residual : predicted(places, solution);
-  Eigen::MatrixXd slopes(rows(), places.size());
-  for (Eigen::Index i = 0; i < places.size(); ++i) {
-    Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
-    moved[i] += step;
-    slopes.col(i) = (here - predicted(moved, solution)) / step;
-  }
-  const Eigen::MatrixXd scaled = solution.columns * norms(solution.columns).cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd normal = scaled.transpose() * scaled;
-  const Eigen::VectorXd stay = Eigen::VectorXd::Zero(scaled.cols());
-  for (auto slope : slopes.colwise()) {
-    slope -= scaled * least_squares(normal, scaled.transpose() * slope, solution.held, stay);
-  }
-  return slopes;
-}
-
 Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places, const Projected& solution) const {
   return stacked(settings(places, solution)) + nuisance_ * solution.coefficients.tail(nuisance_.cols());
 }
@@ -360,10 +335,10 @@ class ProjectedResidual final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override try {
     const Eigen::Map<const Eigen::VectorXd> places{parameters[0], parameter_block_sizes()[0]};
     move_to(places);
-    if (!solution_.residual.allFinite()) return false;
-    Eigen::Map<Eigen::VectorXd>{residuals, solution_.residual.size()} = solution_.residual;
+    if (!residual_.allFinite()) return false;
+    Eigen::Map<Eigen::VectorXd>{residuals, residual_.size()} = residual_;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    if (slopes_.cols() == 0) slopes_ = projection_.slopes(places_, solution_);
+    if (slopes_.cols() == 0) find_slopes();
     std::copy_n(slopes_.data(), slopes_.size(), jacobians[0]);
     return slopes_.allFinite();
   } catch (const ConfigError&) {
@@ -376,15 +351,25 @@ class ProjectedResidual final : public ceres::CostFunction {
   void move_to(const Eigen::VectorXd& places) const {
     if (places_.size() == places.size() && places_ == places) return;
     places_.resize(0);
-    solution_ = projection_.solve(places);
+    residual_ = projection_.solve(places).residual;
     slopes_.resize(0, 0);
     places_ = places;
+  }
+  void find_slopes() const {
+    Slopes slopes(residual_.size(), places_.size());
+    for (Eigen::Index i = 0; i < places_.size(); ++i) {
+      Eigen::VectorXd moved = places_;
+      const double step = places_[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
+      moved[i] += step;
+      slopes.col(i) = (projection_.solve(moved).residual - residual_) / step;
+    }
+    slopes_ = std::move(slopes);
   }
 
   const VariableProjection& projection_;
   // Of the last point: the solver asks for a point's cost, and again with its slopes once it steps there.
   mutable Eigen::VectorXd places_;
-  mutable Projected solution_;
+  mutable Eigen::VectorXd residual_;
   mutable Slopes slopes_;
 };
 

@@ -81,10 +81,6 @@ class VariableProjection {
   /// @param places   of the searched parameters, 0 to 1.
   /// @throws ConfigError for parameters that an effect does not accept.
   [[nodiscard]] Projected solve(const Eigen::VectorXd& places) const;
-  /// Derivatives of the solution's residual by the places, one column each, after Kaufman (BIT 15, 1975): the linear
-  /// parameters follow in what their columns span, the change of the columns themselves is left out. The gradient of
-  /// the squared residual is exact all the same, at one prediction for each place.
-  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::VectorXd& places, const Projected& solution) const;
   /// The weighted prediction with the linear parameters fixed.
   [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Projected& solution) const;
   /// The effects at a solution, in their own units.

@@ -470,7 +470,7 @@ IdentificationProblem beside_effects(const IdentificationProblem& problem, const
 }
 
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                  const std::vector<EffectSetting>& base, std::size_t threads,
+                                  const std::vector<EffectSetting>& base, Numbers numbers, std::size_t threads,
                                   const PartProgress& progress) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
@@ -487,7 +487,7 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
       effects.size(), threads,
       [&](std::size_t i) {
         try {
-          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, true)};
+          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, numbers == Numbers::free)};
           candidate.score = held_out_score(extended, candidate.fit);
           screened[i] = std::move(candidate);
         } catch (const ConfigError&) {

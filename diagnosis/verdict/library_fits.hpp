@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -116,13 +117,16 @@ void put_stage_before_sensor(std::vector<Candidate>& candidates);
 [[nodiscard]] IdentificationProblem beside_effects(const IdentificationProblem& problem,
                                                    const std::vector<EffectSetting>& effects);
 
+/// Of the model, beside effects that are screened.
+enum class Numbers : std::uint8_t { as_found, free };
+
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
-/// on `coarse` with `base` as it is; the most promising ones, and the numbers of the model that may be wrong, are
-/// searched there with everything free, as a second effect may move the first one far; those that come near the best
-/// are fitted to `problem` from there.
+/// on `coarse` with `base` as it is, and the numbers of the model likewise or free; the most promising ones, and the
+/// numbers of the model that may be wrong, are searched there with everything free, as a second effect may move the
+/// first one far; those that come near the best are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
-                                                const std::vector<EffectSetting>& base, std::size_t threads,
-                                                const PartProgress& progress);
+                                                const std::vector<EffectSetting>& base, Numbers numbers,
+                                                std::size_t threads, const PartProgress& progress);
 
 }  // namespace hybridtest

@@ -312,16 +312,23 @@ std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutco
   return growth;
 }
 
-/// Further effects one by one, until none is accepted.
+/// Further effects one by one, until none is accepted: first beside what was found as it is, and where that finds
+/// nothing, with the numbers of the model free, which a further effect may move.
+/// @param numbers   how the first one is looked for.
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                  std::size_t threads, const PartProgress& progress, Growth& growth) {
+                  Numbers numbers, std::size_t threads, const PartProgress& progress, Growth& growth) {
   for (std::size_t round = 0;
        growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
-    const std::vector<Candidate> beside =
-        fit_beside(problem, coarse, growth.fit.effects, threads, progress.round(round, tuning::kEffectsMax - 2));
-    std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside);
-    if (!next) break;
-    growth = std::move(*next);
+    const std::vector<Candidate> beside = fit_beside(problem, coarse, growth.fit.effects, numbers, threads,
+                                                     progress.round(round, 2 * tuning::kEffectsMax));
+    if (std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside)) {
+      growth = std::move(*next);
+      numbers = Numbers::as_found;
+    } else if (numbers == Numbers::as_found) {
+      numbers = Numbers::free;
+    } else {
+      break;
+    }
   }
 }
 
@@ -380,9 +387,7 @@ std::optional<Leader> leader_of_numbers(const IdentificationProblem& problem, co
   FitOutcome needed = all;
   prune(problem, all, needed);
   const auto position = static_cast<std::size_t>(first - selection.library.begin());
-  return Leader{
-      position,
-      {gap_energy(problem, needed).is_clear() ? all : needed, {{first->type, selection.probabilities[position]}}}};
+  return Leader{position, {gap_energy(problem, needed).is_clear() ? all : needed, {{first->type, 1.0}}}};
 }
 
 /// Candidates from which further effects are grown. The numbers of the model come first: they are expected to be off.
@@ -426,8 +431,8 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
   for (std::size_t i = 0; i < leaders.size(); ++i) {
     Growth& leader = leaders[i].growth;
     if (gap_energy(problem, leader.fit).is_clear()) {
-      const std::vector<Candidate> beside =
-          fit_beside(problem, coarse, leader.fit.effects, threads, progress.round(i, leaders.size()));
+      const std::vector<Candidate> beside = fit_beside(problem, coarse, leader.fit.effects, Numbers::as_found, threads,
+                                                       progress.round(i, leaders.size()));
       if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
     const std::size_t position = place_of_found(selection, leaders[i]);
@@ -444,12 +449,26 @@ void share_evenly(const std::vector<AlikeLeader>& alike, std::vector<double>& pr
   for (const AlikeLeader& leader : alike) probabilities[leader.position] = sum / static_cast<double>(alike.size());
 }
 
+/// Numbers of the model that lead alone are preferred to what has to be decidedly better than they are: that is their
+/// probability, too.
+void weigh_numbers(const IdentificationProblem& problem, std::size_t position, Growth& growth, Selection& selection) {
+  if (!holds(selection.by_numbers.effects, selection.library[position].type)) return;
+  std::vector<double> scores = scores_of(selection.library);
+  scores[position] = std::max(scores[position], score_of(problem, growth.fit) + decisive_gain(problem));
+  selection.probabilities = softmax(std::move(scores));
+  growth.accepted.front().probability = selection.probabilities[position];
+}
+
 /// The best of the leading candidates; of a sensor only if none of a stage changes the prediction alike. The
 /// probabilities become those of what was found with them.
 Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                   std::size_t threads, const PartProgress& progress) {
   std::map<std::size_t, Growth> leaders = grow_leaders(problem, coarse, selection, threads, progress);
-  if (leaders.size() == 1) return std::move(leaders.begin()->second);
+  if (leaders.size() == 1) {
+    auto& [position, growth] = *leaders.begin();
+    weigh_numbers(problem, position, growth, selection);
+    return std::move(growth);
+  }
   const auto by_score = [&](const auto& leader) { return score_of(problem, leader.second.fit); };
   auto best = std::ranges::max_element(leaders, {}, by_score);
   const auto is_alike = [&](const auto& leader) { return are_alike(best->second.fit, leader.second.fit); };
@@ -461,12 +480,15 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
   }
   std::vector<double> scores = scores_of(selection.library);
   for (const auto& leader : leaders) {
-    // What stands beside the best, or beside which the best stands, is not in its place.
-    const bool is_instead = !holds(best->second.fit.effects, selection.library[leader.first].type) &&
+    // What stands beside the best, or beside which the best stands, is not in its place; nor is what was dropped from
+    // what was found with it.
+    const EffectType* const type = selection.library[leader.first].type;
+    const bool is_there = holds(leader.second.fit.effects, type);
+    const bool is_instead = is_there && !holds(best->second.fit.effects, type) &&
                             !holds(leader.second.fit.effects, selection.library[best->first].type);
     if (leader.first != best->first && !is_instead) continue;
     scores[leader.first] = std::max(scores[leader.first], by_score(leader));
-    if (is_alike(leader)) selection.alike.push_back({leader.first, leader.second.fit});
+    if (is_there && is_alike(leader)) selection.alike.push_back({leader.first, leader.second.fit});
   }
   selection.probabilities = softmax(std::move(scores));
   share_evenly(selection.alike, selection.probabilities);
@@ -540,10 +562,11 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   // Beside a leader alone nothing was accepted.
-  if (growth.accepted.size() > 1) grow_further(problem, coarse, selection, threads, further, growth);
+  const Numbers numbers = growth.accepted.size() > 1 ? Numbers::as_found : Numbers::free;
+  grow_further(problem, coarse, selection, numbers, threads, further, growth);
   // In place of what was dropped, something else may be needed.
   if (settle(problem, coarse, selection, growth)) {
-    grow_further(problem, coarse, selection, threads, further, growth);
+    grow_further(problem, coarse, selection, Numbers::as_found, threads, further, growth);
     settle(problem, coarse, selection, growth);
   }
   return growth;

@@ -10,7 +10,7 @@ namespace hybridtest {
 /// A leading candidate with the further effects that it needs, where these recordings cannot tell it from another one.
 struct AlikeLeader {
   std::size_t position = 0;  // in Selection::library
-  FitOutcome fit;            // the candidate first
+  FitOutcome fit;            // the candidate and what was found with it
 };
 
 /// The selected effects.
