@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+namespace hybridtest {
+namespace {
+
+using testing::ElementsAre;
+
+/// What a load cell reads of a spring's force behind T^2 q r'' + T r' + r = F, integrated in steps of a twentieth of a
+/// sample (semi-implicit Euler).
+class FilteredSpring {
+ public:
+  FilteredSpring(double time_constant_s, double ratio) : time_constant_s_{time_constant_s}, ratio_{ratio} {}
+
+  double at(double time_s) {
+    for (; time_s_ + 0.5 * kStep_s < time_s; time_s_ += kStep_s) {
+      const double force_n = kMadeStiffness_n_per_m * made_motion_m(time_s_);
+      rate_ +=
+          kStep_s * (force_n - read_n_ - time_constant_s_ * rate_) / (ratio_ * time_constant_s_ * time_constant_s_);
+      read_n_ += kStep_s * rate_;
+    }
+    return read_n_;
+  }
+
+ private:
+  static constexpr double kStep_s = kSitePeriod_s / 20.0;
+  double time_constant_s_;
+  double ratio_;
+  double time_s_ = 0.0;
+  double read_n_ = 0.0;
+  double rate_ = 0.0;
+};
+
+constexpr double kTime_s = 0.03;
+
+Diagnosis diagnosis_behind(double ratio) {
+  FilteredSpring filter{kTime_s, ratio};
+  return diagnosis_of(made_model(), made_recording(made_motion_m, [&](double t) { return filter.at(t); }));
+}
+
+class LoadCellFilter : public testing::TestWithParam<double> {};
+
+TEST_P(LoadCellFilter, IsALagWithItsShape) {
+  const Diagnosis diagnosis = diagnosis_behind(GetParam());
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("lag"));
+  const report::RankedCause& lag = diagnosis.report.ranking.front();
+  EXPECT_EQ(lag.interface, "force_sensor");
+  // The integration is late by a step, 0.1 ms, at most; the motion, up to 2.3 Hz, turns by 0.4 rad within T.
+  EXPECT_NEAR(find_parameter(lag, "time_constant_s")->value, kTime_s, 1e-4);
+  EXPECT_NEAR(find_parameter(lag, "second_order_ratio")->value, GetParam(), 0.02);
+}
+
+/// Two equal poles, Butterworth.
+INSTANTIATE_TEST_SUITE_P(OfTwoPoles, LoadCellFilter, testing::Values(0.25, 0.5));
+
+TEST(BesselFilter, IsASetWithATimeSkew) {
+  // Its delay is the same at all frequencies up to its bandwidth: that is what it is made for.
+  const Diagnosis diagnosis = diagnosis_behind(1.0 / 3.0);
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::set);
+  EXPECT_THAT(causes_of(diagnosis), ElementsAre("lag", "time_skew"));
+}
+
+}  // namespace
+}  // namespace hybridtest
