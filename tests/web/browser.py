@@ -70,7 +70,7 @@ def set_window(browser, width, height=None, is_dark=False):
         "features": [{"name": "prefers-color-scheme", "value": "dark" if is_dark else "light"}]})
 
 
-def wait_for(condition, what, patience_s=20.0):
+def wait_for(condition, what, patience_s=60.0):
     """What `condition` returns as soon as that is true."""
     end = time.monotonic() + patience_s
     while True:
