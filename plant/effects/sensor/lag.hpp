@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "plant/effects/effect_type.hpp"
 #include "plant/effects/second_order_lag.hpp"
 
 namespace hybridtest {
