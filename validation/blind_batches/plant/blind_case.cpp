@@ -266,6 +266,14 @@ bool is_foreign(const PlantEffect& effect) {
   });
 }
 
+/// Another effect that is the same delay of every sample: no recording tells which of the two it is.
+std::optional<Cause> twin_of(const PlantEffect& effect) {
+  if (effect.interface != "network") return {};
+  if (effect.name == "latency") return Cause{"network", "clock_offset"};
+  if (effect.name == "clock_offset") return Cause{"network", "latency"};
+  return {};
+}
+
 /// Other names of the same physics: a delay of every sample by one clock, an addition to a law that makes another law
 /// of it, a law with another number.
 std::vector<Cause> also_named(const PlantEffect& effect, LawKind users) {
@@ -273,10 +281,7 @@ std::vector<Cause> also_named(const PlantEffect& effect, LawKind users) {
                                             {"specimen", "hysteresis_law", "giuffre_menegotto_pinto"},
                                             {"specimen", "hysteresis_law", "bouc_wen"},
                                             {"specimen", "hysteresis_law", "ramberg_osgood"}};
-  if (effect.interface == "network") {
-    if (effect.name == "latency") return {{"network", "clock_offset"}};
-    if (effect.name == "clock_offset") return {{"network", "latency"}};
-  }
+  if (const std::optional<Cause> twin = twin_of(effect)) return {*twin};
   if (effect.name == "yielding") {
     std::vector<Cause> causes = kYielding;
     causes.push_back({"specimen", "yielding", kUnsaidLaw});
@@ -379,7 +384,7 @@ class Judge {
     std::vector<Cause> others = alike.same;
     std::erase(others, itself);
     add_new(right, others);
-    truth_.is_separable = truth_.is_separable && others.empty();
+    truth_.is_separable = truth_.is_separable && others.empty() && !twin_of(effect);
     add_new(truth_.kind == TruthClass::unknown ? truth_.acceptable_in_part : truth_.acceptable, right);
     add_new(truth_.acceptable_in_part, alike.half);
     truth_.effect_acceptable.push_back(std::move(right));

@@ -382,10 +382,21 @@ Answer with_true_corrections(const KeyCase& key, Answer answer) {
 
 Answer without_tolerated(const KeyCase& key, Answer answer) {
   if (!answer.names_a_cause() || answer.causes.empty()) return answer;
-  if (answer.is_set() && cause_is_right(key, answer)) return answer;
   const bool is_set = answer.is_set();
+  Answer whole = answer;
   const std::size_t dropped =
       std::erase_if(answer.causes, [&](const AnsweredCause& cause) { return is_in(key.tolerated, cause); });
+  if (is_set) {
+    // Members of a set share its probability. What has one of its own is a name, beside a set of what is tolerated.
+    const bool names_are_left =
+        dropped > 0 && !answer.causes.empty() &&
+        std::ranges::all_of(answer.causes, [](const AnsweredCause& cause) { return cause.probability >= kSure; });
+    if (names_are_left) {
+      answer.verdict = "named";
+      return answer;
+    }
+    if (cause_is_right(key, whole)) return whole;
+  }
   if (dropped == 0 || (!answer.causes.empty() && !is_set)) return answer;
   answer.causes.clear();
   answer.verdict = answer.verdict == "partial" ? "unknown" : "none";

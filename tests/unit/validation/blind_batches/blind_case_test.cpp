@@ -158,6 +158,16 @@ TEST(BlindCase, WrongNumbersTakeUpWhatTheyCanGive) {
   EXPECT_THAT(none.truth.tolerated, Not(Contains(Cause{"specimen", "coulomb_friction"})));
 }
 
+TEST(BlindCase, LatencyAndClockOffsetCannotBeTold) {
+  const CaseSetting setting = setting_with([](const CaseSetting& s) { return s.columns.sent && s.columns.target; });
+  const PlantEffect late{"network", "latency", {{"delay_s", 0.05}}};
+  const PlantEffect uneven{"network", "jitter", {{"jitter_s", 0.01}, {"seed", 3.0}}};
+  const BlindCase twin = make_case(setting, {.kind = TruthClass::named, .effects = {late}}, kSeed, 1);
+  EXPECT_THAT(twin.truth.acceptable, Contains(Cause{"network", "clock_offset"}));
+  EXPECT_FALSE(twin.truth.is_separable);
+  EXPECT_TRUE(make_case(setting, {.kind = TruthClass::named, .effects = {uneven}}, kSeed, 1).truth.is_separable);
+}
+
 TEST(BlindCase, NoNumberIsWrongTwice) {
   // Here the stiffness of a law that yields was wrong beside the model and once more as the effect.
   const BlindCase drawn = draw_case(607632768, 28);

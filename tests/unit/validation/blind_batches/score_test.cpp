@@ -247,7 +247,7 @@ TEST(Score, WrongNumbersAreNeitherRightNorWrong) {
   KeyCase friction = key_case(TruthClass::named, {kFriction});
   none.tolerated = friction.tolerated = {stiffness};
   const auto named = [](const std::string& verdict, const std::vector<Cause>& causes) {
-    return read_answer(diagnosis(verdict, causes, 0.97));
+    return read_answer(diagnosis(verdict, causes, verdict == "set" ? 0.48 : 0.97));
   };
   EXPECT_FALSE(mark(none, named("named", {stiffness})).is_falsely_named.value());
   EXPECT_EQ(mark(none, named("set", {kBias, stiffness})).answer.verdict, "none");
@@ -257,6 +257,21 @@ TEST(Score, WrongNumbersAreNeitherRightNorWrong) {
   EXPECT_FALSE(mark(friction, named("named", {stiffness, kFriction})).has_spurious_cause.value());
   EXPECT_TRUE(mark(friction, named("named", {kFriction, kBias})).has_spurious_cause.value());
   EXPECT_FALSE(mark(friction, named("named", {stiffness})).is_effect_right.value());
+}
+
+TEST(Score, NameBesideASetOfWrongNumbersIsAName) {
+  const Cause stiffness{"specimen", "stiffness_error"};
+  const Cause gain{"force_sensor", "gain"};
+  KeyCase key = key_case(TruthClass::named, {kFriction});
+  key.tolerated = {stiffness, gain};
+  Answer answer = read_answer(diagnosis("set", {kFriction, stiffness, gain}, 0.47));
+  EXPECT_FALSE(mark(key, answer).is_single_name_right.value()) << "control: a member of the set";
+  answer.causes.front().probability = 0.93;
+  EXPECT_TRUE(mark(key, answer).is_single_name_right.value());
+  EXPECT_EQ(mark(key, answer).causes_answered.value(), 1U);
+  key.acceptable = {kBias};
+  EXPECT_FALSE(mark(key, answer).is_effect_right.value()) << "a wrong name is a name, too";
+  EXPECT_TRUE(mark(key, answer).is_sure_and_wrong);
 }
 
 TEST(Score, IntervalsOfWrongNumbersCountToo) {
