@@ -552,15 +552,19 @@ bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fi
   return false;
 }
 
-/// Whether a parameter that a scenario may leave out is at a limit of its range, and not where it may be left out.
+/// Whether a parameter that a scenario may leave out is at a limit of its range while it or another one of its effect is
+/// not left out: a ratio of closed joints of one says that there are none, whatever the force that closes them.
 bool has_optional_at_limit(const FitOutcome& fit) {
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
+    bool is_at_limit = false;
+    bool is_left_out = true;
     for (std::size_t j = 0; j < parameters.size(); ++j) {
-      const ParameterEstimate& estimate = fit.parameters[i][j];
-      const double fallback = parameters[j].fallback;
-      if (estimate.at_bound && !std::isnan(fallback) && estimate.value != fallback) return true;
+      if (std::isnan(parameters[j].fallback)) continue;
+      is_at_limit = is_at_limit || fit.parameters[i][j].at_bound;
+      is_left_out = is_left_out && fit.parameters[i][j].value == parameters[j].fallback;
     }
+    if (is_at_limit && !is_left_out) return true;
   }
   return false;
 }

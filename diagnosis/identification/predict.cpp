@@ -137,7 +137,7 @@ double drive(const Segment& segment, Step&& step) {
   for (std::size_t i = 0; i < segment.input.size(); ++i) {
     sample.time_s = begin_s + static_cast<double>(i) * segment.period_s;
     sample.motion = segment.input[i];
-    if (!segment.load_n.empty()) sample.force_n = segment.load_n[i == 0 ? 0 : i - 1];
+    if (!segment.load_n.empty()) sample.force_n = segment.load_n[i];
     step(sample, segment, i);
   }
   return begin_s + static_cast<double>(segment.input.size()) * segment.period_s;

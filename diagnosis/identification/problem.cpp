@@ -177,19 +177,19 @@ void add_nuisance(FitSegment& fit, EffectInterface interface, ModelNumber number
 }
 
 /// Change of the prediction per unit of a wrong stiffness: of a spring beside another, or of the ratio of a law's.
-Eigen::VectorXd stiffness_slope(const SiteModel& model, bool law_is_spring, const FitSegment& fit,
+Eigen::VectorXd stiffness_slope(const SiteModel& model, bool is_ratio, const FitSegment& fit,
                                 const EffectType& stiffness) {
-  const double step = law_is_spring ? 1.0 : tuning::kResolution;  // the former's change is proportional to it
-  const EffectSetting setting{.type = &stiffness, .values = {law_is_spring ? 0.0 : step, law_is_spring ? step : 0.0}};
+  const double step = is_ratio ? tuning::kResolution : 1.0;  // the latter's change is proportional to it
+  const EffectSetting setting{.type = &stiffness, .values = {is_ratio ? step : 0.0, is_ratio ? 0.0 : step}};
   return (fit.average(predict(model, fit.segment, std::span{&setting, 1})) - fit.baseline) / step;
 }
 
-void add_nuisances(const SiteModel& model, bool law_is_spring, FitSegment& fit) {
+void add_nuisances(const SiteModel& model, bool law_has_strength, FitSegment& fit) {
   fit.nuisance.resize(fit.measured.size(), 0);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fit.measured.size());
   if (fit.segment.to == Channel::measured_force) {
     add_nuisance(fit, specimen, ModelNumber::stiffness,
-                 stiffness_slope(model, law_is_spring, fit, *find_effect(specimen, ModelNumber::stiffness)));
+                 stiffness_slope(model, law_has_strength, fit, *find_effect(specimen, ModelNumber::stiffness)));
     add_nuisance(fit, force_sensor, ModelNumber::offset, ones);
     return;
   }
@@ -367,7 +367,8 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   fit.independent = independent;
 }
 
-FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment, std::span<const FoundEffect> found) {
+FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::span<const FoundEffect> found) {
+  const SiteModel& model = problem.model;
   FitSegment fit;
   fit.segment = std::move(segment);
   fit.averaged = std::max<std::size_t>(
@@ -383,12 +384,12 @@ FitSegment prepare(const SiteModel& model, bool law_is_spring, Segment segment, 
       input_floor(errors, [&](std::span<const double> values) { return root_mean_square(fit.average(values)); }));
   fit.channel_floor = std::hypot(fit.channel_floor, fit.segment.step_noise, fit.smoothing_floor);
   std::vector<std::vector<double>> wrong{errors.of_noise, errors.of_window, fit.segment.smoothing_errors};
-  if (!law_is_spring) wrong.push_back(change_by_smoothing(model, fit.segment));
+  if (!problem.law_is_spring) wrong.push_back(change_by_smoothing(model, fit.segment));
   for (const std::vector<double>& values : wrong) {
     if (!values.empty()) fit.input_errors.push_back(fit.average(values));
   }
   fit.block_begins = blocks_of(fit);
-  add_nuisances(model, law_is_spring, fit);
+  add_nuisances(model, problem.law_has_strength, fit);
   add_number_slopes(model, fit);
   add_found_changes(model, found, fit);
   fit.discrepancy = std::make_shared<Discrepancy>(fit);
@@ -403,6 +404,12 @@ bool is_spring(const SiteModel& model, double largest_m) {
   return std::ranges::all_of(tuning::kSpringProbes, [&](double share) {
     return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kSpringRounding * std::abs(whole_n);
   });
+}
+
+/// Whether some motion, recorded or larger, meets a strength of the law. A law without stiffness has none to be wrong.
+bool has_strength(const SiteModel& model, double reached_m) {
+  if (is_spring(model, reached_m / tuning::kResolution)) return false;
+  return !is_spring(model, reached_m) || model.make_law()->initial_stiffness_n_per_m() > 0.0;
 }
 
 /// A floor is an estimate: a small excess does not count as a gap beside a clear one.
@@ -451,9 +458,10 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   problem.scales = scales_of(segments);
   problem.inputs = input_ranges_of(model, segments);
   for (const InputRange& input : problem.inputs) mark_at_reference(input, segments);
-  problem.law_is_spring = is_spring(model, problem.scales.of(ParameterScale::displacement_m));
-  for (Segment& segment : segments)
-    problem.segments.push_back(prepare(model, problem.law_is_spring, std::move(segment), found));
+  const double reached_m = problem.scales.of(ParameterScale::displacement_m);
+  problem.law_is_spring = is_spring(model, reached_m);
+  problem.law_has_strength = has_strength(model, reached_m);
+  for (Segment& segment : segments) problem.segments.push_back(prepare(problem, std::move(segment), found));
   relate_channels(problem.segments);
   for (FitSegment& fit : problem.segments) take_noise(fit, fit.measured - fit.baseline);
   mark_suspects(problem.segments);

@@ -103,8 +103,9 @@ struct IdentificationProblem {
   std::vector<FitSegment> segments;
   SignalScales scales;
   std::vector<InputRange> inputs;
-  bool law_is_spring = false;  // linear in the range of the recordings, or there is no law
-  PartProgress progress;       // told of every prediction, so that no fit is silent, however long it takes
+  bool law_is_spring = false;     // linear in the range of the recordings, or there is no law
+  bool law_has_strength = false;  // reached in the recordings, or only by a larger motion
+  PartProgress progress;          // told of every prediction, so that no fit is silent, however long it takes
 };
 
 /// An effect of the model that was found at a channel before, and how well its parameters are known there.

@@ -66,6 +66,11 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
           std::clamp(tuning::kRelaxationOfSwing * problem.scales.displacement_m / problem.scales.velocity_m_per_s,
                      result.low, result.high / tuning::kLogarithmicFactor);
       break;
+    case SearchLimit::secant_stiffness:
+      if (!problem.law_is_spring || !problem.model.make_law) break;
+      result.high = std::max(result.high, range.high * problem.scales.of(ParameterScale::stiffness_n_per_m) /
+                                              problem.model.make_law()->initial_stiffness_n_per_m());
+      break;
     case SearchLimit::compensator_setting:
       if (setting.most_s <= 0.0) break;
       result.low = std::max(result.low, -setting.set_s);
@@ -80,10 +85,16 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 }  // namespace
 
 bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
-  const LawUse other = problem.law_is_spring ? LawUse::with_strength : LawUse::spring_or_none;
   const SearchRange* const range = range_of(effect, parameter);
-  const bool has_none = range != nullptr && range->restriction.limit == SearchLimit::own_bandwidth;
-  return range == nullptr || range->restriction.beside == other || (has_none && !problem.model.has_bandwidth);
+  if (range == nullptr) return true;
+  if (range->restriction.limit == SearchLimit::own_bandwidth && !problem.model.has_bandwidth) return true;
+  switch (range->restriction.beside) {
+    case LawUse::any: return false;
+    case LawUse::spring_or_none: return problem.law_has_strength;
+    case LawUse::with_strength: return !problem.law_has_strength;
+    case LawUse::at_strength: return problem.law_is_spring;
+  }
+  return false;
 }
 
 namespace {

@@ -31,7 +31,8 @@ enum class ParameterScale : std::uint8_t {
 };
 
 /// Beside which law of a specimen a parameter is searched; beside another law it keeps its fallback.
-enum class LawUse : std::uint8_t { any, spring_or_none, with_strength };
+/// with_strength: that some motion reaches; at_strength: that of the recordings does.
+enum class LawUse : std::uint8_t { any, spring_or_none, with_strength, at_strength };
 
 /// A limit of the range that the user's model sets.
 enum class SearchLimit : std::uint8_t {
@@ -40,6 +41,7 @@ enum class SearchLimit : std::uint8_t {
   compensator_setting,  // the compensator's delay stays between zero and its maximum
   own_bandwidth,        // searched where the model's transfer system has one
   within_motion,        // at least a share of the time in which the motion changes
+  secant_stiffness,     // of a law that stays a spring, whatever its stiffness: as far as a spring beside it
 };
 
 /// Further limits of a range.
@@ -71,7 +73,7 @@ using Scale = ParameterScale;
 
 /// The strength that goes with a stiffness that degrades.
 constexpr SearchRange strength_exponent_of(std::string_view effect) {
-  return {specimen, effect, "strength_exponent", Scale::one, 0.0, 1.0, {.beside = LawUse::with_strength}};
+  return {specimen, effect, "strength_exponent", Scale::one, 0.0, 1.0, {.beside = LawUse::at_strength}};
 }
 
 /// Every parameter that is searched, in the order of the effect library. A parameter without a row keeps its fallback:
@@ -110,16 +112,23 @@ inline constexpr std::array kRows{
     SearchRange{transfer_system, "velocity_limit", "velocity_limit_m_per_s", Scale::velocity_m_per_s, 0.02, 1.2},
     SearchRange{transfer_system, "stroke_limit", "stroke_limit_m", Scale::displacement_m, 0.2, 1.1},
     SearchRange{transfer_system, "compliance", "compliance_m_per_n", Scale::compliance_m_per_n, 0.0, 0.5},
+    SearchRange{transfer_system, "compliance", "closed_joint_ratio", Scale::one, 0.0, 1.0},
+    SearchRange{transfer_system, "compliance", "closing_force_n", Scale::force_n, 0.02, 0.3},
     SearchRange{transfer_system, "stiction", "stick_displacement_m", Scale::displacement_m, 1e-4, 0.5},
-    SearchRange{transfer_system, "stiction", "slip_time_s", Scale::time_s, 0.0, 0.005},
+    SearchRange{transfer_system, "stiction", "slip_time_s", Scale::time_s, 1e-4, 0.02},
     SearchRange{displacement_sensor, "gain", "gain_error", Scale::one, -0.5, 0.5},
     SearchRange{displacement_sensor, "bias", "bias_m", Scale::displacement_m, -0.5, 0.5},
     SearchRange{displacement_sensor, "drift", "drift_m_per_s", Scale::displacement_m, -0.2, 0.2},
     SearchRange{displacement_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 0.1},
     SearchRange{displacement_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{displacement_sensor, "quantization", "step_m", Scale::displacement_m, 1e-4, 0.3},
-    SearchRange{
-        specimen, "stiffness_error", "stiffness_error_ratio", Scale::one, -1.0, 2.0, {.beside = LawUse::with_strength}},
+    SearchRange{specimen,
+                "stiffness_error",
+                "stiffness_error_ratio",
+                Scale::one,
+                -1.0,
+                2.0,
+                {.beside = LawUse::with_strength, .limit = SearchLimit::secant_stiffness}},
     SearchRange{specimen,
                 "stiffness_error",
                 "stiffness_n_per_m",
@@ -128,7 +137,7 @@ inline constexpr std::array kRows{
                 2.0,
                 {.beside = LawUse::spring_or_none}},
     SearchRange{
-        specimen, "strength_error", "strength_error_ratio", Scale::one, -0.9, 9.0, {.beside = LawUse::with_strength}},
+        specimen, "strength_error", "strength_error_ratio", Scale::one, -0.9, 9.0, {.beside = LawUse::at_strength}},
     SearchRange{
         specimen, "viscous_damping", "damping_n_s_per_m", Scale::damping_n_s_per_m, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen,

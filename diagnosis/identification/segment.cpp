@@ -90,7 +90,10 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     segment.input = LocalPolynomial{half_width, segment.period_s}.motion(dof.of(from));
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
-    if (dof.has(Channel::measured_force)) segment.load_n = without_noise(dof.of(Channel::measured_force));
+    if (dof.has(Channel::measured_force)) {
+      segment.load_n = without_noise(dof.of(Channel::measured_force));
+      std::shift_right(segment.load_n.begin(), segment.load_n.end(), 1);  // the first one stands for that before it
+    }
   } else {
     segment.input_noise = white_noise_level(dof.of(from));
     segment.input_step = steps_of_readings(dof.of(from)).step;

@@ -40,7 +40,7 @@ struct Segment {
   double period_s = 0.0;
   bool is_quasi_static = false;  // see Recording; the velocity of `input` is a sign, its acceleration zero
   std::vector<Motion> input;     // motion of `from` without its noise, one per sample
-  std::vector<double> load_n;    // measured force without its noise, of which a stage has that before; empty: unknown
+  std::vector<double> load_n;    // measured force without its noise, of the recorded sample before; empty: unknown
   InputTable inputs;             // beside the motion, of the specimen's segment; smoothed as `measured`
   std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]

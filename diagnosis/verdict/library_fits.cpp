@@ -125,9 +125,10 @@ namespace {
 /// Stiffness of the spring beside the effects: the model's, and what a fit adds to it [N/m].
 double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit) {
   double stiffness_n_per_m = problem.model.make_law ? problem.model.make_law()->initial_stiffness_n_per_m() : 0.0;
+  const double own_n_per_m = stiffness_n_per_m;
   const auto add = [&](const EffectSetting& effect) {
     const bool is_spring = effect.type->traits.number == ModelNumber::stiffness && effect.values.size() > 1;
-    if (is_spring) stiffness_n_per_m += effect.values[1];
+    if (is_spring) stiffness_n_per_m += effect.values[0] * own_n_per_m + effect.values[1];
   };
   std::ranges::for_each(fit.effects, add);
   if (fit.with_nuisance) std::ranges::for_each(wrong_numbers(problem, fit), add);

@@ -300,6 +300,41 @@ void settle_effects(const IdentificationProblem& problem, const Selection& selec
   }
 }
 
+/// A number of the model in place of two effects of its interface that are not both numbers: a bandwidth that is off is
+/// nearly a delay and another bandwidth. Two have to be decidedly better than one that is expected to be off.
+/// @return whether one was found.
+bool merge(const IdentificationProblem& problem, Growth& growth) {
+  const std::vector<EffectSetting> effects = growth.fit.effects;
+  const double both = score_of(problem, growth.fit);
+  std::optional<Candidate> best;
+  double highest = both - decisive_gain(problem);
+  const auto try_instead_of = [&](std::size_t first, std::size_t second, const EffectSetting& number) {
+    std::vector<EffectSetting> start = without(without(effects, second), first);
+    start.push_back(number);
+    std::optional<Candidate> one = fit_together(problem, number.type, start, search_effects);
+    if (!one || !refutation(problem, *one).empty() || score_of(problem, one->fit) <= highest) return;
+    highest = score_of(problem, one->fit);
+    best = std::move(one);
+  };
+  for (const EffectSetting& number : numbers_of(problem)) {
+    if (holds(effects, number.type)) continue;
+    for (std::size_t second = 1; second < effects.size(); ++second) {
+      for (std::size_t first = 0; first < second; ++first) {
+        const EffectType& one = *effects[first].type;
+        const EffectType& other = *effects[second].type;
+        const bool are_its = one.interface == number.type->interface && other.interface == number.type->interface;
+        const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
+        if (!are_its || is_a_law || (is_number(problem, one) && is_number(problem, other))) continue;
+        try_instead_of(first, second, number);
+      }
+    }
+  }
+  if (!best) return false;
+  growth.accepted.push_back({best->type, softmax({highest + decisive_gain(problem), both}).front()});
+  growth.fit = std::move(best->fit);
+  return true;
+}
+
 /// With the round's best, if it is accepted.
 std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& by_numbers, const Growth& from,
                             const std::vector<Candidate>& beside) {
@@ -332,17 +367,33 @@ void grow_further(const IdentificationProblem& problem, const IdentificationProb
   }
 }
 
-/// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost.
+/// An effect that earned its place beside those that are left.
+bool is_lost(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& left,
+             const FitOutcome& before) {
+  return std::ranges::any_of(before.effects, [&](const EffectSetting& effect) {
+    return !holds(left.effects, effect.type) &&
+           earns_its_place(problem, by_numbers, left, {.type = effect.type, .fit = before});
+  });
+}
+
+/// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost. What is lost so
+/// at the full rate is asked there: what moves within a few samples, as a slip, hardly exists at the lower one.
 /// @return whether an effect was dropped.
 bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
             Growth& growth) {
-  const std::size_t count = growth.fit.effects.size();
+  const Growth before = growth;
+  const std::size_t count = before.fit.effects.size();
   // By itself an effect has been compared already, but for a law with what the numbers of the model's own may do.
   if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
   settle_effects(coarse, selection, growth);
+  merge(coarse, growth);
   prune(coarse, refit_effects(coarse, selection.by_numbers.effects, false), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
+  if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
+    growth = before;
+    prune(problem, selection.by_numbers, growth.fit);
+  }
   return growth.fit.effects.size() < count;
 }
 
@@ -572,6 +623,22 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
   return growth;
 }
 
+/// The noise is known better beside what was found than it was beside the best effect by itself. Where the floor was
+/// too high for that, what it hid is looked for.
+void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, Selection& selection,
+                std::size_t threads, const PartProgress& progress, Growth& growth) {
+  if (growth.fit.effects.empty() || gap_energy(problem, growth.fit).is_clear()) return;
+  IdentificationProblem settled = problem;
+  settle_noise(settled, growth.fit);
+  if (!gap_energy(settled, growth.fit).is_clear()) return;
+  problem = std::move(settled);
+  settle_noise(coarse, refit_effects(coarse, growth.fit.effects, false));
+  growth.fit = refit_effects(problem, growth.fit.effects, false);
+  score_again(problem, selection.library);
+  grow_further(problem, coarse, selection, Numbers::as_found, threads, progress, growth);
+  settle(problem, coarse, selection, growth);
+}
+
 /// Removes a law without a loop from the library, if one was found.
 bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcome& found, Selection& selection) {
   for (std::size_t i = 0; i < found.effects.size(); ++i) {
@@ -654,6 +721,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
     growth = {.fit = selection.baseline, .accepted = {}};
     if (is_explained()) growth = find_effects(problem, coarse, selection, threads, progress);
   }
+  look_again(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_special_laws(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen),
                    growth);
   if (growth.fit.effects.empty()) return selection;

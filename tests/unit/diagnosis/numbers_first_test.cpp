@@ -118,5 +118,25 @@ TEST(FurtherEffect, IsFoundThoughItMovesANumberThatWasFoundBefore) {
   EXPECT_NEAR(first_parameter_of(diagnosis, "viscous_damping"), kDamping_n_s_per_m, 0.02 * kDamping_n_s_per_m);
 }
 
+/// A specimen that stays elastic, `1 + error` times as stiff as a model that yields at forty times the largest force.
+class UnreachedStrength : public testing::TestWithParam<double> {};
+
+TEST_P(UnreachedStrength, StiffnessIsARatioOfTheLaw) {
+  SiteModel model = made_model();
+  model.make_law = [] { return yielding(1.0, 100.0); };
+  const double stiffness_n_per_m = (1.0 + GetParam()) * kMadeStiffness_n_per_m;
+  const Recording recording =
+      made_recording(made_motion_m, [&](double t) { return stiffness_n_per_m * made_motion_m(t); });
+  const Diagnosis diagnosis = diagnosis_of(model, recording);
+  const auto found = std::ranges::find(diagnosis.report.ranking, "stiffness_error", &report::RankedCause::effect);
+  ASSERT_NE(found, diagnosis.report.ranking.end());
+  EXPECT_TRUE(found->is_cause);
+  // 20 N of noise on up to 56 kN, in 6000 samples.
+  EXPECT_NEAR(find_parameter(*found, "stiffness_error_ratio")->value, GetParam(), 1e-4 * (1.0 + GetParam()));
+  EXPECT_EQ(find_parameter(*found, "stiffness_n_per_m")->value, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(FromATenthToTenTimes, UnreachedStrength, testing::Values(-0.9, 0.2, 9.0));
+
 }  // namespace
 }  // namespace hybridtest

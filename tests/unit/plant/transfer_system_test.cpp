@@ -75,8 +75,8 @@ TEST(TransferSystemEffects, FollowTheirDefinitionsAlongAPath) {
   expect(moved("gain", {0.1}, path), {0.0, 0.055, 0.55, 0.495, 0.22, 0.385});
 }
 
-/// Behind a ramp by its slip time, as one pole is, once it is free; it stays where it is when that turns.
-TEST(TransferSystemEffects, StictionSlipsAfterItsTime) {
+/// What it is behind a ramp dies away with its slip time, once it is free; it stays where it is when that turns.
+TEST(TransferSystemEffects, StictionSlipsInItsTime) {
   constexpr double kSlip_s = 0.004;
   constexpr double kStick = 2.5 * kBenchPeriod_s;
   const auto effect = made(EffectInterface::transfer_system, "stiction", {kStick, kSlip_s});
@@ -85,22 +85,36 @@ TEST(TransferSystemEffects, StictionSlipsAfterItsTime) {
     const double t = kBenchPeriod_s * i;
     double displacement_m = t;
     effect->after({}, {}, displacement_m);
-    // Free between the second and the third sample: t - T + (T - 2 dt) e^(-(t - 2 dt) / T)
-    const double free_s = t - 2.0 * kBenchPeriod_s;
-    const double expected = i < 3 ? 0.0 : t - kSlip_s + (kSlip_s - 2.0 * kBenchPeriod_s) * std::exp(-free_s / kSlip_s);
+    // Free between the second and the third sample: t - s e^(-(t - s) / T)
+    const double expected = i < 3 ? 0.0 : t - kStick * std::exp(-(t - kStick) / kSlip_s);
     EXPECT_NEAR(displacement_m, expected, 1e-15) << i;
     last = displacement_m;
   }
-  double held_m = last + 0.1 * kBenchPeriod_s;  // back from where it was asked to be
+  double held_m = 38.9 * kBenchPeriod_s;  // back from where it was asked to be
   effect->after({}, {}, held_m);
-  EXPECT_EQ(held_m, last);
+  EXPECT_NEAR(held_m, last, 1e-15);
 }
 
 TEST(TransferSystemEffects, ComplianceYieldsUnderForce) {
-  const auto effect = made(EffectInterface::transfer_system, "compliance", {2e-8});
+  const auto effect = made(EffectInterface::transfer_system, "compliance", {2e-8, 1.0, 0.0});
   double displacement_m = 0.01;
   effect->after({.time_s = 0.0, .motion = {}, .force_n = 1.0e5}, {}, displacement_m);
   EXPECT_DOUBLE_EQ(displacement_m, 0.008);
+}
+
+/// Joints that are open give all, joints that have closed r of it and what they took up in closing.
+TEST(TransferSystemEffects, ComplianceHasJointsThatClose) {
+  constexpr double kCompliance_m_per_n = 2e-8;
+  constexpr double kClosing_n = 1.0e4;
+  const auto effect = made(EffectInterface::transfer_system, "compliance", {kCompliance_m_per_n, 0.75, kClosing_n});
+  const auto given_m = [&](double force_n) {
+    double displacement_m = 0.0;
+    effect->after({.time_s = 0.0, .motion = {}, .force_n = force_n}, {}, displacement_m);
+    return -displacement_m;
+  };
+  EXPECT_NEAR(given_m(1.0), kCompliance_m_per_n, 1e-8 * kCompliance_m_per_n) << "a third of the square of F / Fc";
+  EXPECT_NEAR(given_m(-kClosing_n), -(0.75 + 0.25 * std::tanh(1.0)) * kCompliance_m_per_n * kClosing_n, 1e-18);
+  EXPECT_NEAR(given_m(1.0e6), kCompliance_m_per_n * (0.75e6 + 0.25 * kClosing_n), 1e-16);
 }
 
 }  // namespace
