@@ -393,6 +393,8 @@ bool settle(const IdentificationProblem& problem, const IdentificationProblem& c
   if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
     growth = before;
     prune(problem, selection.by_numbers, growth.fit);
+    // One effect at a time may go astray: then all are kept.
+    if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) growth = before;
   }
   return growth.fit.effects.size() < count;
 }
