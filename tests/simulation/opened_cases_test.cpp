@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "diagnosis/runs/diagnose_site.hpp"
+#include "diagnosis/runs/run_records.hpp"
+#include "scenario/site_model_file.hpp"
+#include "tests/unit/recording/temporary_directory.hpp"
+#include "validation/blind_batches/batch.hpp"
+
+/// Cases of blind batches that were opened, each of which the diagnosis once had wrong for a cause that was found
+/// since. They say that it stays mended, and nothing about how often the diagnosis is right.
+namespace hybridtest {
+namespace {
+
+using testing::Contains;
+using testing::Not;
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream{path, std::ios::binary} << text;
+}
+
+std::vector<std::string> causes_of_case(std::uint64_t seed, std::uint64_t number) {
+  const blind::BlindCase opened = blind::draw_case(seed, number - 1);
+  const TemporaryDirectory directory;
+  write(directory / "site.yaml", blind::site_yaml(blind::sites_of(opened.setting)));
+  const SiteModelFile model = read_site_model(directory / "site.yaml");
+  const std::vector<std::string> files = blind::case_csv(opened);
+  std::vector<Recording> recordings;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::filesystem::path file = directory / fmt::format("{}.csv", i);
+    write(file, files[i]);
+    recordings.push_back(read_recording(file, i + 1 < files.size() ? RecordingRole::fit : RecordingRole::held_out));
+  }
+  DiagnoseSettings settings;
+  settings.threads = 2;
+  std::vector<std::string> causes;
+  for (const report::RankedCause& cause : diagnose_site(model, recordings, settings).diagnosis.report.ranking) {
+    if (cause.is_cause) causes.push_back(cause.interface + "." + cause.effect);
+  }
+  return causes;
+}
+
+/// Dropped when the causes were compared at the lower rate, where its slip of a millisecond hardly exists: `unknown`.
+TEST(OpenedCase, StictionIsNotLostAtTheLowerRate) {
+  EXPECT_THAT(causes_of_case(3045078726, 30), Contains("transfer_system.stiction"));
+}
+
+/// The floor beside the best effect by itself hid what the numbers leave: friction of four times the floor.
+TEST(OpenedCase, FrictionIsLookedForWhereTheFloorTurnsOutLower) {
+  EXPECT_THAT(causes_of_case(1625051447, 266), Contains("specimen.coulomb_friction"));
+}
+
+/// Nothing is wrong but numbers, one of them the bandwidth: a delay and another bandwidth were named for it.
+TEST(OpenedCase, OneNumberIsNotTwoEffects) {
+  const std::vector<std::string> causes = causes_of_case(3045078726, 146);
+  EXPECT_THAT(causes, Not(Contains("transfer_system.bandwidth")));
+  EXPECT_THAT(causes, Not(Contains("transfer_system.delay")));
+}
+
+/// The recording to fit does not reach the strength, the one held out does, and the stiffness is off by 1.7 %: told as
+/// a spring beside the model it was contradicted, and all was `unknown`.
+TEST(OpenedCase, FrameIsFoundBesideAStiffnessThatCarriesOver) {
+  EXPECT_THAT(causes_of_case(1625051447, 207), Contains("transfer_system.compliance"));
+}
+
+}  // namespace
+}  // namespace hybridtest
