@@ -552,8 +552,8 @@ bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fi
   return false;
 }
 
-/// Whether a parameter that a scenario may leave out is at a limit of its range while it or another one of its effect is
-/// not left out: a ratio of closed joints of one says that there are none, whatever the force that closes them.
+/// Whether a parameter that a scenario may leave out is at a limit of its range while it or another one of its effect
+/// is not left out: a ratio of closed joints of one says that there are none, whatever the force that closes them.
 bool has_optional_at_limit(const FitOutcome& fit) {
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;

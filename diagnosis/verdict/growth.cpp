@@ -1,0 +1,341 @@
+#include "diagnosis/verdict/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <typeinfo>
+
+#include "diagnosis/identification/search.hpp"
+#include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/refutations.hpp"
+
+namespace hybridtest {
+
+std::vector<double> softmax(std::vector<double> scores) {
+  if (scores.empty()) return scores;
+  const double best = *std::ranges::max_element(scores);
+  double sum = 0.0;
+  for (double& score : scores) {
+    score = std::exp((score - best) / tuning::kTemperature);
+    sum += score;
+  }
+  for (double& probability : scores) probability /= sum;
+  return scores;
+}
+
+std::vector<double> scores_of(const std::vector<Candidate>& candidates) {
+  std::vector<double> scores;
+  std::ranges::transform(candidates, std::back_inserter(scores), &Candidate::score);
+  return scores;
+}
+
+double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
+  return held_out_score(problem, fit) + prior(problem, fit);
+}
+
+bool holds(const std::vector<EffectSetting>& effects, const EffectType* type) {
+  return std::ranges::find(effects, type, &EffectSetting::type) != effects.end();
+}
+
+std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position) {
+  std::vector<EffectSetting> rest = effects;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(position));
+  return rest;
+}
+
+namespace {
+
+/// The median; the fallback if there are no values.
+double median(std::vector<double> values, double fallback) {
+  if (values.empty()) return fallback;
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+/// Energy above the floor of each recording: of all its suspect segments, or of those that one effect acts on.
+std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
+                                                   const EffectType* effect = nullptr) {
+  std::map<std::size_t, GapEnergy> sums;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
+    sums[fit.segment.recording] += gap_energy(fit, outcome.segments[i]);
+  }
+  std::map<std::size_t, double> excess;
+  for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
+  return excess;
+}
+
+/// What a further effect changes in a typical (median) recording, so that a single unusual recording does not
+/// decide.
+struct Typical {
+  double leaves = 1.0;    // share of the gap that remained before it
+  double explains = 0.0;  // of the whole gap where it acts
+};
+
+Typical typical(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
+                const Candidate& further) {
+  const FitOutcome& with = further.fit;
+  const std::map<std::size_t, double> total = excess_of_recordings(problem, by_numbers, further.type);
+  const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
+  const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
+  std::vector<double> leaves;
+  std::vector<double> explains;
+  for (const auto& [recording, energy] : total) {
+    if (before.at(recording) > 0.0) leaves.push_back(left.at(recording) / before.at(recording));
+    if (energy > 0.0) explains.push_back((before.at(recording) - left.at(recording)) / energy);
+  }
+  return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
+}
+
+/// A number of the model, or the damping that every model leaves out.
+bool is_number(const IdentificationProblem& problem, const EffectType& type) {
+  return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
+}
+
+}  // namespace
+
+bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
+                     const Candidate& with) {
+  const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
+  if (gain <= decisive_gain(problem)) return false;
+  if (is_number(problem, *with.type)) return true;
+  const Typical change = typical(problem, by_numbers, without, with);
+  const bool matters = change.explains > tuning::kAnotherEffectExplains || change.leaves < tuning::kSmallEffectLeaves;
+  return change.leaves < tuning::kAnotherEffectLeaves && matters;
+}
+
+std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
+  std::vector<EffectSetting> numbers;
+  for (const EffectType* const type : judged_effects(problem)) {
+    if (!is_number(problem, *type) || type->traits.number == ModelNumber::offset) continue;
+    if (place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
+  }
+  return numbers;
+}
+
+void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit) {
+  while (fit.effects.size() > 1) {
+    std::optional<FitOutcome> best;
+    for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+      FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
+      const EffectType& type = *fit.effects[i].type;
+      if (!is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit}))
+        continue;
+      if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
+    }
+    if (!best) return;
+    fit = std::move(*best);
+  }
+}
+
+namespace {
+
+/// The best of `beside` that is accepted; null when there is none.
+/// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
+const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& by_numbers,
+                                  const FitOutcome& without, const std::vector<Candidate>& beside) {
+  const auto earns = [&](const Candidate& candidate) {
+    return earns_its_place(problem, by_numbers, without, candidate);
+  };
+  const auto best = std::ranges::find_if(beside, earns);
+  if (best == beside.end()) return nullptr;
+  const double before = gap_energy(problem, without).excess();
+  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
+  const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
+    return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
+           earns(candidate);
+  });
+  return number == beside.end() ? &*best : &*number;
+}
+
+/// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
+/// model that it needed. The numbers of a law that another law replaces go with it. None where the candidate is found
+/// already.
+std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem& problem,
+                                                     const std::vector<EffectSetting>& effects, std::size_t position,
+                                                     const Candidate& candidate) {
+  const auto is_found = [&](const EffectType* type) { return holds(effects, type); };
+  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
+  std::vector<EffectSetting> rest = without(effects, position);
+  const bool law_stays = std::ranges::any_of(rest, is_law);
+  const bool is_another_law = candidate.type->replacement != nullptr;
+  if (is_found(candidate.type) || (law_stays && (is_another_law || is_of_law(*candidate.type)))) return {};
+  if (is_another_law) std::erase_if(rest, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
+  std::vector<EffectSetting> instead = candidate.fit.effects;
+  std::erase_if(instead, [&](const EffectSetting& e) { return e.type != candidate.type && is_found(e.type); });
+  instead.insert(instead.end(), rest.begin(), rest.end());
+  std::vector<std::vector<EffectSetting>> starts{instead};
+  if (!candidate.fit.with_nuisance) return starts;
+  for (const EffectSetting& number : wrong_numbers(problem, candidate.fit)) {
+    const bool is_new = !is_found(number.type) && number.type != candidate.type;
+    if (is_new && !(law_stays && is_of_law(*number.type))) instead.push_back(number);
+  }
+  if (instead.size() > starts.front().size()) starts.push_back(std::move(instead));
+  return starts;
+}
+
+/// Whether a law that replaces the model's has the same form: it differs in its numbers alone.
+bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
+  if (!model.make_law) return false;
+  SiteModel replaced = model;
+  add_effect(replaced, replacement);
+  const std::unique_ptr<Law> law = law_of(replaced);
+  const std::unique_ptr<Law> own = model.make_law();
+  const Law& first = *law;
+  const Law& second = *own;
+  return typeid(first) == typeid(second);
+}
+
+/// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
+/// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
+/// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
+/// become a law of the same form. A number of the model is expected to be off: an effect that is none has to be
+/// decidedly better.
+void exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
+  const std::vector<EffectSetting> effects = growth.fit.effects;
+  const bool is_law = effects[position].type->replacement != nullptr;
+  const auto expected = [&](const EffectType& type) { return is_number(problem, type) ? decisive_gain(problem) : 0.0; };
+  std::vector<double> scores{score_of(problem, growth.fit) + expected(*effects[position].type)};
+  std::optional<Candidate> best;
+  double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
+  const auto compare = [&](std::optional<Candidate> instead) {
+    if (!instead) return;
+    scores.push_back(score_of(problem, instead->fit) + expected(*instead->type));
+    if (scores.back() <= highest) return;
+    highest = scores.back();
+    best = std::move(instead);
+  };
+  std::size_t others = 0;
+  for (const Candidate& candidate : selection.library) {
+    const bool is_another_law = candidate.type->replacement != nullptr;
+    if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
+    const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
+    if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
+    const std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
+    if (!is_of_law_too && !starts.empty()) ++others;
+    for (const std::vector<EffectSetting>& start : starts) {
+      std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
+      if (instead && refutation(problem, *instead).empty()) compare(std::move(instead));
+    }
+  }
+  // Which of the numbers are needed is asked at the end.
+  if (is_law) {
+    std::vector<EffectSetting> start = without(effects, position);
+    for (const EffectSetting& number : numbers_of(problem)) {
+      if (!holds(start, number.type)) start.push_back(number);
+    }
+    const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
+    if (holds(start, stiffness)) compare(fit_together(problem, stiffness, start, refit_effects));
+  }
+  if (!best) return;
+  const auto place = std::ranges::max_element(scores) - scores.begin();
+  growth.accepted.push_back({best->type, softmax(scores)[static_cast<std::size_t>(place)]});
+  growth.fit = std::move(best->fit);
+}
+
+/// Each chosen effect in turn.
+void settle_effects(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
+  for (std::size_t position = 0; position < growth.fit.effects.size(); ++position) {
+    exchange(problem, selection, position, growth);
+  }
+}
+
+/// A number of the model in place of two effects of its interface that are not both numbers: a bandwidth that is off is
+/// nearly a delay and another bandwidth. Two have to be decidedly better than one that is expected to be off.
+void merge(const IdentificationProblem& problem, Growth& growth) {
+  const std::vector<EffectSetting> effects = growth.fit.effects;
+  const double both = score_of(problem, growth.fit);
+  std::optional<Candidate> best;
+  double highest = both - decisive_gain(problem);
+  const auto try_instead_of = [&](std::size_t first, std::size_t second, const EffectSetting& number) {
+    std::vector<EffectSetting> start = without(without(effects, second), first);
+    start.push_back(number);
+    std::optional<Candidate> one = fit_together(problem, number.type, start, search_effects);
+    if (!one || !refutation(problem, *one).empty() || score_of(problem, one->fit) <= highest) return;
+    highest = score_of(problem, one->fit);
+    best = std::move(one);
+  };
+  for (const EffectSetting& number : numbers_of(problem)) {
+    if (holds(effects, number.type)) continue;
+    for (std::size_t second = 1; second < effects.size(); ++second) {
+      for (std::size_t first = 0; first < second; ++first) {
+        const EffectType& one = *effects[first].type;
+        const EffectType& other = *effects[second].type;
+        const bool are_its = one.interface == number.type->interface && other.interface == number.type->interface;
+        const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
+        if (!are_its || is_a_law || (is_number(problem, one) && is_number(problem, other))) continue;
+        try_instead_of(first, second, number);
+      }
+    }
+  }
+  if (!best) return;
+  growth.accepted.push_back({best->type, softmax({highest + decisive_gain(problem), both}).front()});
+  growth.fit = std::move(best->fit);
+}
+
+}  // namespace
+
+std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& by_numbers, const Growth& from,
+                            const std::vector<Candidate>& beside) {
+  const Candidate* const next = first_that_earns(problem, by_numbers, from.fit, beside);
+  if (next == nullptr) return {};
+  Growth growth = from;
+  growth.fit = next->fit;
+  const auto position = static_cast<std::size_t>(next - beside.data());
+  growth.accepted.push_back({next->type, softmax(scores_of(beside))[position]});
+  return growth;
+}
+
+void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
+                  Numbers numbers, std::size_t threads, const PartProgress& progress, Growth& growth) {
+  for (std::size_t round = 0;
+       growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
+    const std::vector<Candidate> beside = fit_beside(problem, coarse, growth.fit.effects, numbers, threads,
+                                                     progress.round(round, 2 * tuning::kEffectsMax));
+    if (std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside)) {
+      growth = std::move(*next);
+      numbers = Numbers::as_found;
+    } else if (numbers == Numbers::as_found) {
+      numbers = Numbers::free;
+    } else {
+      break;
+    }
+  }
+}
+
+namespace {
+
+/// An effect that earned its place beside those that are left.
+bool is_lost(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& left,
+             const FitOutcome& before) {
+  return std::ranges::any_of(before.effects, [&](const EffectSetting& effect) {
+    return !holds(left.effects, effect.type) &&
+           earns_its_place(problem, by_numbers, left, {.type = effect.type, .fit = before});
+  });
+}
+
+}  // namespace
+
+bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
+            Growth& growth) {
+  const Growth before = growth;
+  const std::size_t count = before.fit.effects.size();
+  // By itself an effect has been compared already, but for a law with what the numbers of the model's own may do.
+  if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
+  growth.fit = refit_effects(coarse, growth.fit.effects, false);
+  settle_effects(coarse, selection, growth);
+  merge(coarse, growth);
+  prune(coarse, refit_effects(coarse, selection.by_numbers.effects, false), growth.fit);
+  growth.fit = refit_effects(problem, growth.fit.effects, false);
+  if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
+    growth = before;
+    prune(problem, selection.by_numbers, growth.fit);
+    // One effect at a time may go astray: then all are kept.
+    if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) growth = before;
+  }
+  return growth.fit.effects.size() < count;
+}
+
+}  // namespace hybridtest

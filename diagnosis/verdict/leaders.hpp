@@ -1,0 +1,15 @@
+#pragma once
+
+#include "diagnosis/verdict/growth.hpp"
+
+namespace hybridtest {
+
+/// The numbers of the model in the library, where none of them shows by itself that it is off.
+void add_numbers(Selection& selection);
+
+/// The best of the leading candidates; of a sensor only if none of a stage changes the prediction alike. The
+/// probabilities become those of what was found with them.
+[[nodiscard]] Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                Selection& selection, std::size_t threads, const PartProgress& progress);
+
+}  // namespace hybridtest
