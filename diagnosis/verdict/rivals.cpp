@@ -39,6 +39,11 @@ Eigen::VectorXd changes_of(const IdentificationProblem& problem, const FitOutcom
   return stacked_changes(problem, [&](std::size_t i) { return fit.segments[i].change; });
 }
 
+/// A difference that is small against what an effect changes.
+bool is_small_against(const Eigen::VectorXd& changes, const Eigen::VectorXd& difference) {
+  return difference.norm() <= std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature) * changes.norm();
+}
+
 /// What a chosen effect changes beside the others.
 struct Place {
   const FitOutcome* chosen = nullptr;
@@ -51,11 +56,7 @@ struct Place {
 
   [[nodiscard]] const EffectType* type() const { return chosen->effects[position].type; }
 
-  /// A difference that is small against what the effect changes.
-  [[nodiscard]] bool is_small(const Eigen::VectorXd& difference) const {
-    const double within = std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature);
-    return difference.norm() <= within * alone.norm();
-  }
+  [[nodiscard]] bool is_small(const Eigen::VectorXd& difference) const { return is_small_against(alone, difference); }
   /// Whether changes have the same signature, and so the same size.
   [[nodiscard]] bool is_same(const Eigen::VectorXd& changes) const { return is_small(changes - all); }
   /// Whether the others are beside a rival, the first effect of its fit, as they are beside the effect.
@@ -179,12 +180,13 @@ bool is_told(const IdentificationProblem& problem, const FitOutcome& rival, cons
   return loss.nats - of_numbers > std::max(loss.standard_error, decides) && !is_negligible(problem, rival, chosen);
 }
 
-/// Whether something speaks against the rival by itself. That the effect may also be there in part is no doubt about
-/// it: it is in the effect's place.
-bool is_refuted(IdentificationProblem problem, const Place& place, const Candidate& rival) {
+/// Whether something speaks against the rival by itself. That what it stands for may also be there in part is no doubt
+/// about it: it is in its place.
+template <class StandsFor>
+bool is_refuted(IdentificationProblem problem, StandsFor&& stands_for, const Candidate& rival) {
   for (FitSegment& fit : problem.segments) {
     for (std::size_t i = 0; i < fit.number_types.size(); ++i) {
-      if (fit.number_types[i] == place.type()) fit.number_slopes.col(static_cast<Eigen::Index>(i)).setZero();
+      if (stands_for(*fit.number_types[i])) fit.number_slopes.col(static_cast<Eigen::Index>(i)).setZero();
     }
   }
   const Candidate instead{.type = rival.type,
@@ -204,7 +206,8 @@ bool is_rival(const IdentificationProblem& problem, const VerdictPolicy& policy,
   }
   return are_slight(problem, place, rival.fit, tuning::kNumbersWithin) &&
          free_parameters(problem, rival.fit, 0) <= free_parameters(problem, *place.chosen, place.position) &&
-         !is_refuted(problem, place, rival);
+         !is_refuted(
+             problem, [&](const EffectType& type) { return &type == place.type(); }, rival);
 }
 
 /// The effect in the place of the chosen one, fitted at the full rate; beside numbers of the model only where it is no
@@ -277,7 +280,43 @@ double probability_of_all(const Selection& selection, const Rivals& rivals) {
   return std::min(1.0, sum);
 }
 
+/// Whether a lag of the displacement transducer could look like it: a motion that comes late, or damping.
+bool is_late_motion(const EffectType& type) {
+  const ModelNumber number = type.traits.number;
+  return type.interface == EffectInterface::transfer_system &&
+         (number == ModelNumber::delay || number == ModelNumber::bandwidth || type.name == "bandwidth");
+}
+
+bool is_damping(const EffectType& type) {
+  return type.interface == EffectInterface::specimen && type.traits.number == ModelNumber::damping;
+}
+
 }  // namespace
+
+std::optional<Candidate> lag_of_transducer(IdentificationProblem whole, const std::vector<EffectSetting>& found,
+                                           const VerdictPolicy& policy) try {
+  const EffectType* const lag = find_effect(EffectInterface::displacement_sensor, "lag");
+  const auto is_late = [](const EffectSetting& effect) { return is_late_motion(*effect.type); };
+  const auto damps = [](const EffectSetting& effect) { return is_damping(*effect.type) && effect.values[0] > 0.0; };
+  if (std::ranges::none_of(found, is_late) || std::ranges::none_of(found, damps)) return {};
+  if (std::ranges::find(found, lag, &EffectSetting::type) != found.end()) return {};
+  settle_noise(whole, refit_effects(whole, found, false));
+  const FitOutcome both = refit_effects(whole, found, false);
+  std::vector<EffectSetting> effects{absent(*lag)};
+  std::ranges::copy_if(found, std::back_inserter(effects),
+                       [&](const EffectSetting& effect) { return !is_late(effect) && !damps(effect); });
+  Candidate one{.type = lag, .fit = search_effects(whole, effects, false)};
+  const Eigen::VectorXd all = changes_of(whole, both);
+  effects.erase(effects.begin());
+  const Eigen::VectorXd stood_for = all - changes_by(whole, effects);
+  if (!is_small_against(stood_for, changes_of(whole, one.fit) - all)) return {};
+  if (is_told(whole, one.fit, both, nats_that_decide(policy.credible))) return {};
+  const auto stands_for = [](const EffectType& type) { return is_late_motion(type) || is_damping(type); };
+  if (is_refuted(whole, stands_for, one)) return {};
+  return one;
+} catch (const ConfigError&) {
+  return {};
+}
 
 void find_rivals(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
                  const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress, Judgement& judgement) {

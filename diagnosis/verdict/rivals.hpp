@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "diagnosis/verdict/causes.hpp"
 
 namespace hybridtest {
@@ -24,5 +27,15 @@ namespace hybridtest {
 /// @param coarse   the same problem at a lower rate, for the searches.
 void find_rivals(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
                  const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress, Judgement& judgement);
+
+/// A displacement transducer that lags shows at two channels: the motion seems late, as by a delay or a bandwidth of
+/// the actuator, and the force early, as by damping of the specimen. The channels are judged one after the other, which
+/// finds these two. The one lag is a rival of the damping if the recordings do not tell it from both together.
+/// @param whole   all channels, judged together.
+/// @param found   the effects of all channels.
+/// @return the lag first, beside all that it does not stand for; nothing where found effects do not look like one.
+[[nodiscard]] std::optional<Candidate> lag_of_transducer(IdentificationProblem whole,
+                                                         const std::vector<EffectSetting>& found,
+                                                         const VerdictPolicy& policy);
 
 }  // namespace hybridtest
