@@ -328,23 +328,21 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
 /// Where damping is named beside a motion that comes late: one lag of the transducer instead of both, if it is a rival.
 void find_lag_of_transducer(const IdentificationProblem& whole, const VerdictPolicy& policy,
                             std::vector<Stage>& stages) {
-  const auto damping = [](const Stage& stage) -> std::optional<std::size_t> {
+  const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
+  for (Stage& stage : stages) {
     const std::vector<EffectSetting>& effects = stage.selection.chosen.effects;
-    const EffectType* const type = find_effect(EffectInterface::specimen, ModelNumber::damping);
-    const auto found = std::ranges::find(effects, type, &EffectSetting::type);
-    if (!stage.judgement.may_be_set || stage.judgement.rivals || found == effects.end()) return {};
+    const auto found = std::ranges::find(effects, damping, &EffectSetting::type);
+    if (!stage.judgement.may_be_set || stage.judgement.rivals || found == effects.end()) continue;
     const auto position = static_cast<std::size_t>(found - effects.begin());
-    return stage.judgement.is_correction(position) ? std::nullopt : std::optional{position};
-  };
-  const auto stage = std::ranges::find_if(stages, [&](const Stage& one) { return damping(one).has_value(); });
-  if (stage == stages.end()) return;
-  std::optional<Candidate> lag = lag_of_transducer(whole, causes_of(stages, {}), policy);
-  if (!lag) return;
-  Rivals rivals{.chosen = *damping(*stage), .fitted = {}, .probability = 0.0};
-  rivals.probability = 0.5 * stage->selection.chosen_probabilities[rivals.chosen];
-  rivals.fitted.push_back(std::move(*lag));
-  stage->judgement.rivals = std::move(rivals);
-  if (stage->judgement.may_be_set) stage->judgement.verdict = Verdict::set;
+    if (stage.judgement.is_correction(position)) continue;
+    std::optional<Candidate> lag = lag_of_transducer(whole, causes_of(stages, {}), policy);
+    if (!lag) return;
+    stage.judgement.rivals = Rivals{.chosen = position,
+                                    .fitted = {std::move(*lag)},
+                                    .probability = 0.5 * stage.selection.chosen_probabilities[position]};
+    stage.judgement.verdict = Verdict::set;
+    return;
+  }
 }
 
 /// The channels of the chain one after the other. What explains a channel is added to the model before the next one is

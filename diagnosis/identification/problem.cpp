@@ -406,12 +406,6 @@ bool is_spring(const SiteModel& model, double largest_m) {
   });
 }
 
-/// Whether some motion, recorded or larger, meets a strength of the law. A law without stiffness has none to be wrong.
-bool has_strength(const SiteModel& model, double reached_m) {
-  if (is_spring(model, reached_m / tuning::kResolution)) return false;
-  return !is_spring(model, reached_m) || model.make_law()->initial_stiffness_n_per_m() > 0.0;
-}
-
 /// A floor is an estimate: a small excess does not count as a gap beside a clear one.
 bool is_clear(const FitSegment& fit) {
   return root_mean_square(fit.measured - fit.baseline) > tuning::kNearFloor / fit.weight;
@@ -460,7 +454,9 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   for (const InputRange& input : problem.inputs) mark_at_reference(input, segments);
   const double reached_m = problem.scales.of(ParameterScale::displacement_m);
   problem.law_is_spring = is_spring(model, reached_m);
-  problem.law_has_strength = has_strength(model, reached_m);
+  // Where it is not reached, a stiffness that the law does not have cannot be off by a ratio.
+  problem.law_has_strength = !is_spring(model, reached_m / tuning::kResolution) &&
+                             (!problem.law_is_spring || model.make_law()->initial_stiffness_n_per_m() > 0.0);
   for (Segment& segment : segments) problem.segments.push_back(prepare(problem, std::move(segment), found));
   relate_channels(problem.segments);
   for (FitSegment& fit : problem.segments) take_noise(fit, fit.measured - fit.baseline);

@@ -67,7 +67,7 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
                      result.low, result.high / tuning::kLogarithmicFactor);
       break;
     case SearchLimit::secant_stiffness:
-      if (!problem.law_is_spring || !problem.model.make_law) break;
+      if (!problem.law_is_spring) break;
       result.high = std::max(result.high, range.high * problem.scales.of(ParameterScale::stiffness_n_per_m) /
                                               problem.model.make_law()->initial_stiffness_n_per_m());
       break;

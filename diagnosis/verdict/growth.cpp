@@ -253,8 +253,10 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
     std::vector<EffectSetting> start = without(without(effects, second), first);
     start.push_back(number);
     std::optional<Candidate> one = fit_together(problem, number.type, start, search_effects);
-    if (!one || !refutation(problem, *one).empty() || score_of(problem, one->fit) <= highest) return;
-    highest = score_of(problem, one->fit);
+    if (!one || !refutation(problem, *one).empty()) return;
+    const double score = score_of(problem, one->fit);
+    if (score <= highest) return;
+    highest = score;
     best = std::move(one);
   };
   for (const EffectSetting& number : numbers_of(problem)) {
@@ -320,10 +322,10 @@ bool is_lost(const IdentificationProblem& problem, const FitOutcome& by_numbers,
 
 bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
             Growth& growth) {
-  const Growth before = growth;
-  const std::size_t count = before.fit.effects.size();
+  const std::size_t count = growth.fit.effects.size();
   // By itself an effect has been compared already, but for a law with what the numbers of the model's own may do.
   if (count == 0 || (count == 1 && growth.fit.effects.front().type->replacement == nullptr)) return false;
+  const Growth before = growth;
   growth.fit = refit_effects(coarse, growth.fit.effects, false);
   settle_effects(coarse, selection, growth);
   merge(coarse, growth);

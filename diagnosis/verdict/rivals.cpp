@@ -39,9 +39,9 @@ Eigen::VectorXd changes_of(const IdentificationProblem& problem, const FitOutcom
   return stacked_changes(problem, [&](std::size_t i) { return fit.segments[i].change; });
 }
 
-/// A difference that is small against what an effect changes.
-bool is_small_against(const Eigen::VectorXd& changes, const Eigen::VectorXd& difference) {
-  return difference.norm() <= std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature) * changes.norm();
+/// Of a difference, against what an effect changes.
+bool is_small(const Eigen::VectorXd& difference, const Eigen::VectorXd& change) {
+  return difference.norm() <= std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature) * change.norm();
 }
 
 /// What a chosen effect changes beside the others.
@@ -56,13 +56,12 @@ struct Place {
 
   [[nodiscard]] const EffectType* type() const { return chosen->effects[position].type; }
 
-  [[nodiscard]] bool is_small(const Eigen::VectorXd& difference) const { return is_small_against(alone, difference); }
   /// Whether changes have the same signature, and so the same size.
-  [[nodiscard]] bool is_same(const Eigen::VectorXd& changes) const { return is_small(changes - all); }
+  [[nodiscard]] bool is_same(const Eigen::VectorXd& changes) const { return is_small(changes - all, alone); }
   /// Whether the others are beside a rival, the first effect of its fit, as they are beside the effect.
   [[nodiscard]] bool has_same_others(const IdentificationProblem& problem, const FitOutcome& rival) const {
     const std::span beside{rival.effects.data() + 1, others.size()};
-    return is_small(changes_by(problem, beside) - by_others);
+    return is_small(changes_by(problem, beside) - by_others, alone);
   }
 };
 
@@ -155,7 +154,7 @@ bool are_slight(const IdentificationProblem& problem, const Place& place, const 
       stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd { return problem.segments[i].measured; });
   const Eigen::VectorXd own = by_effects - changes_by(problem, std::span{fit.effects}.subspan(1));
   const bool is_slight =
-      by_numbers.norm() <= within * measured.norm() || place.is_small(by_numbers - place.by_corrections);
+      by_numbers.norm() <= within * measured.norm() || is_small(by_numbers - place.by_corrections, place.alone);
   return is_slight && by_numbers.norm() <= own.norm();
 }
 
@@ -288,7 +287,7 @@ bool is_late_motion(const EffectType& type) {
 }
 
 bool is_damping(const EffectType& type) {
-  return type.interface == EffectInterface::specimen && type.traits.number == ModelNumber::damping;
+  return &type == find_effect(EffectInterface::specimen, ModelNumber::damping);
 }
 
 }  // namespace
@@ -302,14 +301,13 @@ std::optional<Candidate> lag_of_transducer(IdentificationProblem whole, const st
   if (std::ranges::find(found, lag, &EffectSetting::type) != found.end()) return {};
   settle_noise(whole, refit_effects(whole, found, false));
   const FitOutcome both = refit_effects(whole, found, false);
-  std::vector<EffectSetting> effects{absent(*lag)};
-  std::ranges::copy_if(found, std::back_inserter(effects),
-                       [&](const EffectSetting& effect) { return !is_late(effect) && !damps(effect); });
+  std::vector<EffectSetting> rest = found;
+  std::erase_if(rest, [&](const EffectSetting& effect) { return is_late(effect) || damps(effect); });
+  std::vector<EffectSetting> effects = rest;
+  effects.insert(effects.begin(), absent(*lag));
   Candidate one{.type = lag, .fit = search_effects(whole, effects, false)};
   const Eigen::VectorXd all = changes_of(whole, both);
-  effects.erase(effects.begin());
-  const Eigen::VectorXd stood_for = all - changes_by(whole, effects);
-  if (!is_small_against(stood_for, changes_of(whole, one.fit) - all)) return {};
+  if (!is_small(changes_of(whole, one.fit) - all, all - changes_by(whole, rest))) return {};
   if (is_told(whole, one.fit, both, nats_that_decide(policy.credible))) return {};
   const auto stands_for = [](const EffectType& type) { return is_late_motion(type) || is_damping(type); };
   if (is_refuted(whole, stands_for, one)) return {};

@@ -44,9 +44,11 @@ class Stiction final : public Effect {
     } else {
       behind_m_ += travel_m;
       const double beyond_m = std::abs(behind_m_) - stick_displacement_m_;
-      slips_ = beyond_m > 0.0;  // since this share of a sample
-      const double share = beyond_m / std::abs(travel_m);
-      if (slips_) behind_m_ = std::copysign(stick_displacement_m_ * std::exp(-decay_ * share), behind_m_);
+      slips_ = beyond_m > 0.0;
+      if (slips_) {
+        const double share = beyond_m / std::abs(travel_m);  // of the sample, since when
+        behind_m_ = std::copysign(stick_displacement_m_ * std::exp(-decay_ * share), behind_m_);
+      }
     }
     displacement_m -= behind_m_;
   }

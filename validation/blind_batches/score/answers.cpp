@@ -380,24 +380,21 @@ Answer with_true_corrections(const KeyCase& key, Answer answer) {
   return answer;
 }
 
-Answer without_tolerated(const KeyCase& key, Answer answer) {
-  if (!answer.names_a_cause() || answer.causes.empty()) return answer;
-  const bool is_set = answer.is_set();
-  Answer whole = answer;
+Answer without_tolerated(const KeyCase& key, Answer given) {
+  if (!given.names_a_cause()) return given;
+  Answer answer = given;
   const std::size_t dropped =
       std::erase_if(answer.causes, [&](const AnsweredCause& cause) { return is_in(key.tolerated, cause); });
-  if (is_set) {
-    // Members of a set share its probability. What has one of its own is a name, beside a set of what is tolerated.
-    const bool names_are_left =
-        dropped > 0 && !answer.causes.empty() &&
-        std::ranges::all_of(answer.causes, [](const AnsweredCause& cause) { return cause.probability >= kSure; });
-    if (names_are_left) {
-      answer.verdict = "named";
-      return answer;
-    }
-    if (cause_is_right(key, whole)) return whole;
+  if (dropped == 0) return given;
+  // Members of a set share its probability. What has one of its own is a name, beside a set of what is tolerated.
+  const bool are_names = !answer.is_set() || std::ranges::all_of(answer.causes, [](const AnsweredCause& cause) {
+    return cause.probability >= kSure;
+  });
+  if (are_names && !answer.causes.empty()) {
+    if (answer.is_set()) answer.verdict = "named";
+    return answer;
   }
-  if (dropped == 0 || (!answer.causes.empty() && !is_set)) return answer;
+  if (given.is_set() && cause_is_right(key, given)) return given;
   answer.causes.clear();
   answer.verdict = answer.verdict == "partial" ? "unknown" : "none";
   return answer;

@@ -113,7 +113,7 @@ struct ParameterError {
 
 /// The answer without the causes that the key tolerates. A set with one of them, and a list of nothing else, says
 /// `none` of the effect; a `partial` of nothing else says `unknown`.
-[[nodiscard]] Answer without_tolerated(const KeyCase& key, Answer answer);
+[[nodiscard]] Answer without_tolerated(const KeyCase& key, Answer given);
 
 /// An answer compared with the truth. Fields that do not apply to a case are empty.
 struct MarkedCase {
