@@ -332,10 +332,10 @@ bool settle(const IdentificationProblem& problem, const IdentificationProblem& c
   prune(coarse, refit_effects(coarse, selection.by_numbers.effects, false), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
-    growth = before;
-    prune(problem, selection.by_numbers, growth.fit);
-    // One effect at a time may go astray: then all are kept.
-    if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) growth = before;
+    Growth at_full_rate = before;
+    prune(problem, selection.by_numbers, at_full_rate.fit);
+    // One effect at a time may go astray there, too.
+    if (score_of(problem, at_full_rate.fit) > score_of(problem, growth.fit)) growth = std::move(at_full_rate);
   }
   return growth.fit.effects.size() < count;
 }
