@@ -306,11 +306,15 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     if (!stage.has_causes()) continue;
     // Beside the causes of the other stages, so that this one's own part is judged.
     const std::vector<EffectSetting> causes = causes_of(stages, {});
-    const Verdict verdict = verdict_carried_over(
+    Verdict verdict = verdict_carried_over(
         stage.judgement.verdict,
         shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed),
         policy);
     if (verdict == stage.judgement.verdict) continue;
+    // A gap that is clear where it was fitted stays one: with causes that do not hold, noise may be taken for anything.
+    if (verdict == Verdict::none && stands_above_floor(stage.problem, stage.selection.baseline, tuning::kNearFloor)) {
+      verdict = Verdict::unknown;
+    }
     if (verdict == Verdict::partial) {
       notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
                       " leaves more of the held-out recordings than of the fitted ones.");
@@ -322,6 +326,27 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     stage.judgement = Judgement{};
     stage.judgement.verdict = verdict;
     stage.judgement.gap_left = 1.0;
+  }
+}
+
+/// What a channel names of the displacement sensor also changes the channels that were judged before: what was found
+/// there is fitted again beside it. Each would explain the same twice, otherwise.
+void fit_beside_later(const std::vector<Segment>& segments, const std::vector<Channel>& outputs,
+                      std::vector<Stage>& stages) {
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    Stage& stage = stages[i];
+    if (!stage.changes_model()) continue;
+    SiteModel beside = stage.problem.model;
+    for (const EffectSetting& effect : causes_of(std::span{stages}.subspan(i + 1), {})) {
+      const bool is_seen = std::ranges::any_of(stage.problem.segments, [&](const FitSegment& fit) {
+        return fit.is_suspect && fit.segment.touched_by(*effect.type);
+      });
+      if (is_seen) add_effect(beside, effect);
+    }
+    if (beside.effects.size() == stage.problem.model.effects.size()) continue;
+    IdentificationProblem again = judged_at(make_problem(beside, segments), outputs[i]);
+    settle_noise(again, refit_effects(again, stage.selection.chosen.effects, false));
+    stage.selection.chosen = refit_effects(again, stage.selection.chosen.effects, false);
   }
 }
 
@@ -368,8 +393,8 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     const PartProgress of_stage = progress.round(i, outputs.size());
     stage.problem.progress = of_stage;
     thinner.progress = of_stage;
-    stage.selection =
-        select_effects(stage.problem, thinner, settings.threads, of_stage.part(0.0, tuning::kEffectsChosen));
+    stage.selection = select_effects(stage.problem, thinner, settings.policy, settings.threads,
+                                     of_stage.part(0.0, tuning::kEffectsChosen));
     settle_noise(stage.problem, stage.selection.chosen);
     stage.judgement = judge(stage.problem, stage.selection, settings.policy);
     find_rivals(stage.problem, thinner, stage.selection, settings.policy, settings.threads,
@@ -386,6 +411,7 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     }
     stages.push_back(std::move(stage));
   }
+  fit_beside_later(segments, outputs, stages);
   find_lag_of_transducer(whole, settings.policy, stages);
   return stages;
 }

@@ -110,7 +110,7 @@ inline constexpr std::array kRows{
     SearchRange{transfer_system, "backlash", "clearance_m", Scale::displacement_m, 0.001, 1.0},
     SearchRange{transfer_system, "deadband", "deadband_m", Scale::displacement_m, 0.001, 0.5},
     SearchRange{transfer_system, "velocity_limit", "velocity_limit_m_per_s", Scale::velocity_m_per_s, 0.02, 1.2},
-    SearchRange{transfer_system, "stroke_limit", "stroke_limit_m", Scale::displacement_m, 0.2, 1.1},
+    SearchRange{transfer_system, "stroke_limit", "stroke_limit_m", Scale::displacement_m, 0.05, 1.1},
     SearchRange{transfer_system, "compliance", "compliance_m_per_n", Scale::compliance_m_per_n, 0.0, 0.5},
     SearchRange{transfer_system, "compliance", "closed_joint_ratio", Scale::one, 0.0, 1.0},
     SearchRange{transfer_system, "compliance", "closing_force_n", Scale::force_n, 0.02, 0.3},

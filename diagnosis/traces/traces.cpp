@@ -82,12 +82,55 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
   lags.held /= moving;
   lags.held_again /= moving;
   lags.mean /= found;
-  for (const auto& [lag, count] : fresh) lags.fresh_at_usual = std::max(lags.fresh_at_usual, count / fresh_count);
+  lags.shortest = std::numeric_limits<int>::max();
+  for (const auto& [lag, count] : fresh) {
+    const double share = count / fresh_count;
+    if (share > tuning::kLagsShrinkingMin) lags.shortest = std::min(lags.shortest, lag);
+    if (share <= lags.fresh_at_usual) continue;
+    lags.fresh_at_usual = share;
+    lags.usual = lag;
+  }
   return lags;
 }
 
-std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<const double> received_m,
-                                      double period_s) {
+namespace {
+
+/// Mean age of the newest message that has come, of a delay spread evenly up to `jitter` [all in samples].
+double mean_age(double jitter) {
+  double mean = 0.0;
+  double is_older = 1.0;
+  for (double age = 1.0; is_older > 0.0; age += 1.0) {
+    mean += is_older;
+    is_older *= std::max(0.0, 1.0 - age / jitter);
+  }
+  return mean;
+}
+
+/// The jitter with this mean age [samples]; halving, to a thousandth of it.
+double jitter_of(double mean) {
+  double low = 0.0;
+  double high = 2.0;
+  while (mean_age(high) < mean) high *= 2.0;
+  while (high - low > tuning::kResolution * high) {
+    const double middle = 0.5 * (low + high);
+    (mean_age(middle) < mean ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The value of the parameter that has to be given; the others are left out.
+Trace network_trace(const EffectType& type, double value) {
+  Trace trace{.effect = {.type = &type, .values = {}}, .in = Channel::target_displacement};
+  for (const EffectParameter& parameter : type.parameters) {
+    trace.effect.values.push_back(std::isnan(parameter.fallback) ? value : parameter.fallback);
+  }
+  return trace;
+}
+
+}  // namespace
+
+std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<const double> received_m,
+                                     double period_s) {
   const NetworkLags lags = lags_between(sent_m, received_m, period_s);
   if (!lags.fluctuate()) return {};
   const bool are_alike = lags.fresh_at_usual > tuning::kEquallyLateMin;
@@ -95,18 +138,24 @@ std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<
   const double twice = lags.held * lags.held;
   const bool is_short_jitter = 1.0 - lags.fresh_at_usual > 0.5 * twice && lags.held_again < 0.5 * twice;
   const bool is_loss = are_alike && !is_short_jitter;
-  const EffectType* const type =
+  // A message that is late at all shows a sample later.
+  const int latency = is_loss ? lags.usual : std::max(0, lags.shortest - 1);
+  const double jitter = are_alike ? 1.0 / (1.0 - lags.held) : jitter_of(lags.mean - latency);
+  const EffectType* const fluctuating =
       find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
-  if (type == nullptr) return {};
-  // A uniformly distributed delay up to J has the mean J / 2. A short one is longer than a period in 1 - period / J.
-  const double jitter_s = are_alike ? period_s / (1.0 - lags.held) : 2.0 * lags.mean * period_s;
-  const double value = is_loss ? lags.held : jitter_s;
-  Trace trace{.effect = {.type = type, .values = {}}, .in = Channel::target_displacement};
-  for (const EffectParameter& parameter : type->parameters) {
-    trace.effect.values.push_back(std::isnan(parameter.fallback) ? value : parameter.fallback);
-  }
-  trace.gap_share = gap_share(sent_m, received_m);
-  return trace;
+  const EffectType* const constant = find_effect(EffectInterface::network, "latency");
+  if (fluctuating == nullptr || constant == nullptr) return {};
+  std::vector<Trace> traces{network_trace(*fluctuating, is_loss ? lags.held : jitter * period_s)};
+  traces.front().gap_share = gap_share(sent_m, received_m);
+  if (latency == 0) return traces;
+  std::vector<double> late_m(sent_m.size(), sent_m.front());
+  std::ranges::copy(sent_m.first(sent_m.size() - static_cast<std::size_t>(latency)), late_m.begin() + latency);
+  traces.push_back(network_trace(*constant, latency * period_s));
+  traces.back().probability = 0.5;  // clocks that are off shift all targets alike
+  const double beside = std::min(traces.front().gap_share, gap_share(late_m, received_m));
+  traces.back().gap_share = traces.front().gap_share - beside;
+  traces.front().gap_share = beside;
+  return traces;
 }
 
 namespace {
@@ -247,8 +296,8 @@ std::vector<Trace> traces_of(const Recording& recording, const DofRecording& dof
     if (trace) traces.push_back(std::move(*trace));
   };
   if (!recording.is_quasi_static && dof.has(Channel::sent_displacement) && dof.has(Channel::target_displacement)) {
-    add(trace_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement),
-                         recording.sample_period_s));
+    traces = traces_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement),
+                               recording.sample_period_s);
   }
   add(trace_of_sensor(EffectInterface::displacement_sensor, Channel::measured_displacement,
                       dof.of(Channel::measured_displacement)));

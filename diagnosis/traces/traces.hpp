@@ -12,8 +12,9 @@ namespace hybridtest {
 /// An effect found directly in the recorded values; it needs no fit, and no fit could follow it sample by sample.
 struct Trace {
   EffectSetting effect;
-  Channel in{};            // the channel whose gap it causes
-  double gap_share = 0.0;  // mean square of that gap over the channel's own, summed over recordings
+  Channel in{};              // the channel whose gap it causes
+  double gap_share = 0.0;    // mean square of that gap over the channel's own, summed over recordings
+  double probability = 1.0;  // less where another effect leaves the same
 };
 
 /// Whether find_traces() searches this kind of effect: a random one with a seed, or a coarse converter.
@@ -34,6 +35,8 @@ struct NetworkLags {
   double held = 0.0;            // share of moving samples that repeat the target before
   double held_again = 0.0;      // and of those that repeat one that was a repetition already
   double mean = 0.0;            // samples
+  int usual = 0;                // most frequent one of fresh targets [samples]
+  int shortest = 0;             // that fresh targets have more than by chance [samples]
 
   /// Whether the lags go up and down; those of a delay or a drift do not.
   [[nodiscard]] bool fluctuate() const noexcept;
@@ -43,12 +46,16 @@ struct NetworkLags {
 [[nodiscard]] NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m,
                                        double period_s);
 
-/// `jitter` or `loss`, if the lags fluctuate. With loss, new targets always have the same delay; with jitter they do
-/// not. A jitter of little more than a sample period leaves most of them alike, too: messages that come too late look
-/// lost. But then the one behind a late message is seldom late as well without showing the late one, so that two
-/// repetitions in a row are rare, and of messages that are lost independently of each other they are not.
-[[nodiscard]] std::optional<Trace> trace_of_network(std::span<const double> sent_m, std::span<const double> received_m,
-                                                    double period_s);
+/// `jitter` or `loss`, if the lags fluctuate, and the `latency` that all targets have besides, if it is a sample or
+/// more. With loss, new targets always have the same delay; with jitter they do not. A jitter of little more than a
+/// sample period leaves most of them alike, too: messages that come too late look lost. But then the one behind a late
+/// message is seldom late as well without showing the late one, so that two repetitions in a row are rare, and of
+/// messages that are lost independently of each other they are not.
+///
+/// Of a jitter J, evenly spread, the newest message that has come is l samples old or less with the chance
+/// 1 - (1 - T/J)(1 - 2T/J)...(1 - lT/J): J is the one with the recorded mean.
+[[nodiscard]] std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<const double> received_m,
+                                                   double period_s);
 
 /// The steps of a coarse converter in readings.
 struct ReadingSteps {

@@ -44,10 +44,18 @@ double nats_that_decide(double probability) noexcept {
 
 namespace {
 
+/// Whether a candidate needs this number of the model beside it, so that it is not in its place.
+bool stands_beside(const IdentificationProblem& problem, const Candidate& candidate, const EffectType* number) {
+  if (!candidate.fit.with_nuisance) return false;
+  const std::vector<EffectSetting> numbers = wrong_numbers(problem, candidate.fit);
+  return std::ranges::find(numbers, number, &EffectSetting::type) != numbers.end();
+}
+
 /// The most probable candidates, until their sum of probabilities is large enough; and, with no more parameters, those
 /// that leave less and those of the same signature that the recordings do not tell from the first one, however rare
 /// they are.
-std::vector<std::size_t> credible(const Selection& selection, double probability) {
+std::vector<std::size_t> credible(const IdentificationProblem& problem, const Selection& selection,
+                                  double probability) {
   const Candidate& first = selection.library.front();
   const double told = nats_that_decide(probability);
   std::vector<std::size_t> members;
@@ -56,7 +64,8 @@ std::vector<std::size_t> credible(const Selection& selection, double probability
     const Candidate& candidate = selection.library[i];
     const double behind = first.held_out - candidate.held_out;
     const bool is_untold = behind <= 0.0 || (behind <= told && are_alike(first.fit, candidate.fit));
-    if (i == 0 || sum < probability || (is_untold && candidate.parameters <= first.parameters)) members.push_back(i);
+    const bool is_simple = candidate.parameters <= first.parameters && !stands_beside(problem, candidate, first.type);
+    if (i == 0 || sum < probability || (is_untold && is_simple)) members.push_back(i);
     sum += selection.probabilities[i];
   }
   return members;
@@ -140,14 +149,17 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.verdict = Verdict::partial;
   }
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
-  const EffectType* const cause = only_cause(problem, selection, judgement);
-  if (cause == nullptr) return judgement;
-  if (selection.library.front().type == cause) {
-    judgement.indistinguishable = credible(selection, policy.credible);
-  } else if (std::ranges::any_of(selection.alike, [&](const AlikeLeader& leader) {
-               return selection.library[leader.position].type == cause;
-             })) {
-    // The cause is one of the leaders still: none was exchanged for it.
+  // One of the leaders still, if none was exchanged for it; perhaps beside other causes.
+  const auto is_told = [&](const AlikeLeader& leader) {
+    for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
+      const bool is_leader = selection.chosen.effects[i].type == selection.library[leader.position].type;
+      if (is_leader && !judgement.is_correction(i)) return true;
+    }
+    return false;
+  };
+  if (selection.library.front().type == only_cause(problem, selection, judgement)) {
+    judgement.indistinguishable = credible(problem, selection, policy.credible);
+  } else if (std::ranges::any_of(selection.alike, is_told)) {
     std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
   }
   if (judgement.may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
@@ -316,7 +328,7 @@ void add_traces(std::span<const Trace> traces, const GapParts& parts, std::vecto
     std::vector<ParameterEstimate> read;
     for (const double value : trace.effect.values) read.push_back({.value = value});
     report::RankedCause cause = ranked(trace.effect, read, {});
-    cause.probability = 1.0;
+    cause.probability = trace.probability;
     cause.share = trace.gap_share / known;
     cause.is_cause = true;
     ranking.push_back(std::move(cause));

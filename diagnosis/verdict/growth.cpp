@@ -89,12 +89,11 @@ Typical typical(const IdentificationProblem& problem, const FitOutcome& by_numbe
   return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
 }
 
-/// A number of the model, or the damping that every model leaves out.
+}  // namespace
+
 bool is_number(const IdentificationProblem& problem, const EffectType& type) {
   return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
 }
-
-}  // namespace
 
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
                      const Candidate& with) {

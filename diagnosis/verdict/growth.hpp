@@ -38,6 +38,9 @@ struct Growth {
 /// Effects without one of them.
 [[nodiscard]] std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position);
 
+/// A number of the model, or the damping that every model leaves out.
+[[nodiscard]] bool is_number(const IdentificationProblem& problem, const EffectType& type);
+
 /// A further effect is accepted only if it improves the score on held-out blocks and explains enough. Wrong numbers of
 /// the model are expected: the score alone decides. Any other effect is also judged by the gap that it leaves and by
 /// the whole gap where it acts that numbers do not explain, unless it leaves hardly anything: even the right effect

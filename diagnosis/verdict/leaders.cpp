@@ -69,12 +69,11 @@ std::optional<Leader> leader_of_numbers(const IdentificationProblem& problem, co
   const FitOutcome& all = selection.by_numbers;
   const auto first = std::ranges::find_if(
       selection.library, [&](const Candidate& candidate) { return holds(all.effects, candidate.type); });
-  const double gain = held_out_score(problem, all) - held_out_score(problem, selection.baseline);
-  if (first == selection.library.end() || gain <= decisive_gain(problem)) return {};
-  FitOutcome needed = all;
-  prune(problem, all, needed);
+  if (first == selection.library.end()) return {};
+  const std::optional<FitOutcome> needed = needed_numbers(problem, selection);
+  if (!needed) return {};
   const auto position = static_cast<std::size_t>(first - selection.library.begin());
-  return Leader{position, {gap_energy(problem, needed).is_clear() ? all : needed, {{first->type, 1.0}}}};
+  return Leader{position, {gap_energy(problem, *needed).is_clear() ? all : *needed, {{first->type, 1.0}}}};
 }
 
 /// Candidates from which further effects are grown. The numbers of the model come first: they are expected to be off.
@@ -147,6 +146,15 @@ void weigh_numbers(const IdentificationProblem& problem, std::size_t position, G
 }
 
 }  // namespace
+
+std::optional<FitOutcome> needed_numbers(const IdentificationProblem& problem, const Selection& selection) {
+  const FitOutcome& all = selection.by_numbers;
+  const double gain = held_out_score(problem, all) - held_out_score(problem, selection.baseline);
+  if (all.effects.empty() || gain <= decisive_gain(problem)) return {};
+  FitOutcome needed = all;
+  prune(problem, all, needed);
+  return needed;
+}
 
 Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                   std::size_t threads, const PartProgress& progress) {

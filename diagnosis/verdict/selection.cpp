@@ -95,6 +95,23 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   selection.alike.clear();
 }
 
+/// Effects that leave more of what the numbers of the model leave than a part allows, and more than the floor, are
+/// dropped: that the numbers are far off is no reason to believe what stands beside them. An effect of the displacement
+/// sensor is chosen by what it explains of the force, too, and stays.
+void keep_what_tells(const IdentificationProblem& problem, const VerdictPolicy& policy, const Selection& selection,
+                     Growth& growth) {
+  const auto is_effect = [&](const EffectSetting& effect) { return !is_number(problem, *effect.type); };
+  const auto shows_in_the_force = [](const EffectSetting& effect) {
+    return effect.type->interface == EffectInterface::displacement_sensor;
+  };
+  const std::vector<EffectSetting>& effects = growth.fit.effects;
+  const GapEnergy left = gap_energy(problem, growth.fit);
+  if (!left.is_clear() || std::ranges::none_of(effects, is_effect)) return;
+  if (std::ranges::any_of(effects, shows_in_the_force)) return;
+  if (left.excess() <= policy.partial_leaves * gap_energy(problem, selection.by_numbers).excess()) return;
+  if (std::optional<FitOutcome> numbers = needed_numbers(problem, selection)) growth.fit = std::move(*numbers);
+}
+
 /// Whether a fit left nothing of an effect.
 bool is_gone(const IdentificationProblem& problem, const EffectSetting& effect) {
   if (place_of(problem.model, *effect.type) != nullptr) return false;
@@ -117,8 +134,8 @@ void drop_gone(const IdentificationProblem& problem, FitOutcome& fit) {
   fit = refit_effects(problem, left, false);
 }
 
-Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, std::size_t threads,
-                         const PartProgress& progress) {
+Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, const VerdictPolicy& policy,
+                         std::size_t threads, const PartProgress& progress) {
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
@@ -148,6 +165,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   look_again(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_special_laws(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen),
                    growth);
+  keep_what_tells(problem, policy, selection, growth);
   if (growth.fit.effects.empty()) return selection;
   // Of what was chosen at the lower rate, the full rate may leave nothing.
   drop_gone(problem, growth.fit);

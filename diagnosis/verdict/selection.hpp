@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnosis/verdict/library_fits.hpp"
+#include "diagnosis/verdict/policy.hpp"
 
 namespace hybridtest {
 
@@ -38,7 +39,7 @@ struct Selection {
 /// @param coarse    the same problem at a lower rate, for the searches.
 /// Both problems take their noise from the best candidate (settle_noise()).
 [[nodiscard]] Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse,
-                                       std::size_t threads, const PartProgress& progress);
+                                       const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress);
 
 /// Of several effects, drops those that a fit left nothing of and that the model does not have.
 void drop_gone(const IdentificationProblem& problem, FitOutcome& fit);

@@ -70,5 +70,16 @@ TEST(OpenedCase, FrameIsFoundBesideAStiffnessThatCarriesOver) {
   EXPECT_THAT(causes_of_case(1625051447, 207), Contains("transfer_system.compliance"));
 }
 
+/// The force is told by a lag of the transducer beside a wrong stiffness; with the actuator's delay as it had been
+/// found without that lag, the motion was late twice, and its backlash did not carry over.
+TEST(OpenedCase, BacklashIsFoundBesideALagThatTheForceShows) {
+  EXPECT_THAT(causes_of_case(336772959, 159), Contains("transfer_system.backlash"));
+}
+
+/// The limit is a tenth of what is commanded.
+TEST(OpenedCase, StrokeLimitFarBelowTheCommandIsFound) {
+  EXPECT_THAT(causes_of_case(3680193090, 13), Contains("transfer_system.stroke_limit"));
+}
+
 }  // namespace
 }  // namespace hybridtest

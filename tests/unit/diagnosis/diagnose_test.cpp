@@ -151,6 +151,19 @@ TEST(Diagnose, JudgesCauseWhereThereIsAGap) {
   EXPECT_GT(diagnosis.report.interface_shrink->variance_removed, 0.999);
 }
 
+/// What fits one recording and not the other explains neither; that the other one has no gap does not take the first
+/// away.
+TEST(Diagnose, ClearGapThatARecordingHeldOutDoesNotHaveIsUnknown) {
+  const auto rubs_n = [](double t) { return spring_n(t) + std::copysign(5.0e3, made_velocity_m_per_s(t)); };
+  std::vector<Recording> recordings{made_recording(made_motion_m, rubs_n), made_recording(made_motion_m, spring_n)};
+  recordings[1].role = RecordingRole::held_out;
+  const Diagnosis diagnosis = diagnose(made_model(), recordings, one_thread());
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
+  recordings[1] = recordings[0];  // control
+  recordings[1].role = RecordingRole::held_out;
+  EXPECT_TRUE(has_cause(diagnose(made_model(), recordings, one_thread()), "specimen", "coulomb_friction"));
+}
+
 /// 20 ms more than is believed: a first-order change of the command would be far off.
 TEST(Diagnose, FindsActualCompensatorSetting) {
   const auto compensator = [](double delay_s) {

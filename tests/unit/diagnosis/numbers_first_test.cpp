@@ -138,5 +138,23 @@ TEST_P(UnreachedStrength, StiffnessIsARatioOfTheLaw) {
 
 INSTANTIATE_TEST_SUITE_P(FromATenthToTenTimes, UnreachedStrength, testing::Values(-0.9, 0.2, 9.0));
 
+/// A load cell whose gain goes up and down by 6 % in three seconds, which is no effect of the library, and a model
+/// whose stiffness is off by this share.
+class GapOfNoLibrary : public testing::TestWithParam<double> {};
+
+TEST_P(GapOfNoLibrary, IsNotToldInPartForAStiffnessThatIsOff) {
+  SiteModel model = made_model();
+  const double believed_n_per_m = (1.0 + GetParam()) * kMadeStiffness_n_per_m;
+  model.make_law = [=] { return std::make_unique<Elastic>(believed_n_per_m); };
+  const Diagnosis diagnosis = diagnosis_of(model, made_recording(made_motion_m, [](double t) {
+                                             const double gain =
+                                                 1.0 + 0.06 * std::sin(2.0 * std::numbers::pi * t / 3.0);
+                                             return gain * kMadeStiffness_n_per_m * made_motion_m(t);
+                                           }));
+  for (const std::string& cause : causes_of(diagnosis)) EXPECT_EQ(cause, "stiffness_error");
+}
+
+INSTANTIATE_TEST_SUITE_P(SoftRightAndStiff, GapOfNoLibrary, testing::Values(-0.2, 0.0, 0.2, 0.3));
+
 }  // namespace
 }  // namespace hybridtest

@@ -1,7 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+
 #include "diagnosis/diagnose.hpp"
+#include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -37,6 +44,54 @@ TEST(TransducerLag, IsNoneWhereMotionAndForceDoNotAgreeOnIt) {
                                                     kDamping_n_s_per_m * made_velocity_m_per_s(t - kLag_s);
                                            }));
   EXPECT_THAT(causes_of(diagnosis), ElementsAre("viscous_damping"));
+}
+
+/// Behind one pole of time constant `lag_s`, of times that follow each other.
+class OnePole {
+ public:
+  OnePole(double lag_s, std::function<double(double)> value) : lag_s_{lag_s}, value_{std::move(value)} {}
+  double operator()(double time_s) {
+    constexpr int kSteps = 20;
+    const double step_s = (time_s - time_s_) / kSteps;
+    for (int i = 1; i <= kSteps; ++i) {
+      read_ += (value_(time_s_ + i * step_s) - read_) * -std::expm1(-step_s / lag_s_);
+    }
+    time_s_ = time_s;
+    return read_;
+  }
+
+ private:
+  double lag_s_;
+  std::function<double(double)> value_;
+  double time_s_ = 0.0;
+  double read_ = 0.0;
+};
+
+TEST(TransducerLag, FoundByTheForceOfALawThatYieldsIsNoPartOfTheActuatorsDelay) {
+  constexpr double kActuator_s = 0.006;
+  constexpr double kTransducer_s = 0.010;
+  const auto law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{
+        .stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 1.5e4, .hardening_ratio = 0.1});
+  };
+  SiteModel model = made_model();
+  model.make_law = law;
+  const auto moved_m = [](double t) { return made_motion_m(std::max(0.0, t - kActuator_s)); };
+  const std::unique_ptr<Law> specimen = law();
+  const Diagnosis diagnosis = diagnosis_of(model, made_recording(OnePole{kTransducer_s, moved_m}, [&](double t) {
+                                             const double force_n = specimen->trial(moved_m(t), 0.0);
+                                             specimen->commit();
+                                             return force_n;
+                                           }));
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("delay", "lag"));
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (!cause.is_cause) continue;
+    // The motion is sampled every 2 ms, the lag undone between the samples: a twentieth of that.
+    const bool is_lag = cause.effect == "lag";
+    EXPECT_NEAR(find_parameter(cause, is_lag ? "time_constant_s" : "delay_s")->value,
+                is_lag ? kTransducer_s : kActuator_s, 1e-4)
+        << cause.effect;
+  }
 }
 
 }  // namespace
