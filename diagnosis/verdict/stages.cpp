@@ -1,0 +1,195 @@
+#include "diagnosis/verdict/stages.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "diagnosis/identification/segment.hpp"
+#include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/rivals.hpp"
+#include "diagnosis/verdict/shrink.hpp"
+
+namespace hybridtest {
+
+using report::Verdict;
+
+bool Stage::concerns(std::string_view interface) const {
+  if (changes_model()) {
+    return std::ranges::any_of(selection.chosen.effects, [&](const EffectSetting& effect) {
+      return name_of(effect.type->interface) == interface;
+    });
+  }
+  return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
+    return fit.is_suspect && name_of(fit.segment.interface) == interface;
+  });
+}
+
+std::vector<EffectSetting> causes_of(std::span<const Stage> stages, std::span<const Trace> traces) {
+  std::vector<EffectSetting> causes;
+  for (const Stage& stage : stages) {
+    if (!stage.changes_model()) continue;
+    causes.insert(causes.end(), stage.selection.chosen.effects.begin(), stage.selection.chosen.effects.end());
+  }
+  std::ranges::transform(traces, std::back_inserter(causes), &Trace::effect);
+  return causes;
+}
+
+std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments) {
+  std::vector<Segment> kept;
+  std::ranges::copy_if(segments, std::back_inserter(kept), [&](const Segment& segment) {
+    const auto alike = [&](const FitSegment& fit) {
+      return fit.segment.from == segment.from && fit.segment.to == segment.to;
+    };
+    return std::ranges::none_of(problem.segments, alike) ||
+           std::ranges::any_of(problem.segments, [&](const FitSegment& fit) { return fit.is_suspect && alike(fit); });
+  });
+  return kept;
+}
+
+std::span<const FitSegment> with_the_same_noise(const IdentificationProblem& settled,
+                                                std::span<const EffectSetting> causes) {
+  const auto is_number = [](const EffectSetting& cause) { return cause.type->traits.number != ModelNumber::none; };
+  if (!std::ranges::all_of(causes, is_number)) return {};
+  return settled.segments;
+}
+
+namespace {
+
+/// Of each kind of segment that the causes act on.
+std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const EffectSetting> causes,
+                                    std::span<const Segment> segments, std::span<const FitSegment> fitted,
+                                    std::uint64_t seed) {
+  std::map<std::pair<Channel, Channel>, std::vector<Segment>> kinds;
+  for (const Segment& segment : segments) {
+    const bool touched =
+        std::ranges::any_of(causes, [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
+    if (touched) kinds[{segment.from, segment.to}].push_back(segment);
+  }
+  std::vector<report::Shrink> result;
+  for (const auto& [channels, alike] : kinds) result.push_back(shrink_on(model, causes, alike, seed, fitted));
+  return result;
+}
+
+}  // namespace
+
+void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
+                                   const VerdictPolicy& policy, std::vector<Stage>& stages,
+                                   std::vector<std::string>& notes) {
+  for (Stage& stage : stages) {
+    if (!stage.has_causes()) continue;
+    // Beside the causes of the other stages, so that this one's own part is judged.
+    const std::vector<EffectSetting> causes = causes_of(stages, {});
+    Verdict verdict = verdict_carried_over(
+        stage.judgement.verdict,
+        shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed),
+        policy);
+    if (verdict == stage.judgement.verdict) continue;
+    // A gap that is clear where it was fitted stays one: with causes that do not hold, noise may be taken for anything.
+    if (verdict == Verdict::none && stands_above_floor(stage.problem, stage.selection.baseline, tuning::kNearFloor)) {
+      verdict = Verdict::unknown;
+    }
+    if (verdict == Verdict::partial) {
+      notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
+                      " leaves more of the held-out recordings than of the fitted ones.");
+      stage.judgement.verdict = verdict;
+      continue;
+    }
+    notes.push_back(std::string{stage.selection.chosen.effects.front().type->name} +
+                    " fits the fitted recordings but not the held-out ones.");
+    stage.judgement = Judgement{};
+    stage.judgement.verdict = verdict;
+    stage.judgement.gap_left = 1.0;
+  }
+}
+
+namespace {
+
+/// What a channel names of the displacement sensor also changes the channels that were judged before: what was found
+/// there is fitted again beside it. Each would explain the same twice, otherwise.
+void fit_beside_later(const std::vector<Segment>& segments, const std::vector<Channel>& outputs,
+                      std::vector<Stage>& stages) {
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    Stage& stage = stages[i];
+    if (!stage.changes_model()) continue;
+    SiteModel beside = stage.problem.model;
+    for (const EffectSetting& effect : causes_of(std::span{stages}.subspan(i + 1), {})) {
+      const bool is_seen = std::ranges::any_of(stage.problem.segments, [&](const FitSegment& fit) {
+        return fit.is_suspect && fit.segment.touched_by(*effect.type);
+      });
+      if (is_seen) add_effect(beside, effect);
+    }
+    if (beside.effects.size() == stage.problem.model.effects.size()) continue;
+    IdentificationProblem again = judged_at(make_problem(beside, segments), outputs[i]);
+    settle_noise(again, refit_effects(again, stage.selection.chosen.effects, false));
+    stage.selection.chosen = refit_effects(again, stage.selection.chosen.effects, false);
+  }
+}
+
+/// Where damping is named beside a motion that comes late: one lag of the transducer instead of both, if it is a rival.
+void find_lag_of_transducer(const IdentificationProblem& whole, const VerdictPolicy& policy,
+                            std::vector<Stage>& stages) {
+  const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
+  for (Stage& stage : stages) {
+    const std::vector<EffectSetting>& effects = stage.selection.chosen.effects;
+    const auto found = std::ranges::find(effects, damping, &EffectSetting::type);
+    if (!stage.judgement.may_be_set || stage.judgement.rivals || found == effects.end()) continue;
+    const auto position = static_cast<std::size_t>(found - effects.begin());
+    if (stage.judgement.is_correction(position)) continue;
+    std::optional<Candidate> lag = lag_of_transducer(whole, causes_of(stages, {}), policy);
+    if (!lag) return;
+    stage.judgement.rivals = Rivals{.chosen = position,
+                                    .fitted = {std::move(*lag)},
+                                    .probability = 0.5 * stage.selection.chosen_probabilities[position]};
+    stage.judgement.verdict = Verdict::set;
+    return;
+  }
+}
+
+}  // namespace
+
+std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
+                                const IdentificationProblem& whole, const VerdictPolicy& policy, std::size_t threads,
+                                const PartProgress& progress) {
+  std::vector<Segment> thin;
+  for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
+  IdentificationProblem fine = whole;
+  IdentificationProblem coarse = make_problem(model, thin);
+  std::vector<Channel> outputs;
+  for (const Segment& segment : segments) {
+    if (std::ranges::find(outputs, segment.to) == outputs.end()) outputs.push_back(segment.to);
+  }
+  std::ranges::sort(outputs);
+  std::vector<Stage> stages;
+  std::vector<FoundEffect> found;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    Stage stage{judged_at(fine, outputs[i]), {}, {}};
+    IdentificationProblem thinner = judged_at(coarse, outputs[i]);
+    const PartProgress of_stage = progress.round(i, outputs.size());
+    stage.problem.progress = of_stage;
+    thinner.progress = of_stage;
+    stage.selection =
+        select_effects(stage.problem, thinner, policy, threads, of_stage.part(0.0, tuning::kEffectsChosen));
+    settle_noise(stage.problem, stage.selection.chosen);
+    stage.judgement = judge(stage.problem, stage.selection, policy);
+    find_rivals(stage.problem, thinner, stage.selection, policy, threads, of_stage.part(tuning::kEffectsChosen, 1.0),
+                stage.judgement);
+    if (stage.changes_model() && i + 1 < outputs.size()) {
+      SiteModel corrected = fine.model;
+      const FitOutcome& chosen = stage.selection.chosen;
+      for (const EffectSetting& effect : chosen.effects) add_effect(corrected, effect);
+      for (std::size_t j = 0; j < chosen.effects.size(); ++j) {
+        found.push_back({chosen.effects[j], chosen.covariances[j]});
+      }
+      fine = make_problem(corrected, segments, found);
+      coarse = make_problem(corrected, thin, found);
+    }
+    stages.push_back(std::move(stage));
+  }
+  fit_beside_later(segments, outputs, stages);
+  find_lag_of_transducer(whole, policy, stages);
+  return stages;
+}
+
+}  // namespace hybridtest
