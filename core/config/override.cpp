@@ -81,8 +81,12 @@ class Walk {
   [[nodiscard]] std::string place() const { return path_.empty() ? "the configuration" : path_; }
 
   bool take_key(const std::string& key, bool may_create) {
-    if (node_->kind != Node::Kind::mapping)
-      return fail(place() + " is " + described(*node_) + " and has no key '" + shown(key) + "'");
+    if (node_->kind != Node::Kind::mapping) {
+      const bool is_list = node_->kind == Node::Kind::sequence;
+      return fail(
+          place() + " is " + described(*node_) + " and has no key '" + shown(key) + "'" +
+          (is_list ? "; an element is selected by its number from [0], or by its id: [" + shown(key) + "]" : ""));
+    }
     Node* child = node_->child(key);
     if (child == nullptr && !may_create) return fail(place() + " has no key '" + shown(key) + "'" + key_hint(key));
     if (child == nullptr && key.size() > kKeyLengthMax)

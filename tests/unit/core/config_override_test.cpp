@@ -118,7 +118,8 @@ TEST(ConfigOverride, InvalidPathReportsWhereItEnds) {
                   "--set substructures[99999999999999999999].id: substructures has 2 elements, counted from [0]; found "
                   "[99999999999999999999]",
                   "--set time[0]: time is a mapping and has no elements to select by [0]",
-                  "--set substructures.id: substructures is a list and has no key 'id'"));
+                  "--set substructures.id: substructures is a list and has no key 'id'; an element is selected by its "
+                  "number from [0], or by its id: [id]"));
 }
 
 TEST(ConfigOverride, RejectsMalformedOverride) {
