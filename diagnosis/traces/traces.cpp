@@ -82,14 +82,13 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
   lags.held /= moving;
   lags.held_again /= moving;
   lags.mean /= found;
-  lags.shortest = std::numeric_limits<int>::max();
-  for (const auto& [lag, count] : fresh) {
-    const double share = count / fresh_count;
-    if (share > tuning::kLagsShrinkingMin) lags.shortest = std::min(lags.shortest, lag);
-    if (share <= lags.fresh_at_usual) continue;
-    lags.fresh_at_usual = share;
-    lags.usual = lag;
-  }
+  const auto share = [fresh_count](const auto& entry) { return entry.second / fresh_count; };
+  const auto usual = std::ranges::max_element(fresh, {}, share);
+  lags.usual = usual->first;
+  lags.fresh_at_usual = share(*usual);
+  const auto shortest = std::ranges::find_if(
+      fresh, [](double part) { return part > tuning::kLagsShrinkingMin; }, share);
+  if (shortest != fresh.end()) lags.shortest = shortest->first;
   return lags;
 }
 
@@ -106,9 +105,9 @@ double mean_age(double jitter) {
   return mean;
 }
 
-/// The jitter with this mean age [samples]; halving, to a thousandth of it.
+/// The jitter with this mean age [samples]; halving, to a thousandth of it. One of less than a sample does not show.
 double jitter_of(double mean) {
-  double low = 0.0;
+  double low = 1.0;
   double high = 2.0;
   while (mean_age(high) < mean) high *= 2.0;
   while (high - low > tuning::kResolution * high) {

@@ -36,7 +36,7 @@ struct NetworkLags {
   double held_again = 0.0;      // and of those that repeat one that was a repetition already
   double mean = 0.0;            // samples
   int usual = 0;                // most frequent one of fresh targets [samples]
-  int shortest = 0;             // that fresh targets have more than by chance [samples]
+  int shortest = 0;             // that fresh targets have more than by chance; 0: none has [samples]
 
   /// Whether the lags go up and down; those of a delay or a drift do not.
   [[nodiscard]] bool fluctuate() const noexcept;

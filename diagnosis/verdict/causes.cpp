@@ -150,12 +150,10 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   }
   judgement.only_corrects = judgement.corrections.size() == selection.chosen.effects.size();
   // One of the leaders still, if none was exchanged for it; perhaps beside other causes.
+  const std::vector<EffectSetting>& effects = selection.chosen.effects;
   const auto is_told = [&](const AlikeLeader& leader) {
-    for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
-      const bool is_leader = selection.chosen.effects[i].type == selection.library[leader.position].type;
-      if (is_leader && !judgement.is_correction(i)) return true;
-    }
-    return false;
+    const auto found = std::ranges::find(effects, selection.library[leader.position].type, &EffectSetting::type);
+    return found != effects.end() && !judgement.is_correction(static_cast<std::size_t>(found - effects.begin()));
   };
   if (selection.library.front().type == only_cause(problem, selection, judgement)) {
     judgement.indistinguishable = credible(problem, selection, policy.credible);

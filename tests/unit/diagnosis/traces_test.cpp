@@ -173,6 +173,15 @@ TEST(NetworkTrace, JitterAndTheLatencyBesideItAreToldApart) {
   }
 }
 
+/// Each lag is rarer than a chance hit, so that none is known to be the shortest.
+TEST(NetworkTrace, LagsThatHardlyRepeatAreAJitterWithoutLatency) {
+  std::vector<int> lags(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) lags[i] = static_cast<int>(i * 37 % 3001);
+  const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), 0.1 * kPeriod_s);
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces[0].effect.type->name, "jitter");
+}
+
 /// As of messages with a delay that is drawn uniformly, 1.15 periods at most: the newest that has arrived counts.
 TEST(NetworkTrace, JitterOfLittleMoreThanAPeriodIsNoLoss) {
   constexpr double kJitter = 1.15;
