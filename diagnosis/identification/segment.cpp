@@ -10,6 +10,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/identification/quasi_static.hpp"
+#include "diagnosis/signals/between_steps.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -32,16 +33,26 @@ EffectInterface interface_ending_in(Channel channel) noexcept {
   }
 }
 
-/// One random error of readings: white noise of this level or, for a coarse converter, its error for a
-/// motion that is shifted by half a step.
+/// One random error of readings: white noise of this level or, for a coarse converter, what is wrong between its steps
+/// for a motion that is shifted by half a step.
 std::vector<double> drawn_error(std::span<const Motion> motion, double level, double step) {
   Random random{tuning::kNoiseSeed};
   std::vector<double> error(motion.size());
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    const double place = motion[i].displacement_m + 0.5 * step;
-    error[i] = step > 0.0 ? step * std::round(place / step) - place : level * random.normal();
+  if (!(step > 0.0)) {
+    std::ranges::generate(error, [&] { return level * random.normal(); });
+    return error;
   }
+  const auto place = [&](std::size_t i) { return motion[i].displacement_m + 0.5 * step; };
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = step * std::round(place(i) / step);
+  error = between_steps(error, step);
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] -= place(i);
   return error;
+}
+
+/// What was read where a segment begins, between the steps of a coarse converter.
+std::vector<double> input_of(const Segment& segment, const DofRecording& dof) {
+  const std::vector<double>& readings = dof.of(segment.from);
+  return segment.input_step > 0.0 ? between_steps(readings, segment.input_step) : readings;
 }
 
 /// Smooths the measured displacement, and also over half the window: the difference shows what smoothing removes.
@@ -84,10 +95,9 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
   segment.interface = interface_ending_in(to);
   segment.recording = position;
   segment.period_s = recording.sample_period_s;
-  const std::size_t half_width = widest_faithful_half_width(dof.of(from));
   segment.measured = dof.of(to);
   if (to != Channel::measured_force) {
-    segment.input = LocalPolynomial{half_width, segment.period_s}.motion(dof.of(from));
+    segment.input = LocalPolynomial{widest_faithful_half_width(dof.of(from)), segment.period_s}.motion(dof.of(from));
     // Commands are exact; smoothing is for their derivatives.
     for (std::size_t i = 0; i < segment.input.size(); ++i) segment.input[i].displacement_m = dof.of(from)[i];
     if (dof.has(Channel::measured_force)) {
@@ -95,9 +105,10 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
       std::shift_right(segment.load_n.begin(), segment.load_n.end(), 1);  // the first one stands for that before it
     }
   } else {
-    segment.input_noise = white_noise_level(dof.of(from));
     segment.input_step = steps_of_readings(dof.of(from)).step;
-    smooth_input(segment, dof.of(from), half_width);
+    const std::vector<double> input_m = input_of(segment, dof);
+    segment.input_noise = white_noise_level(input_m);
+    smooth_input(segment, input_m, widest_faithful_half_width(input_m));
     segment.inputs = inputs_of(recording);
   }
   segment.measured_noise = white_noise_level(segment.measured);
@@ -175,7 +186,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   const FlatSmoother smoother{deviation};
   const LocalPolynomial narrowest{LocalPolynomial::kHalfWidthMin, segment.period_s};
   Segment result = segment;
-  result.input = smooth_motion(smoother, narrowest.motion(dof.of(segment.from)));
+  result.input = smooth_motion(smoother, narrowest.motion(input_of(segment, dof)));
   const std::vector<double> error = drawn_error(result.input, segment.input_noise, segment.input_step);
   result.noise = smooth_motion(smoother, narrowest.motion(error));
   result.narrow_input.clear();
@@ -257,7 +268,7 @@ bool can_be_smoothed(const Segment& segment) {
 std::vector<double> smoothing_errors(const SiteModel& model, const Segment& smooth, const DofRecording& dof,
                                      double deviation) {
   Segment plain = smooth;
-  plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(dof.of(smooth.from));
+  plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(input_of(smooth, dof));
   plain.unjudged = 0;
   std::vector<double> errors = FlatSmoother{deviation}.smooth(predict(model, plain));
   const std::vector<double> first_motion = predict(model, smooth);
