@@ -156,6 +156,20 @@ bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
   });
 }
 
+/// Beside a spring, a loop that yields after the least displacement of its range slides nearly all the way: that is dry
+/// friction, and its name.
+bool is_dry_friction(const IdentificationProblem& problem, const FitOutcome& fit) {
+  if (!problem.law_is_spring) return false;
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
+    const auto yield = std::ranges::find(parameters, "yield_displacement_m", &EffectParameter::name);
+    if (yield == parameters.end()) continue;
+    const ParameterEstimate& estimate = fit.parameters[i][static_cast<std::size_t>(yield - parameters.begin())];
+    if (estimate.at_bound && estimate.value < tuning::kMainShare * problem.scales.displacement_m) return true;
+  }
+  return false;
+}
+
 void set_score(const IdentificationProblem& problem, Candidate& candidate) {
   candidate.held_out = held_out_score(problem, candidate.fit);
   candidate.score = candidate.held_out + prior(problem, candidate.fit);
@@ -164,7 +178,7 @@ void set_score(const IdentificationProblem& problem, Candidate& candidate) {
 
 /// The candidate with its score, if it can be the cause.
 std::optional<Candidate> scored(const IdentificationProblem& problem, Candidate candidate) {
-  if (is_yielding(problem, candidate.fit)) return {};
+  if (is_yielding(problem, candidate.fit) || is_dry_friction(problem, candidate.fit)) return {};
   set_score(problem, candidate);
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
     candidate.parameters += free_parameters(problem, candidate.fit, i);
