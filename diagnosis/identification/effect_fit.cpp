@@ -576,7 +576,7 @@ double lost_without(const IdentificationProblem& problem, const FitOutcome& all,
     if (!all.segments[i].touched) continue;
     const FitSegment& fit = problem.segments[i];
     const double left = required.segments[i].held_out_mean_square(fit) / all.segments[i].held_out_mean_square(fit);
-    lost += 0.5 * fit.independent * std::log(left);
+    lost += 0.5 * fit.predicted_samples() * std::log(left);
   }
   return lost;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -95,6 +96,11 @@ struct FitSegment {
   std::vector<Eigen::Index> block_begins;  // held-out blocks, one more than there are
 
   [[nodiscard]] Eigen::VectorXd average(std::span<const double> values) const;
+  /// Samples that a prediction of blocks left out counts for. However long the noise remembers, each block holds a
+  /// cycle of its own and counts for one.
+  [[nodiscard]] double predicted_samples() const noexcept {
+    return std::max(independent, static_cast<double>(block_begins.size()) - 1.0);
+  }
 };
 
 /// The data to which every candidate is fitted.

@@ -26,7 +26,7 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
     if (fit.is_settled) {
       left = std::max(left, (fit.measured - fit.baseline).squaredNorm() / static_cast<double>(fit.measured.size()));
     }
-    score -= 0.5 * fit.independent * std::log(left + allowed);
+    score -= 0.5 * fit.predicted_samples() * std::log(left + allowed);
   }
   return score;
 }

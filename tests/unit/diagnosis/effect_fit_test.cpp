@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/library_fits.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -49,6 +51,25 @@ TEST(FitEffects, KeepsParameterInItsRange) {
   const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "coulomb_friction")}, false);
   EXPECT_EQ(fit.effects[0].values[0], 0.0);  // friction that pushes is none
   EXPECT_TRUE(fit.parameters[0][0].at_bound);
+}
+
+/// However long the noise remembers.
+TEST(HeldOutScore, EachBlockThatIsLeftOutCountsForOneSample) {
+  IdentificationProblem problem = problem_of(made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); }));
+  FitSegment& fit = problem.segments.back();
+  fit.independent = 1.0;
+  const FitOutcome found = fit_effects(problem, {find_effect(specimen, ModelNumber::stiffness)}, false);
+  const FitOutcome nothing = fit_nothing(problem, false);
+  const auto allowed = [&](const FitOutcome& outcome) {
+    return outcome.segments.back().held_out_mean_square(fit) + 1.0 / (fit.weight * fit.weight);
+  };
+  // Of 12 s, each with a cycle of 0.9 Hz.
+  EXPECT_EQ(fit.block_begins.size(), 12U);
+  EXPECT_NEAR(held_out_score(problem, found) - held_out_score(problem, nothing),
+              0.5 * 11.0 * std::log(allowed(nothing) / allowed(found)), 1e-6);
+  fit.independent = 100.0;
+  EXPECT_NEAR(held_out_score(problem, found) - held_out_score(problem, nothing),
+              0.5 * 100.0 * std::log(allowed(nothing) / allowed(found)), 1e-6);
 }
 
 TEST(FitEffects, RemovesAtMostTheExistingAmount) {
