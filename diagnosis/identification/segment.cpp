@@ -108,7 +108,11 @@ Segment segment_between(const Recording& recording, std::size_t position, const 
     segment.input_step = steps_of_readings(dof.of(from)).step;
     const std::vector<double> input_m = input_of(segment, dof);
     segment.input_noise = white_noise_level(input_m);
-    smooth_input(segment, input_m, widest_faithful_half_width(input_m));
+    // Between the steps hardly any white noise is left, as which the steps of a fast motion appear: the wider window
+    // leaves less of either.
+    const std::size_t half_width =
+        std::max(widest_faithful_half_width(input_m), widest_faithful_half_width(dof.of(from)));
+    smooth_input(segment, input_m, half_width);
     segment.inputs = inputs_of(recording);
   }
   segment.measured_noise = white_noise_level(segment.measured);

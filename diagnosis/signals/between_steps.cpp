@@ -55,6 +55,8 @@ std::vector<double> between_steps(std::span<const double> readings, double step)
   // The first and the last plateau, between an end of the recording and a passage, stay as they are read.
   for (std::size_t k = 1; k + 1 < plateaus.size(); ++k) {
     const Plateau& plateau = plateaus[k];
+    // A motion that passes a step in a sample is read as well as it is known.
+    if (plateau.end - plateau.begin == 1) continue;
     const Passage& before = passages[k - 1];
     const Passage& behind = passages[k];
     const double length = behind.sample - before.sample;
