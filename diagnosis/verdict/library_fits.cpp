@@ -156,16 +156,21 @@ bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
   });
 }
 
-/// Beside a spring, a loop that yields after the least displacement of its range slides nearly all the way: that is dry
-/// friction, and its name.
+/// Beside a spring, a loop that yields after the least displacement of its range, or after less than a dry friction may
+/// stick, slides nearly all the way: that is dry friction, and its name.
 bool is_dry_friction(const IdentificationProblem& problem, const FitOutcome& fit) {
   if (!problem.law_is_spring) return false;
+  const double peak_m = problem.scales.displacement_m;
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
-    const auto yield = std::ranges::find(parameters, "yield_displacement_m", &EffectParameter::name);
-    if (yield == parameters.end()) continue;
-    const ParameterEstimate& estimate = fit.parameters[i][static_cast<std::size_t>(yield - parameters.begin())];
-    if (estimate.at_bound && estimate.value < tuning::kMainShare * problem.scales.displacement_m) return true;
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const bool is_of_loop =
+          parameters[j].name == "yield_displacement_m" || parameters[j].name == "hysteretic_displacement_m";
+      if (!is_of_loop) continue;
+      const ParameterEstimate& yield = fit.parameters[i][j];
+      const bool is_least = yield.at_bound && yield.value < tuning::kMainShare * peak_m;
+      if (is_least || yield.value < tuning::kPreslidingMax * peak_m) return true;
+    }
   }
   return false;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
@@ -116,29 +117,44 @@ TEST(LawForm, WrongStrengthAndStiffnessAreNoOtherLaw) {
   EXPECT_NEAR(value("stiffness_error", "stiffness_error_ratio"), 1.0 / 1.1 - 1.0, 1e-3);
 }
 
-/// Beside a spring, with bristles that give way over a small part of the motion (Dahl, 1968): neither dry friction nor
-/// a law that yields has quite that loop.
-TEST(LawForm, FrictionThatSlidesNearlyAllTheWayIsNoLaw) {
+struct Bristles {
+  double of_largest = 0.0;  // motion over which they give way
+  double damping_n_s_per_m = 0.0;
+};
+
+std::ostream& operator<<(std::ostream& out, const Bristles& bristles) {
+  return out << bristles.of_largest << " of the motion, " << bristles.damping_n_s_per_m << " N s/m";
+}
+
+/// Dry friction beside a spring, with bristles that give way over a small part of the motion (Dahl, 1968): neither dry
+/// friction nor a law that yields has quite that loop, and beside damping the law of a magnetorheological damper has.
+class FrictionWithBristles : public testing::TestWithParam<Bristles> {};
+
+TEST_P(FrictionWithBristles, IsNoLaw) {
   constexpr double kFriction_n = 8e3;
-  for (const double bristles : {0.003, 0.01, 0.015}) {
-    SCOPED_TRACE(bristles);
-    double share = 0.0;
-    double last_m = 0.0;
-    const Recording recording = made_recording(made_motion_m, [&](double time_s) {
-      const double way_m = made_motion_m(time_s) - last_m;
-      last_m += way_m;
-      const double limit = std::copysign(1.0, way_m);
-      share = limit + (share - limit) * std::exp(-std::abs(way_m) / (bristles * kLargest_m));
-      return kMadeStiffness_n_per_m * last_m + kFriction_n * share;
-    });
-    const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
-    // Damping stands for the corners of the loop, which no dry friction rounds off, and takes a part of the friction.
-    EXPECT_EQ(causes_of(diagnosis), (std::vector<std::string>{"coulomb_friction", "viscous_damping"}));
-    const report::RankedCause& cause = diagnosis.report.ranking.front();
-    EXPECT_EQ(cause.effect, "coulomb_friction");
+  double share = 0.0;
+  double last_m = 0.0;
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double way_m = made_motion_m(time_s) - last_m;
+    last_m += way_m;
+    const double limit = std::copysign(1.0, way_m);
+    share = limit + (share - limit) * std::exp(-std::abs(way_m) / (GetParam().of_largest * kLargest_m));
+    return kMadeStiffness_n_per_m * last_m + kFriction_n * share +
+           GetParam().damping_n_s_per_m * made_velocity_m_per_s(time_s);
+  });
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
+  // Damping also stands for the corners of the loop, which no dry friction rounds off, and takes a part of the
+  // friction.
+  EXPECT_EQ(causes_of(diagnosis), (std::vector<std::string>{"coulomb_friction", "viscous_damping"}));
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (cause.effect != "coulomb_friction") continue;
     EXPECT_NEAR(value_of(cause, "friction_force_n"), kFriction_n, 0.1 * kFriction_n);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(LawForm, FrictionWithBristles,
+                         testing::Values(Bristles{.of_largest = 0.003}, Bristles{.of_largest = 0.01},
+                                         Bristles{.of_largest = 0.015}, Bristles{0.01, 3e4}, Bristles{0.01, 1e5}));
 
 /// It reloads towards its largest displacement: called a fracture with certainty before.
 TEST(LawForm, PeakOrientedSpecimenIsALawOfAnotherForm) {
