@@ -157,11 +157,12 @@ bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
 }
 
 /// Beside a spring, a loop that yields after the least displacement of its range, or after less than a dry friction may
-/// stick, slides nearly all the way: that is dry friction, and its name.
+/// stick, slides nearly all the way: that is dry friction, and its name. A loop that the model has keeps its own.
 bool is_dry_friction(const IdentificationProblem& problem, const FitOutcome& fit) {
   if (!problem.law_is_spring) return false;
   const double peak_m = problem.scales.displacement_m;
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    if (place_of(problem.model, *fit.effects[i].type) != nullptr) continue;
     const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       const bool is_of_loop =

@@ -26,6 +26,7 @@ constexpr double kPresliding_m = 2e-4;
 constexpr double kStaticExcess = 0.5;
 constexpr double kStribeckVelocity_m_per_s = 0.05;  // of 0.23 m/s
 constexpr double kYieldDisplacement_m = 4e-3;
+constexpr double kShortYieldDisplacement_m = 4e-4;  // a seventieth of the motion, as dry friction
 constexpr double kNoise_n = 20.0;
 
 /// A force over kForce_n at the times of the samples, in their order.
@@ -47,16 +48,19 @@ Share falling_friction() {
 }
 
 /// Bouc-Wen with n = 1 and beta = gamma: towards its largest force z follows 1 - |z|, back from it the initial slope.
-Share hysteresis() {
-  return [z = 0.0, last_m = 0.0](double time_s) mutable {
+Share loop(double yield_displacement_m) {
+  return [yield_displacement_m, z = 0.0, last_m = 0.0](double time_s) mutable {
     constexpr int kSteps = 100;
     const double place_m = made_motion_m(time_s);
-    const double way = (place_m - last_m) / kYieldDisplacement_m / kSteps;
+    const double way = (place_m - last_m) / yield_displacement_m / kSteps;
     for (int i = 0; i < kSteps; ++i) z += way * (z * way > 0.0 ? 1.0 - std::abs(z) : 1.0);
     last_m = place_m;
     return z;
   };
 }
+
+Share hysteresis() { return loop(kYieldDisplacement_m); }
+Share short_hysteresis() { return loop(kShortYieldDisplacement_m); }
 
 /// An element beside a spring, and the effect that a model has of it.
 struct Element {
@@ -72,6 +76,9 @@ const Element kFriction{"coulomb_friction", friction, {kForce_n, 0.0, kPreslidin
 const Element kFallingFriction{
     "stribeck_friction", falling_friction, {kForce_n, kStaticExcess, kStribeckVelocity_m_per_s, kPresliding_m}, 3};
 const Element kHysteresis{"bouc_wen_hysteresis", hysteresis, {kForce_n, kYieldDisplacement_m, 1.0, 0.5}, 1};
+
+const Element kShortHysteresis{
+    "bouc_wen_hysteresis", short_hysteresis, {kForce_n, kShortYieldDisplacement_m, 1.0, 0.5}, 1};
 
 /// What the user believes of a specimen, over what it is.
 struct Belief {
@@ -187,6 +194,8 @@ const std::vector<Case> kCases{
     {"HysteresisBesideASpringOfTenTimes", kHysteresis, 1.0, {.force = 0.5, .stiffness = 10.0}},
     {"HysteresisBelievedToYieldLater", kHysteresis, 1.0, {.force = 2.0, .shape = 2.0}},
     {"HysteresisThatYieldsLater", kHysteresis, 1.0, {.shape = 0.5}},
+    {"ShortHysteresisBelievedHalf", kShortHysteresis, 1.0, {.force = 0.5}},
+    {"ShortHysteresisBelievedTwice", kShortHysteresis, 1.0, {.force = 2.0}},
     {"NoHysteresisBelievedATenth", kHysteresis, 0.0, {.force = 0.1}},
     {"NoHysteresisBelievedTenTimes", kHysteresis, 0.0, {.force = 10.0}},
     {"NoHysteresisBesideASpringOfATenth", kHysteresis, 0.0, {.force = 2.0, .stiffness = 0.1}},
