@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -10,17 +11,13 @@
 #include "core/random.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
+#include "tests/unit/diagnosis/made_signals.hpp"
 
 /// The motion behind the readings of a coarse converter.
 namespace hybridtest {
 namespace {
 
 constexpr double kStep = 0.5;
-
-std::vector<double> in_steps(std::vector<double> values, double step) {
-  for (double& value : values) value = step * std::round(value / step);
-  return values;
-}
 
 /// Largest difference, apart from so many samples at both ends.
 double largest_error(const std::vector<double>& found, const std::vector<double>& motion, std::size_t apart) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"

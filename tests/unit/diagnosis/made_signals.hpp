@@ -30,4 +30,10 @@ inline std::vector<double> white_noise(std::size_t count, double deviation, std:
   return values;
 }
 
+/// As a converter with steps of this size reads them.
+inline std::vector<double> in_steps(std::vector<double> values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+  return values;
+}
+
 }  // namespace hybridtest

@@ -8,6 +8,7 @@
 #include "core/random.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
+#include "tests/unit/diagnosis/made_signals.hpp"
 
 /// Effects that show in the digits of a recording.
 namespace hybridtest {
@@ -25,11 +26,6 @@ std::vector<double> motion_m() {
 std::vector<double> with_noise(std::vector<double> values, double deviation, std::uint64_t seed = 7) {
   Random random{seed};
   for (double& value : values) value += deviation * random.normal();
-  return values;
-}
-
-std::vector<double> in_steps(std::vector<double> values, double step) {
-  for (double& value : values) value = step * std::round(value / step);
   return values;
 }
 
