@@ -312,7 +312,7 @@ inline constexpr double kAnotherEffectLeaves = 0.6;
 /// model.
 inline constexpr double kAnotherEffectExplains = 0.03;
 /// Or unless it leaves less than this share of the remaining gap.
-inline constexpr double kSmallEffectLeaves = 0.15;
+inline constexpr double kSmallEffectLeaves = 0.25;
 /// A wrong parameter of the model is chosen instead of the best further effect when it explains at least this share of
 /// what that effect explains.
 inline constexpr double kNumberInstead = 0.95;

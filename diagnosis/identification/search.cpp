@@ -412,6 +412,22 @@ Eigen::VectorXd halton(int index, Eigen::Index dimensions) {
   return point;
 }
 
+/// Nearly absent, so that an effect that is small against its range is found too; empty: no place of it is so.
+Eigen::VectorXd nearly_absent(const SearchPlan& plan) {
+  Eigen::VectorXd places = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(plan.searched.size()), 0.5);
+  bool is_near = false;
+  for (std::size_t i = 0; i < plan.searched.size(); ++i) {
+    const SearchedParameter& searched = plan.searched[i];
+    const double neutral = plan.neutral[searched.effect].type->parameters[searched.parameter].neutral;
+    if (searched.logarithmic || std::isnan(neutral)) continue;
+    const double place = searched.place_of(neutral);
+    if (!(place >= 0.0 && place <= 1.0)) continue;
+    places[static_cast<Eigen::Index>(i)] = place + (place < 0.5 ? tuning::kCoefficientStep : -tuning::kCoefficientStep);
+    is_near = true;
+  }
+  return is_near ? places : Eigen::VectorXd{};
+}
+
 Start refine(const VariableProjection& projection, const Start& start) {
   Eigen::VectorXd places = start.places;
   ceres::Problem problem;
@@ -468,6 +484,8 @@ Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::V
   if (has_instant) starts *= tuning::kInstantStarts;
   std::vector<Start> tried;
   if (first.size() == searched) tried.push_back({first, cost_at(projection, first)});
+  const Eigen::VectorXd small = nearly_absent(projection.plan());
+  if (small.size() > 0) tried.push_back({small, cost_at(projection, small)});
   for (int i = 0; i < starts; ++i) {
     const Eigen::VectorXd places = halton(i, searched);
     tried.push_back({places, cost_at(projection, places)});

@@ -52,6 +52,8 @@ struct SearchRestriction {
   SearchLimit limit = SearchLimit::none;
   // Per unit of the input that the effect follows: over how far that input goes (InputRange::span).
   bool per_input = false;
+  // At the upper end it no longer shows in any recording: an estimate there means that it is as large or larger.
+  bool is_unseen_at_high = false;
 };
 
 /// The search range of one parameter of one effect.
@@ -119,7 +121,7 @@ inline constexpr std::array kRows{
     SearchRange{displacement_sensor, "gain", "gain_error", Scale::one, -0.5, 0.5},
     SearchRange{displacement_sensor, "bias", "bias_m", Scale::displacement_m, -0.5, 0.5},
     SearchRange{displacement_sensor, "drift", "drift_m_per_s", Scale::displacement_m, -0.2, 0.2},
-    SearchRange{displacement_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 0.1},
+    SearchRange{displacement_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 1.0},
     SearchRange{displacement_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{displacement_sensor, "quantization", "step_m", Scale::displacement_m, 1e-4, 0.3},
     SearchRange{specimen,
@@ -190,7 +192,13 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "fractional_damping", "order", Scale::one, 0.1, 0.9},
     SearchRange{specimen, "inertia", "mass_kg", Scale::mass_kg, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen, "geometric_stiffness", "axial_force_n", Scale::force_n, -30.0, 30.0},
-    SearchRange{specimen, "geometric_stiffness", "height_m", Scale::displacement_m, tuning::kHeightOverStroke, 30.0},
+    SearchRange{specimen,
+                "geometric_stiffness",
+                "height_m",
+                Scale::displacement_m,
+                tuning::kHeightOverStroke,
+                30.0,
+                {.is_unseen_at_high = true}},
     SearchRange{specimen, "fracture", "lost_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "fracture", "instant_s", Scale::duration_s, 0.02, 0.98},
     SearchRange{specimen, "force_with_input", "force_ratio_per_unit", Scale::one, -2.0, 2.0, {.per_input = true}},
@@ -207,7 +215,7 @@ inline constexpr std::array kRows{
     SearchRange{force_sensor, "gain", "gain_error", Scale::one, -0.5, 0.5},
     SearchRange{force_sensor, "bias", "bias_n", Scale::force_n, -0.5, 0.5},
     SearchRange{force_sensor, "drift", "drift_n_per_s", Scale::force_n, -0.2, 0.2},
-    SearchRange{force_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 0.1},
+    SearchRange{force_sensor, "lag", "time_constant_s", Scale::time_s, 0.0, 1.0},
     SearchRange{force_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{force_sensor, "saturation", "limit_n", Scale::force_n, 0.3, 1.1},
     SearchRange{force_sensor, "quantization", "step_n", Scale::force_n, 1e-4, 0.3},

@@ -135,12 +135,17 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(squares / n);
 }
 
-/// Against the measured displacement of the same degree of freedom.
-void check_acceleration(const RawRecording& raw, const RawColumn& column, double period_s, FindingList& findings) {
+/// The measured displacement of the same degree of freedom; nullptr: none was recorded.
+const RawColumn* measured_beside(const RawRecording& raw, const RawColumn& column) {
   const auto displacement = std::ranges::find_if(raw.columns, [&](const RawColumn& other) {
     return other.channel == Channel::measured_displacement && other.dof == column.dof;
   });
-  if (displacement == raw.columns.end()) return;
+  return displacement == raw.columns.end() ? nullptr : &*displacement;
+}
+
+void check_acceleration(const RawRecording& raw, const RawColumn& column, double period_s, FindingList& findings) {
+  const RawColumn* const displacement = measured_beside(raw, column);
+  if (displacement == nullptr) return;
   const std::vector<double> expected = acceleration_of(displacement->values, period_s);
   if (!(correlation(column.values, expected) >= tuning::kScaledCopyCorrelationMin)) return;
   const double ratio = deviation(column.values) / deviation(expected);
@@ -163,7 +168,11 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
     if (column.channel == Channel::measured_acceleration) check_acceleration(raw, column, period_s, findings);
     if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, period_s, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
-    const double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
+    double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
+    // A compensator that has become unstable commands a speed that no actuator reaches.
+    if (const RawColumn* const measured = measured_beside(raw, column); measured != nullptr && speed > 0.0) {
+      speed = std::min(speed, fastest(measured->values, period_s));
+    }
     if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {
       suspect(raw, column, farthest, "seems to be in millimetres: the largest displacement accepted is 10 m", findings);
     } else if (speed > tuning::kSpeedMax_m_per_s) {

@@ -293,8 +293,7 @@ std::string verdict_sentence(const DiagnosisReport& report) {
       return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
     case Verdict::not_excited:
       return "These recordings are not sufficient to check the model: the motion is too small against the noise, or "
-             "channels are "
-             "missing.";
+             "channels are missing or cannot be used.";
   }
   return "";
 }

@@ -328,7 +328,10 @@ void add_findings(std::span<const ChannelFinding> findings, report::DiagnosisRep
                                       gap.interface == name_of(EffectInterface::displacement_sensor);
       const bool is_concerned =
           finding.channel == Channel::measured_force ? is_of_force : is_of_force || is_of_displacement;
-      if (is_concerned && !gap.is_judged) gap.why_not = finding.said.what;
+      if (!is_concerned || gap.is_judged) continue;
+      gap.why_not = finding.said.what;
+      // What is left agrees; of the interface behind this channel nothing is known.
+      if (report.verdict == report::Verdict::none) report.verdict = report::Verdict::not_excited;
     }
     if (report.verdict == report::Verdict::not_excited) report.next_experiment = finding.said.what_to_do;
   }

@@ -150,8 +150,8 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
 }
 
 /// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
-/// model that it needed. The numbers of a law that another law replaces go with it. None where the candidate is found
-/// already.
+/// model that it needed. The numbers of a law that another law replaces go with it. In the place of a law the numbers
+/// of the model's own are free, too: the law has taken up what they are off. None where the candidate is found already.
 std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem& problem,
                                                      const std::vector<EffectSetting>& effects, std::size_t position,
                                                      const Candidate& candidate) {
@@ -166,6 +166,13 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
   std::erase_if(instead, [&](const EffectSetting& e) { return e.type != candidate.type && is_found(e.type); });
   instead.insert(instead.end(), rest.begin(), rest.end());
   std::vector<std::vector<EffectSetting>> starts{instead};
+  if (is_law(effects[position]) && !is_another_law) {
+    std::vector<EffectSetting> with_numbers = instead;
+    for (const EffectSetting& number : numbers_of(problem)) {
+      if (!holds(with_numbers, number.type)) with_numbers.push_back(number);
+    }
+    if (with_numbers.size() > instead.size()) starts.push_back(std::move(with_numbers));
+  }
   if (!candidate.fit.with_nuisance) return starts;
   for (const EffectSetting& number : wrong_numbers(problem, candidate.fit)) {
     const bool is_new = !is_found(number.type) && number.type != candidate.type;
@@ -173,6 +180,20 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
   }
   if (instead.size() > starts.front().size()) starts.push_back(std::move(instead));
   return starts;
+}
+
+/// Without the numbers of the model, beside the effect, that its fit does not need.
+Candidate without_needless_numbers(const IdentificationProblem& problem, Candidate candidate) {
+  const FitOutcome& fit = candidate.fit;
+  std::vector<EffectSetting> needed;
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    const EffectType* const type = fit.effects[i].type;
+    if (type == candidate.type || !is_number(problem, *type) || !is_needless(problem, fit, i)) {
+      needed.push_back(fit.effects[i]);
+    }
+  }
+  if (needed.size() < fit.effects.size()) candidate.fit = refit_effects(problem, needed, false);
+  return candidate;
 }
 
 /// Whether a law that replaces the model's has the same form: it differs in its numbers alone.
@@ -216,6 +237,7 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     if (!is_of_law_too && !starts.empty()) ++others;
     for (const std::vector<EffectSetting>& start : starts) {
       std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
+      if (instead && is_law && !is_another_law) instead = without_needless_numbers(problem, *std::move(instead));
       if (instead && refutation(problem, *instead).empty()) compare(std::move(instead));
     }
   }

@@ -490,6 +490,55 @@ IdentificationProblem beside_effects(const IdentificationProblem& problem, const
   return extended;
 }
 
+namespace {
+
+/// What a small step of a parameter changes in a prediction, by its norm; empty where it changes nothing.
+Eigen::VectorXd direction_of(const IdentificationProblem& problem, const FitSegment& fit, const Eigen::VectorXd& here,
+                             const std::vector<EffectSetting>& effects, std::size_t effect, std::size_t parameter) {
+  const EffectType& type = *effects[effect].type;
+  const SearchRange* const range = search_range(type, type.parameters[parameter]);
+  if (range == nullptr || is_fixed(problem, type, type.parameters[parameter])) return {};
+  const double value = effects[effect].values[parameter];
+  const double size = problem.scales.of(range->scale) * std::max(std::abs(range->low), std::abs(range->high));
+  const double step = tuning::kResolution * (value != 0.0 ? std::abs(value) : size);
+  for (const double moved_by : {step, -step}) try {
+      std::vector<EffectSetting> moved = effects;
+      moved[effect].values[parameter] += moved_by;
+      const Eigen::VectorXd change = predict(problem, fit, moved) - here;
+      const double norm = change.norm();
+      if (norm > 0.0) return change / norm;
+    } catch (const ConfigError&) {
+      continue;  // a value that the effect does not accept
+    }
+  return {};
+}
+
+/// Frees effects that were found, for small changes: what a fit of them alone took up of another effect shows only
+/// where they may give way to it.
+void free_nearby(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects, Numbers numbers,
+                 IdentificationProblem& extended) {
+  for (FitSegment& fit : extended.segments) {
+    if (numbers == Numbers::as_found) {
+      fit.nuisance.resize(fit.measured.size(), 0);
+      fit.nuisance_types.clear();
+    }
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      const EffectType* const type = effects[i].type;
+      const bool is_free = std::ranges::find(fit.nuisance_types, type) != fit.nuisance_types.end();
+      if (is_free || !fit.segment.touched_by(*type)) continue;
+      for (std::size_t j = 0; j < effects[i].values.size(); ++j) {
+        const Eigen::VectorXd direction = direction_of(problem, fit, fit.baseline, effects, i, j);
+        if (direction.size() == 0) continue;
+        fit.nuisance.conservativeResize(fit.measured.size(), fit.nuisance.cols() + 1);
+        fit.nuisance.rightCols(1) = direction;
+        fit.nuisance_types.push_back(type);
+      }
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                   const std::vector<EffectSetting>& base, Numbers numbers, std::size_t threads,
                                   const PartProgress& progress) {
@@ -502,13 +551,14 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
              (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law(*effect)));
     });
   });
-  const IdentificationProblem extended = beside_effects(coarse, base);
+  IdentificationProblem extended = beside_effects(coarse, base);
+  free_nearby(coarse, base, numbers, extended);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(
       effects.size(), threads,
       [&](std::size_t i) {
         try {
-          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, numbers == Numbers::free)};
+          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, true)};
           candidate.score = held_out_score(extended, candidate.fit);
           screened[i] = std::move(candidate);
         } catch (const ConfigError&) {

@@ -121,9 +121,9 @@ void put_stage_before_sensor(std::vector<Candidate>& candidates);
 enum class Numbers : std::uint8_t { as_found, free };
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
-/// on `coarse` with `base` as it is, and the numbers of the model likewise or free; the most promising ones, and the
-/// numbers of the model that may be wrong, are searched there with everything free, as a second effect may move the
-/// first one far; those that come near the best are fitted to `problem` from there.
+/// on `coarse` with `base` free for small changes, and the numbers of the model as they are or free; the most promising
+/// ones, and the numbers of the model that may be wrong, are searched there with everything free, as a second effect
+/// may move the first one far; those that come near the best are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
                                                 const std::vector<EffectSetting>& base, Numbers numbers,

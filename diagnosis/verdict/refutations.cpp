@@ -393,7 +393,8 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
                                !range->restriction.is_amount && range->restriction.limit == SearchLimit::none;
     // Smaller than it is looked for, and not yet absent.
     const bool is_too_small = range->low > 0.0 && parameter.neutral < scale * range->low;
-    const bool is_chosen = is_upper ? scale * range->high < parameter.high : is_low_chosen || is_too_small;
+    const bool is_high_chosen = scale * range->high < parameter.high && !range->restriction.is_unseen_at_high;
+    const bool is_chosen = is_upper ? is_high_chosen : is_low_chosen || is_too_small;
     if (is_chosen) return true;
   }
   return false;

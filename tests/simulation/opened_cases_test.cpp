@@ -81,5 +81,16 @@ TEST(OpenedCase, StrokeLimitFarBelowTheCommandIsFound) {
   EXPECT_THAT(causes_of_case(3680193090, 13), Contains("transfer_system.stroke_limit"));
 }
 
+/// A spring that softens, a damping and a stiffness that is off: a smooth law imitates the three, better than each of
+/// them by itself.
+TEST(OpenedCase, LawGivesWayToASofteningBesideADampingAndANumber) {
+  EXPECT_THAT(causes_of_case(1132191460, 125), Contains("specimen.cubic_stiffness"));
+}
+
+/// A damping found alone had taken up most of another one.
+TEST(OpenedCase, QuadraticDampingShowsBesideALinearOne) {
+  EXPECT_THAT(causes_of_case(3943260127, 51), Contains("specimen.quadratic_damping"));
+}
+
 }  // namespace
 }  // namespace hybridtest

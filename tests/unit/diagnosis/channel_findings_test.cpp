@@ -48,7 +48,8 @@ std::vector<std::string> found_with(const std::function<double(double)>& force_n
 void expect_not_judged(const Recording& recording, const std::string& why) {
   const Diagnosis diagnosis = diagnose(made_model(), {&recording, 1}, {});
   EXPECT_TRUE(diagnosis.causes.empty()) << diagnosis.causes.front().type->name;
-  EXPECT_NE(diagnosis.report.verdict, Verdict::named);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::not_excited) << "the actuator agrees, of the specimen nothing is known";
+  EXPECT_FALSE(diagnosis.report.next_experiment.empty());
   const std::string json = diagnosis_json(diagnosis);
   const std::string expected = "\"specimen\": \"measured_force_n " + why;
   EXPECT_NE(json.find(expected), std::string::npos) << expected;

@@ -253,6 +253,23 @@ INSTANTIATE_TEST_SUITE_P(
                             "read in metres its speed is 18.8 m/s"}),
     [](const auto& param_info) { return param_info.param.name; });
 
+/// A command of an unstable compensator, beside an actuator that did not follow it; control: with nothing measured
+/// beside it, it is taken for millimetres.
+TEST(CsvRecording, CommandMayAskForASpeedThatNoActuatorReaches) {
+  const auto recorded = [](bool has_measured) {
+    std::string text =
+        has_measured ? "time_s,command_displacement_m,measured_displacement_m\n" : "time_s,command_displacement_m\n";
+    for (int i = 0; i < 1000; ++i) {
+      const double growth = std::pow(1.004, i) / std::pow(1.004, 1000);
+      text += fmt::format("{},{:.6f}", 0.001 * i, 0.2 * growth * std::sin(0.1 * i));  // up to 20 m/s
+      text += has_measured ? fmt::format(",{:.6f}\n", 0.02 * std::sin(0.01 * i)) : "\n";
+    }
+    return ExampleCsv::complaints_about(text);
+  };
+  EXPECT_THAT(recorded(true), testing::IsEmpty());
+  EXPECT_THAT(recorded(false), testing::ElementsAre(HasSubstr("the largest speed accepted is 10 m/s")));
+}
+
 TEST(CsvRecording, NamesRowsOfInvalidTimeStamps) {
   ExampleCsv csv;
   csv.row(10).replace(0, 5, "0.007");  // as the row before

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/identification/law_candidates.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -140,6 +141,21 @@ TEST(Refutation, ShapeThatMakesUpForTheSizeIsHeld) {
   };
   EXPECT_THAT(with_correlation(0.9999), IsEmpty());
   EXPECT_THAT(with_correlation(0.0), HasSubstr("axial_force_n"));
+}
+
+TEST(Refutation, ColumnTooTallForItsHeightToShowIsNotCutOff) {
+  // Of such a column only the load over the height shows. Control: a contact stiffer than the range is cut off.
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  const auto at_highest = [&](const char* name, std::size_t parameter, std::vector<double> values) {
+    const EffectType& type = *find_effect(specimen, name);
+    const SearchRange& range = *search_range(type, type.parameters[parameter]);
+    values[parameter] = range.high * problem.scales.of(range.scale);
+    Candidate candidate = fit_of(specimen, name, values);
+    candidate.fit.parameters[0][parameter].at_bound = true;
+    return is_cut_off(problem, candidate.fit, 0);
+  };
+  EXPECT_FALSE(at_highest("geometric_stiffness", 1, {1e5, 0.0}));
+  EXPECT_TRUE(at_highest("contact", 0, {0.0, 0.01}));
 }
 
 TEST(Refutation, IntervalThatIsReportedIsNotNarrowedByAShapeHeld) {

@@ -39,8 +39,8 @@ class FilteredSpring {
 
 constexpr double kTime_s = 0.03;
 
-Diagnosis diagnosis_behind(double ratio) {
-  FilteredSpring filter{kTime_s, ratio};
+Diagnosis diagnosis_behind(double ratio, double time_constant_s = kTime_s) {
+  FilteredSpring filter{time_constant_s, ratio};
   return diagnosis_of(made_model(), made_recording(made_motion_m, [&](double t) { return filter.at(t); }));
 }
 
@@ -59,6 +59,17 @@ TEST_P(LoadCellFilter, IsALagWithItsShape) {
 
 /// Two equal poles, Butterworth.
 INSTANTIATE_TEST_SUITE_P(OfTwoPoles, LoadCellFilter, testing::Values(0.25, 0.5));
+
+TEST(SlowLoadCellFilter, IsALagToo) {
+  constexpr double kSlow_s = 0.12;  // set to two and a half hertz by mistake
+  const Diagnosis diagnosis = diagnosis_behind(0.25, kSlow_s);
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("lag"));
+  const report::RankedCause& lag = diagnosis.report.ranking.front();
+  // 20 N of noise on readings of 30 kN, 6000 times; the integration is late by a step, 0.1 ms, at most.
+  EXPECT_NEAR(find_parameter(lag, "time_constant_s")->value, kSlow_s, 1e-3);
+  EXPECT_NEAR(find_parameter(lag, "second_order_ratio")->value, 0.25, 0.002);
+}
 
 TEST(BesselFilter, IsASetWithATimeSkew) {
   // Its delay is the same at all frequencies up to its bandwidth: that is what it is made for.
