@@ -551,15 +551,16 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
              (setting.type->replacement != nullptr && (effect->replacement != nullptr || is_of_law(*effect)));
     });
   });
-  IdentificationProblem extended = beside_effects(coarse, base);
-  free_nearby(coarse, base, numbers, extended);
+  const IdentificationProblem extended = beside_effects(coarse, base);
+  IdentificationProblem giving_way = extended;
+  free_nearby(coarse, base, numbers, giving_way);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(
       effects.size(), threads,
       [&](std::size_t i) {
         try {
-          Candidate candidate{.type = effects[i], .fit = fit_effects(extended, {effects[i]}, true)};
-          candidate.score = held_out_score(extended, candidate.fit);
+          Candidate candidate{.type = effects[i], .fit = fit_effects(giving_way, {effects[i]}, true)};
+          candidate.score = held_out_score(giving_way, candidate.fit);
           screened[i] = std::move(candidate);
         } catch (const ConfigError&) {
           screened[i].reset();
@@ -575,7 +576,9 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(
       promising.size(), threads,
       [&](std::size_t i) {
-        const EffectSetting& further = promising[i].fit.effects.front();
+        // Beside the others as they are, where the search begins.
+        const FitOutcome alone = fit_effects(extended, {promising[i].type}, numbers == Numbers::free);
+        const EffectSetting& further = alone.effects.front();
         std::vector<EffectSetting> start = base;
         if (further.type->replacement != nullptr) {
           std::erase_if(start, [](const EffectSetting& setting) { return is_of_law(*setting.type); });
