@@ -312,16 +312,18 @@ std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutco
 }
 
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                  Numbers numbers, std::size_t threads, const PartProgress& progress, Growth& growth) {
+                  Beside freedom, std::size_t threads, const PartProgress& progress, Growth& growth) {
   for (std::size_t round = 0;
        growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
-    const std::vector<Candidate> beside = fit_beside(problem, coarse, growth.fit.effects, numbers, threads,
-                                                     progress.round(round, 2 * tuning::kEffectsMax));
+    const std::vector<Candidate> beside = fit_beside(problem, coarse, growth.fit.effects, freedom, threads,
+                                                     progress.round(round, 3 * tuning::kEffectsMax));
     if (std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside)) {
       growth = std::move(*next);
-      numbers = Numbers::as_found;
-    } else if (numbers == Numbers::as_found) {
-      numbers = Numbers::free;
+      freedom = Beside::as_found;
+    } else if (freedom == Beside::as_found) {
+      freedom = Beside::numbers_free;
+    } else if (freedom == Beside::numbers_free) {
+      freedom = Beside::all_giving_way;
     } else {
       break;
     }

@@ -59,11 +59,11 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
 [[nodiscard]] std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& by_numbers,
                                           const Growth& from, const std::vector<Candidate>& beside);
 
-/// Further effects one by one, until none is accepted: first beside what was found as it is, and where that finds
-/// nothing, with the numbers of the model free, which a further effect may move.
-/// @param numbers   how the first one is looked for.
+/// Further effects one by one, until none is accepted: first beside what was found as it is, where that finds nothing
+/// with the numbers of the model free, which a further effect may move, and at last with what was found giving way.
+/// @param freedom   how the first one is looked for.
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                  Numbers numbers, std::size_t threads, const PartProgress& progress, Growth& growth);
+                  Beside freedom, std::size_t threads, const PartProgress& progress, Growth& growth);
 
 /// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost. What is lost so
 /// at the full rate is asked there: what moves within a few samples, as a slip, hardly exists at the lower one.

@@ -117,8 +117,8 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
   for (std::size_t i = 0; i < leaders.size(); ++i) {
     Growth& leader = leaders[i].growth;
     if (gap_energy(problem, leader.fit).is_clear()) {
-      const std::vector<Candidate> beside = fit_beside(problem, coarse, leader.fit.effects, Numbers::as_found, threads,
-                                                       progress.round(i, leaders.size()));
+      const std::vector<Candidate> beside =
+          fit_beside(problem, coarse, leader.fit.effects, Beside::as_found, threads, progress.round(i, leaders.size()));
       if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
     const std::size_t position = place_of_found(selection, leaders[i]);

@@ -515,13 +515,9 @@ Eigen::VectorXd direction_of(const IdentificationProblem& problem, const FitSegm
 
 /// Frees effects that were found, for small changes: what a fit of them alone took up of another effect shows only
 /// where they may give way to it.
-void free_nearby(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects, Numbers numbers,
+void free_nearby(const IdentificationProblem& problem, const std::vector<EffectSetting>& effects,
                  IdentificationProblem& extended) {
   for (FitSegment& fit : extended.segments) {
-    if (numbers == Numbers::as_found) {
-      fit.nuisance.resize(fit.measured.size(), 0);
-      fit.nuisance_types.clear();
-    }
     for (std::size_t i = 0; i < effects.size(); ++i) {
       const EffectType* const type = effects[i].type;
       const bool is_free = std::ranges::find(fit.nuisance_types, type) != fit.nuisance_types.end();
@@ -540,7 +536,7 @@ void free_nearby(const IdentificationProblem& problem, const std::vector<EffectS
 }  // namespace
 
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                  const std::vector<EffectSetting>& base, Numbers numbers, std::size_t threads,
+                                  const std::vector<EffectSetting>& base, Beside freedom, std::size_t threads,
                                   const PartProgress& progress) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
@@ -552,15 +548,16 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     });
   });
   const IdentificationProblem extended = beside_effects(coarse, base);
-  IdentificationProblem giving_way = extended;
-  free_nearby(coarse, base, numbers, giving_way);
+  const bool are_free = freedom != Beside::as_found;
+  IdentificationProblem screen = extended;
+  if (freedom == Beside::all_giving_way) free_nearby(coarse, base, screen);
   std::vector<std::optional<Candidate>> screened(effects.size());
   for_each_in_parallel(
       effects.size(), threads,
       [&](std::size_t i) {
         try {
-          Candidate candidate{.type = effects[i], .fit = fit_effects(giving_way, {effects[i]}, true)};
-          candidate.score = held_out_score(giving_way, candidate.fit);
+          Candidate candidate{.type = effects[i], .fit = fit_effects(screen, {effects[i]}, are_free)};
+          candidate.score = held_out_score(screen, candidate.fit);
           screened[i] = std::move(candidate);
         } catch (const ConfigError&) {
           screened[i].reset();
@@ -576,8 +573,9 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(
       promising.size(), threads,
       [&](std::size_t i) {
-        // Beside the others as they are, where the search begins.
-        const FitOutcome alone = fit_effects(extended, {promising[i].type}, numbers == Numbers::free);
+        // The search begins beside the others as they are.
+        const FitOutcome alone =
+            freedom == Beside::all_giving_way ? fit_effects(extended, {promising[i].type}, true) : promising[i].fit;
         const EffectSetting& further = alone.effects.front();
         std::vector<EffectSetting> start = base;
         if (further.type->replacement != nullptr) {

@@ -117,8 +117,9 @@ void put_stage_before_sensor(std::vector<Candidate>& candidates);
 [[nodiscard]] IdentificationProblem beside_effects(const IdentificationProblem& problem,
                                                    const std::vector<EffectSetting>& effects);
 
-/// Of the model, beside effects that are screened.
-enum class Numbers : std::uint8_t { as_found, free };
+/// What is free beside effects that are screened: nothing; the numbers of the model; and what was found, too, for small
+/// changes, since by itself it has taken up part of another effect.
+enum class Beside : std::uint8_t { as_found, numbers_free, all_giving_way };
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
 /// on `coarse` with `base` free for small changes, and the numbers of the model as they are or free; the most promising
@@ -126,7 +127,7 @@ enum class Numbers : std::uint8_t { as_found, free };
 /// may move the first one far; those that come near the best are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
-                                                const std::vector<EffectSetting>& base, Numbers numbers,
+                                                const std::vector<EffectSetting>& base, Beside freedom,
                                                 std::size_t threads, const PartProgress& progress);
 
 }  // namespace hybridtest

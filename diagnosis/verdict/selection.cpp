@@ -37,11 +37,11 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
       best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   // Beside a leader alone nothing was accepted.
-  const Numbers numbers = growth.accepted.size() > 1 ? Numbers::as_found : Numbers::free;
-  grow_further(problem, coarse, selection, numbers, threads, further, growth);
+  const Beside freedom = growth.accepted.size() > 1 ? Beside::as_found : Beside::numbers_free;
+  grow_further(problem, coarse, selection, freedom, threads, further, growth);
   // In place of what was dropped, something else may be needed.
   if (settle(problem, coarse, selection, growth)) {
-    grow_further(problem, coarse, selection, Numbers::as_found, threads, further, growth);
+    grow_further(problem, coarse, selection, Beside::as_found, threads, further, growth);
     settle(problem, coarse, selection, growth);
   }
   return growth;
@@ -59,7 +59,7 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   settle_noise(coarse, refit_effects(coarse, growth.fit.effects, false));
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   score_again(problem, selection.library);
-  grow_further(problem, coarse, selection, Numbers::as_found, threads, progress, growth);
+  grow_further(problem, coarse, selection, Beside::as_found, threads, progress, growth);
   settle(problem, coarse, selection, growth);
 }
 
