@@ -421,7 +421,6 @@ Eigen::VectorXd nearly_absent(const SearchPlan& plan) {
     const double neutral = plan.neutral[searched.effect].type->parameters[searched.parameter].neutral;
     if (searched.logarithmic || std::isnan(neutral)) continue;
     const double place = searched.place_of(neutral);
-    if (!(place >= 0.0 && place <= 1.0)) continue;
     places[static_cast<Eigen::Index>(i)] = place + (place < 0.5 ? tuning::kCoefficientStep : -tuning::kCoefficientStep);
     is_near = true;
   }

@@ -143,6 +143,12 @@ const RawColumn* measured_beside(const RawRecording& raw, const RawColumn& colum
   return displacement == raw.columns.end() ? nullptr : &*displacement;
 }
 
+/// A compensator that has become unstable commands a speed that no actuator reaches.
+bool is_beside_a_slow_one(const RawRecording& raw, const RawColumn& column, double period_s) {
+  const RawColumn* const measured = measured_beside(raw, column);
+  return measured != nullptr && fastest(measured->values, period_s) <= tuning::kSpeedMax_m_per_s;
+}
+
 void check_acceleration(const RawRecording& raw, const RawColumn& column, double period_s, FindingList& findings) {
   const RawColumn* const displacement = measured_beside(raw, column);
   if (displacement == nullptr) return;
@@ -168,14 +174,10 @@ void check_units(const RawRecording& raw, double period_s, FindingList& findings
     if (column.channel == Channel::measured_acceleration) check_acceleration(raw, column, period_s, findings);
     if (!is_displacement(column.channel) || is_suspected_by_ratio(raw, column, period_s, findings)) continue;
     const std::size_t farthest = span_of(column.values).farthest;
-    double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
-    // A compensator that has become unstable commands a speed that no actuator reaches.
-    if (const RawColumn* const measured = measured_beside(raw, column); measured != nullptr && speed > 0.0) {
-      speed = std::min(speed, fastest(measured->values, period_s));
-    }
+    const double speed = raw.time_s.empty() ? 0.0 : fastest(column.values, period_s);
     if (std::abs(column.values[farthest]) > tuning::kDisplacementMax_m) {
       suspect(raw, column, farthest, "seems to be in millimetres: the largest displacement accepted is 10 m", findings);
-    } else if (speed > tuning::kSpeedMax_m_per_s) {
+    } else if (speed > tuning::kSpeedMax_m_per_s && !is_beside_a_slow_one(raw, column, period_s)) {
       suspect(raw, column, farthest,
               fmt::format("seems to be in millimetres: read in metres its speed is {:.3g} m/s, and the largest speed "
                           "accepted is 10 m/s",

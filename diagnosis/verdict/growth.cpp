@@ -149,6 +149,14 @@ const Candidate* first_that_earns(const IdentificationProblem& problem, const Fi
   return number == beside.end() ? &*best : &*number;
 }
 
+/// The numbers of the model behind the effects that are there.
+std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem, std::vector<EffectSetting> effects) {
+  for (const EffectSetting& number : numbers_of(problem)) {
+    if (!holds(effects, number.type)) effects.push_back(number);
+  }
+  return effects;
+}
+
 /// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
 /// model that it needed. The numbers of a law that another law replaces go with it. In the place of a law the numbers
 /// of the model's own are free, too: the law has taken up what they are off. None where the candidate is found already.
@@ -167,10 +175,7 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
   instead.insert(instead.end(), rest.begin(), rest.end());
   std::vector<std::vector<EffectSetting>> starts{instead};
   if (is_law(effects[position]) && !is_another_law) {
-    std::vector<EffectSetting> with_numbers = instead;
-    for (const EffectSetting& number : numbers_of(problem)) {
-      if (!holds(with_numbers, number.type)) with_numbers.push_back(number);
-    }
+    std::vector<EffectSetting> with_numbers = with_all_numbers(problem, instead);
     if (with_numbers.size() > instead.size()) starts.push_back(std::move(with_numbers));
   }
   if (!candidate.fit.with_nuisance) return starts;
@@ -243,10 +248,7 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
   }
   // Which of the numbers are needed is asked at the end.
   if (is_law) {
-    std::vector<EffectSetting> start = without(effects, position);
-    for (const EffectSetting& number : numbers_of(problem)) {
-      if (!holds(start, number.type)) start.push_back(number);
-    }
+    const std::vector<EffectSetting> start = with_all_numbers(problem, without(effects, position));
     const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
     if (holds(start, stiffness)) compare(fit_together(problem, stiffness, start, refit_effects));
   }

@@ -573,16 +573,19 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   for_each_in_parallel(
       promising.size(), threads,
       [&](std::size_t i) {
-        // The search begins beside the others as they are.
-        const FitOutcome alone =
-            freedom == Beside::all_giving_way ? fit_effects(extended, {promising[i].type}, true) : promising[i].fit;
-        const EffectSetting& further = alone.effects.front();
-        std::vector<EffectSetting> start = base;
-        if (further.type->replacement != nullptr) {
-          std::erase_if(start, [](const EffectSetting& setting) { return is_of_law(*setting.type); });
+        try {
+          EffectSetting further = promising[i].fit.effects.front();
+          // The search begins beside the others as they are.
+          if (freedom == Beside::all_giving_way) further = fit_effects(extended, {further.type}, true).effects.front();
+          std::vector<EffectSetting> start = base;
+          if (further.type->replacement != nullptr) {
+            std::erase_if(start, [](const EffectSetting& setting) { return is_of_law(*setting.type); });
+          }
+          start.push_back(std::move(further));
+          together[i] = fit_together(coarse, promising[i].type, start, search_effects);
+        } catch (const ConfigError&) {
+          together[i].reset();
         }
-        start.push_back(further);
-        together[i] = fit_together(coarse, promising[i].type, start, search_effects);
       },
       counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));
   // Candidates with a much lower score on the coarse record than one that may be the cause are dropped.

@@ -122,9 +122,9 @@ void put_stage_before_sensor(std::vector<Candidate>& candidates);
 enum class Beside : std::uint8_t { as_found, numbers_free, all_giving_way };
 
 /// Every judged effect but those in `base` fitted together with them, best score first. All are screened
-/// on `coarse` with `base` free for small changes, and the numbers of the model as they are or free; the most promising
-/// ones, and the numbers of the model that may be wrong, are searched there with everything free, as a second effect
-/// may move the first one far; those that come near the best are fitted to `problem` from there.
+/// on `coarse` with what `freedom` leaves free; the most promising ones, and the numbers of the model that may be
+/// wrong, are searched there with everything free, as a second effect may move the first one far; those that come near
+/// the best are fitted to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
                                                 const std::vector<EffectSetting>& base, Beside freedom,
