@@ -135,12 +135,14 @@ namespace {
 /// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
 const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& by_numbers,
                                   const FitOutcome& without, const std::vector<Candidate>& beside) {
+  const double before = gap_energy(problem, without).excess();
+  // What predicts better by moving the others, and leaves more of the gap, explains nothing of it.
   const auto earns = [&](const Candidate& candidate) {
-    return earns_its_place(problem, by_numbers, without, candidate);
+    return gap_energy(problem, candidate.fit).excess() < before &&
+           earns_its_place(problem, by_numbers, without, candidate);
   };
   const auto best = std::ranges::find_if(beside, earns);
   if (best == beside.end()) return nullptr;
-  const double before = gap_energy(problem, without).excess();
   const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
   const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
     return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
