@@ -23,7 +23,7 @@ StageEffects inverse_of_sensor(const SiteModel& model, double sample_period_s) {
 
 /// What a sensor sees: the value itself, and how it came about.
 StageSample seen_by_sensor(const StageSample& sample, const Motion& motion, double force_n) noexcept {
-  return {.time_s = sample.time_s, .motion = motion, .force_n = force_n};
+  return {.motion = motion, .time_s = sample.time_s, .force_n = force_n};
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ RigStatus SimulatedRig::exchange(const ActuatorCommand& command, RigFeedback& fe
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     const auto dof = static_cast<Eigen::Index>(i);
     const StageSample sample{
-        .time_s = command.time_s, .motion = {.displacement_m = command.displacement_m[dof]}, .force_n = force_n_[dof]};
+        .motion = {.displacement_m = command.displacement_m[dof]}, .time_s = command.time_s, .force_n = force_n_[dof]};
     move(actuators_[i], sample, phase == Phase::armed);
   }
   load_specimen(command.time_s);
@@ -129,7 +129,7 @@ void SimulatedRig::move(Actuator& actuator, const StageSample& command, bool is_
 void SimulatedRig::load_specimen(double time_s) noexcept {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     const auto dof = static_cast<Eigen::Index>(i);
-    const StageSample sample{.time_s = time_s, .motion = actuators_[i].motion, .force_n = force_n_[dof]};
+    const StageSample sample{.motion = actuators_[i].motion, .time_s = time_s, .force_n = force_n_[dof]};
     actuators_[i].given = actuators_[i].specimen_effects.before(sample);
     displacement_m_[dof] = actuators_[i].given.displacement_m;
     velocity_m_per_s_[dof] = actuators_[i].given.velocity_m_per_s;
@@ -138,13 +138,13 @@ void SimulatedRig::load_specimen(double time_s) noexcept {
   specimen_->impose(displacement_m_, velocity_m_per_s_, force_n_);
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     const auto dof = static_cast<Eigen::Index>(i);
-    const StageSample sample{.time_s = time_s, .motion = actuators_[i].motion, .force_n = before_n[dof]};
+    const StageSample sample{.motion = actuators_[i].motion, .time_s = time_s, .force_n = before_n[dof]};
     force_n_[dof] = actuators_[i].specimen_effects.after(sample, actuators_[i].given, force_n_[dof]);
   }
 }
 
 double SimulatedRig::read_force(Actuator& actuator, double time_s, double force_n) noexcept {
-  const StageSample sample{.time_s = time_s, .motion = actuator.motion, .force_n = force_n};
+  const StageSample sample{.motion = actuator.motion, .time_s = time_s, .force_n = force_n};
   return actuator.force_sensor_effects.step(sample, [force_n](const Motion&) { return force_n; });
 }
 

@@ -24,9 +24,7 @@ BoucWen::BoucWen(const Parameters& parameters, double substeps_per_length)
   ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
   // 2^-20 where there are 64.
-  first_substep_ = std::exp2(-std::log2(substeps_per_length) * 10.0 / 3.0);
-  const double share = std::abs(unloading_);
-  unloading_substep_ = 1.0 / (substeps_per_length * std::max(1.0, share > 1.0 ? share : std::pow(share, 0.2)));
+  first_substep_ = std::exp2(-std::log2(substeps_per_length) * kFirstSubstepPower);
   is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
 }
 
@@ -49,12 +47,26 @@ double BoucWen::trial(double displacement_m, double /*velocity_m_per_s*/) noexce
 // equation loses all but two of its parameters: dw/ds = 1 - c |w|^n, where c is 1 while
 // loading (w > 0) and (gamma - beta) / (gamma + beta) while unloading.
 double BoucWen::slope(double w) const noexcept {
-  // The usual exponent is one, and a power costs more than all the rest.
-  const double power = parameters_.n == 1.0 ? std::abs(w) : std::pow(std::abs(w), parameters_.n);
-  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * power;
+  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(w), parameters_.n);
 }
 
 double BoucWen::carried_along(double w, double path) const noexcept {
+  return parameters_.n == 1.0 ? carried_exactly(w, path) : carried_by_substeps(w, path);
+}
+
+double BoucWen::carried_exactly(double w, double path) const noexcept {
+  if (w < 0.0) {
+    const double begin = 1.0 + unloading_ * w;
+    if (begin <= 0.0) return w;  // without beta the limit is a rest on the way back, too
+    const double to_zero = unloading_ == 0.0 ? -w : -std::log1p(unloading_ * w) / unloading_;
+    if (path < to_zero) return unloading_ == 0.0 ? w + path : w + begin * std::expm1(unloading_ * path) / unloading_;
+    path -= to_zero;
+    w = 0.0;
+  }
+  return w - (1.0 - w) * std::expm1(-path);
+}
+
+double BoucWen::carried_by_substeps(double w, double path) const noexcept {
   double left = path;
   for (int i = 0; i < kSubstepsMax && left > 0.0; ++i) {
     double step = std::min(left, substep(w));
@@ -71,7 +83,6 @@ double BoucWen::carried_along(double w, double path) const noexcept {
 
 double BoucWen::substep(double w) const noexcept {
   const double n = parameters_.n;
-  if (n == 1.0) return w < 0.0 ? unloading_substep_ : 1.0 / substeps_per_length_;
   const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
   const double share = (w < 0.0 ? std::abs(unloading_) : 1.0) * std::pow(largest, n - 1.0);
   // n * share is the derivative of the slope; its own derivatives grow n times each, so that a

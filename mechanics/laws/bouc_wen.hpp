@@ -13,7 +13,7 @@ namespace hybridtest {
 /// as BoucWen of OpenSees without degradation. Rate-independent: z depends on the path of x
 /// alone, and between two exchanges x is taken to move one way. The differential equation is
 /// integrated along that way to about 1e-9 of the ultimate z, whatever the length of the
-/// step, so that results do not change with the step as those of a one-step rule do.
+/// step, so that results do not change with the step as those of a one-step rule do. With n = 1 it is solved exactly.
 class BoucWen final : public Law {
  public:
   struct Parameters {
@@ -58,6 +58,9 @@ class BoucWen final : public Law {
   /// Slope of w = z / ultimate_m() along the path, w counted positive in the direction of motion.
   [[nodiscard]] double slope(double w) const noexcept;
   [[nodiscard]] double carried_along(double w, double path) const noexcept;
+  /// With n = 1: dw/ds = 1 + c w on the way back to zero, 1 - w from there.
+  [[nodiscard]] double carried_exactly(double w, double path) const noexcept;
+  [[nodiscard]] double carried_by_substeps(double w, double path) const noexcept;
   [[nodiscard]] double substep(double w) const noexcept;
   [[nodiscard]] double runge_kutta_step(double w, double path) const noexcept;
   [[nodiscard]] double path_to_zero(double w) const noexcept;
@@ -67,7 +70,6 @@ class BoucWen final : public Law {
   double first_substep_;
   double ultimate_m_;
   double unloading_;          // (gamma - beta) / (gamma + beta)
-  double unloading_substep_;  // where n is one: the same everywhere
   bool is_singular_at_zero_;  // high derivatives of |z|^n
   State committed_;
   State trial_;

@@ -16,8 +16,8 @@ namespace hybridtest {
 ///     zu^n = Ao / ((1 + d_nu e) (gamma + beta)),  the limit of |z|
 ///
 /// Rate-independent: between two exchanges x is taken to move one way, and the equation is integrated
-/// along that way by the classical Runge-Kutta method in substeps of at most a 64th of zu and of
-/// zeta2, to about 1e-5 of zu (at the kink where z changes sign).
+/// along that way by Kutta's method of third order in substeps of about a 64th of zu and of zeta2, each with
+/// what the energy in its middle leaves, to about 1e-5 of zu (at the kink where z changes sign).
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {
@@ -63,7 +63,7 @@ class BoucWenBaberNoori final : public Law {
   [[nodiscard]] double trial(double displacement_m, double velocity_m_per_s) noexcept override;
   void commit() noexcept override { committed_ = trial_; }
   void revert() noexcept override { trial_ = committed_; }
-  void reset() noexcept override { committed_ = trial_ = State{}; }
+  void reset() noexcept override { committed_ = trial_ = virgin_; }
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override;
 
  private:
@@ -71,18 +71,27 @@ class BoucWenBaberNoori final : public Law {
     double displacement_m = 0.0;
     double hysteretic_m = 0.0;  // z
     double energy_j = 0.0;      // e
+    double length_m = 0.0;      // over which the slope changed last
+  };
+  /// What depends on the energy alone.
+  struct Degraded {
+    double strength = 1.0;    // 1 + d_nu e
+    double softness = 1.0;    // 1 + d_eta e
+    double ultimate_m = 0.0;  // zu
+    double pinching = 0.0;    // zeta1
+    double width_m = 0.0;     // zeta2
   };
 
-  /// Limit of |z| with the strength that is left.
-  [[nodiscard]] double ultimate_m(double energy_j) const noexcept;
-  [[nodiscard]] double pinching_width_m(double energy_j, double pinching) const noexcept;
-  [[nodiscard]] double pinching_at(double energy_j) const noexcept;
+  [[nodiscard]] Degraded at_energy(double energy_j) const noexcept;
+  /// Over which the slope changes.
+  [[nodiscard]] double length_m(const Degraded& degraded) const noexcept;
   /// dz / dx, moving towards `direction` (-1 or 1).
-  [[nodiscard]] double slope(double hysteretic_m, double energy_j, double direction) const noexcept;
+  [[nodiscard]] double slope(double hysteretic_m, double direction, const Degraded& degraded) const noexcept;
   void advance(State& state, double increment_m) const noexcept;
 
   Parameters parameters_;
   double substeps_per_length_;
+  State virgin_;
   State committed_;
   State trial_;
 };

@@ -13,8 +13,8 @@ struct Motion {
 
 /// What an effect sees of its stage at one sample, whatever other effects do to it.
 struct StageSample {
-  double time_s = 0.0;   // since the beginning of the record or since arming
   Motion motion;         // into the stage: command (transfer system) or actuator motion (the others)
+  double time_s = 0.0;   // since the beginning of the record or since arming
   double force_n = 0.0;  // force of the specimen at the sample before; what loads the actuator
   // What was recorded beside the motion (current, temperature), in the order of SiteModel::inputs; null: nothing.
   const double* inputs = nullptr;

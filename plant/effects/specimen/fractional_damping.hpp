@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -43,11 +44,11 @@ class FractionalDamping final : public Effect {
     double log_rate = std::log(10.0 / sample_period_s);
     dashpot_n_per_m_ =
         scale_n_per_m * std::exp((order - 1.0) * (log_rate + 0.5 * step)) / (1.0 - order) / sample_period_s;
-    for (FadingSpring& spring : springs_) {
+    for (Eigen::Index i = 0; i < kFadingSprings; ++i) {
       const double turn = std::exp(log_rate) * sample_period_s;
-      spring = {.stiffness_n_per_m = scale_n_per_m * step * std::exp(order * log_rate),
-                .decay = std::exp(-turn),
-                .share = -std::expm1(-turn) / turn};
+      stiffness_n_per_m_[i] = scale_n_per_m * step * std::exp(order * log_rate);
+      decay_[i] = std::exp(-turn);
+      share_[i] = -std::expm1(-turn) / turn;
       log_rate -= step;
     }
     spring_n_per_m_ = scale_n_per_m * std::exp(order * (log_rate + 0.5 * step)) / order;
@@ -56,25 +57,23 @@ class FractionalDamping final : public Effect {
     const double travel_m = sample.motion.displacement_m - displacement_m_;
     displacement_m_ = sample.motion.displacement_m;
     force_n += spring_n_per_m_ * displacement_m_ + dashpot_n_per_m_ * travel_m;
-    for (FadingSpring& spring : springs_) {
-      spring.stretch_m = spring.decay * spring.stretch_m + spring.share * travel_m;
-      force_n += spring.stiffness_n_per_m * spring.stretch_m;
-    }
+    stretch_m_ = decay_ * stretch_m_ + share_ * travel_m;
+    force_n += (stiffness_n_per_m_ * stretch_m_).sum();
   }
   void reset() noexcept override {
     displacement_m_ = 0.0;
-    for (FadingSpring& spring : springs_) spring.stretch_m = 0.0;
+    stretch_m_.setZero();
   }
 
  private:
-  struct FadingSpring {
-    double stiffness_n_per_m = 0.0;
-    double decay = 0.0;  // of its stretch over a sample
-    double share = 0.0;  // of a sample's travel that is left at its end
-    double stretch_m = 0.0;
-  };
   // From a tenth of a sample down to 3e8 samples.
-  std::array<FadingSpring, 20> springs_;
+  static constexpr Eigen::Index kFadingSprings = 20;
+  using OfSprings = Eigen::Array<double, kFadingSprings, 1>;
+
+  OfSprings stiffness_n_per_m_;
+  OfSprings decay_;  // of its stretch over a sample
+  OfSprings share_;  // of a sample's travel that is left at its end
+  OfSprings stretch_m_ = OfSprings::Zero();
   double spring_n_per_m_;
   double dashpot_n_per_m_;  // over a sample
   double displacement_m_ = 0.0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/config_error.hpp"
@@ -38,6 +39,43 @@ TEST(BoucWenBaberNoori, EqualsBoucWenWithoutDegradationAndPinching) {
       const double displacement_m = 0.04 * std::sin(0.01 * i) + 0.01 * std::sin(0.13 * i);
       ASSERT_NEAR(impose(extended, displacement_m), impose(plain, displacement_m), 1e-5 * ultimate_n)
           << i;  // as documented
+    }
+  }
+}
+
+TEST(BoucWenBaberNoori, SubstepsAreAsExactAsDocumented) {
+  for (const double n : {1.0, 1.7, 4.0}) {
+    for (const double level : {0.0, 0.3}) {
+      constexpr double kUltimate_m = 0.01;
+      const double energy_j = kStiffness_n_per_m * kUltimate_m * kUltimate_m;
+      const BoucWenBaberNoori::Parameters parameters{.stiffness_n_per_m = kStiffness_n_per_m,
+                                                     .alpha = 0.1,
+                                                     .n = n,
+                                                     .gamma_per_m = 0.4 * std::pow(kUltimate_m, -n),
+                                                     .beta_per_m = 0.6 * std::pow(kUltimate_m, -n),
+                                                     .strength_degradation_per_j = 0.01 / energy_j,
+                                                     .stiffness_degradation_per_j = 0.02 / energy_j,
+                                                     .pinching = 0.8,
+                                                     .pinching_rate_per_j = 0.1 / energy_j,
+                                                     .pinching_level = level,
+                                                     .pinching_width_m = 0.3 * kUltimate_m,
+                                                     .width_rate_m_per_j = 0.01 * kUltimate_m / energy_j,
+                                                     .width_share = 0.3};
+      BoucWenBaberNoori exact{parameters, 1024.0};
+      BoucWenBaberNoori usual{parameters};
+      BoucWenBaberNoori searched{parameters, 8.0};
+      double most_n = 0.0;
+      double least_n = 0.0;
+      const double unit_n = 0.9 * kStiffness_n_per_m * kUltimate_m;
+      for (int i = 0; i < 4000; ++i) {
+        const double displacement_m = 0.04 * std::sin(0.05 * i) + 0.01 * std::sin(0.13 * i);
+        const double force_n = impose(exact, displacement_m);
+        ASSERT_NEAR(impose(usual, displacement_m), force_n, 1e-5 * unit_n) << i;
+        ASSERT_NEAR(impose(searched, displacement_m), force_n, 6e-4 * unit_n) << i;
+        if (i < 200) most_n = std::max(most_n, force_n);
+        if (i > 3800) least_n = std::max(least_n, force_n);
+      }
+      EXPECT_LT(least_n, 0.9 * most_n);  // control: it does degrade
     }
   }
 }

@@ -28,13 +28,15 @@ double impose(BoucWen& law, double displacement_m) {
 
 /// What the Runge-Kutta substeps leave, as a share of the ultimate z; see bouc_wen.hpp.
 constexpr double kIntegration = 1e-9;
+/// With n = 1 there are none: some ten roundings of numbers of up to three times the ultimate z.
+constexpr double kRounding = 1e-14;
 
 TEST(BoucWen, LoadingWithExponentOneIsExponential) {
   BoucWen law = hysteretic_part(1.0, 30.0, 70.0, 1.3);
   const double ultimate_m = 1.3 / 100.0;
   EXPECT_DOUBLE_EQ(law.ultimate_m(), ultimate_m);
   for (const double x : {1e-5, 1e-3, 0.01, 0.05, 1.0, 1e6})
-    EXPECT_NEAR(law.trial(x, 0.0), ultimate_m * (1.0 - std::exp(-100.0 * x)), kIntegration * ultimate_m);
+    EXPECT_NEAR(law.trial(x, 0.0), ultimate_m * (1.0 - std::exp(-100.0 * x)), kRounding * ultimate_m);
 }
 
 TEST(BoucWen, UnloadingWithExponentOneIsExponential) {
@@ -48,12 +50,32 @@ TEST(BoucWen, UnloadingWithExponentOneIsExponential) {
   for (const double share : {0.1, 0.5, 0.9, 1.0}) {
     const double back_m = share * to_zero_m;
     const double expected_m = 1.0 / rate - (1.0 / rate - begin_m) * std::exp(rate * back_m);
-    EXPECT_NEAR(law.trial(0.02 - back_m, 0.0), expected_m, kIntegration * law.ultimate_m());
+    EXPECT_NEAR(law.trial(0.02 - back_m, 0.0), expected_m, kRounding * law.ultimate_m());
   }
   // Past zero it loads the other way as a virgin does.
   const double beyond_m = 0.004;
   EXPECT_NEAR(law.trial(0.02 - to_zero_m - beyond_m, 0.0), -0.01 * (1.0 - std::exp(-100.0 * beyond_m)),
-              kIntegration * law.ultimate_m());
+              kRounding * law.ultimate_m());
+}
+
+TEST(BoucWen, UnloadsStraightWithExponentOneAndEqualGammaAndBeta) {
+  // Nearly equal ones, too: a rate that rounding decides must not.
+  for (const double gamma_per_m : {50.0, std::nextafter(50.0, 51.0)}) {
+    BoucWen law = hysteretic_part(1.0, gamma_per_m, 50.0);
+    const double begin_m = impose(law, 0.02);
+    EXPECT_NEAR(law.trial(0.02 - 0.5 * begin_m, 0.0), 0.5 * begin_m, kRounding * law.ultimate_m());
+    EXPECT_NEAR(law.trial(0.02 - begin_m - 0.004, 0.0), -0.01 * (1.0 - std::exp(-0.4)), kRounding * law.ultimate_m());
+  }
+}
+
+TEST(BoucWen, StaysAtItsLimitWithExponentOneAndNoBeta) {
+  // dz/dx = 1 - gamma z on both ways: at z = 1 / gamma it rests, just below it comes back slowly.
+  BoucWen law = hysteretic_part(1.0, 100.0, 0.0);
+  EXPECT_EQ(impose(law, 1e6), law.ultimate_m());
+  EXPECT_EQ(law.trial(-1e6, 0.0), law.ultimate_m());
+  BoucWen below = hysteretic_part(1.0, 100.0, 0.0);
+  impose(below, 0.02);
+  EXPECT_NEAR(below.trial(0.01, 0.0), 0.01 * (1.0 - std::exp(-1.0)), kRounding * below.ultimate_m());
 }
 
 TEST(BoucWen, ExponentTwoMatchesClosedForm) {

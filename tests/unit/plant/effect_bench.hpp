@@ -46,10 +46,10 @@ struct Driver {
   double output = 0.0;
   for (int i = 0; i < samples; ++i) {
     const double time_s = kBenchPeriod_s * i;
-    const StageSample sample{.time_s = time_s,
-                             .motion = {.displacement_m = driver.displacement_m(time_s),
+    const StageSample sample{.motion = {.displacement_m = driver.displacement_m(time_s),
                                         .velocity_m_per_s = driver.velocity_m_per_s(time_s),
                                         .acceleration_m_per_s2 = driver.acceleration_m_per_s2(time_s)},
+                             .time_s = time_s,
                              .force_n = output};
     Motion motion = sample.motion;
     effect.before(sample, motion);
@@ -66,7 +66,7 @@ struct Driver {
     const std::function<double(const Motion&)>& base = [](const Motion&) { return 0.0; }) {
   std::vector<double> outputs;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const StageSample sample{.time_s = kBenchPeriod_s * static_cast<double>(i), .motion = {.displacement_m = path[i]}};
+    const StageSample sample{.motion = {.displacement_m = path[i]}, .time_s = kBenchPeriod_s * static_cast<double>(i)};
     Motion motion = sample.motion;
     effect.before(sample, motion);
     double output = base(motion);

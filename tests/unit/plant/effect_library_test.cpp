@@ -55,7 +55,7 @@ std::vector<double> driven(Effect& effect) {
     const Motion motion{.displacement_m = 1.1 * std::sin(3.0 * t) + 0.3 * std::sin(17.0 * t),
                         .velocity_m_per_s = 3.3 * std::cos(3.0 * t) + 5.1 * std::cos(17.0 * t),
                         .acceleration_m_per_s2 = -9.9 * std::sin(3.0 * t) - 86.7 * std::sin(17.0 * t)};
-    const StageSample sample{.time_s = t, .motion = motion, .force_n = force};
+    const StageSample sample{.motion = motion, .time_s = t, .force_n = force};
     Motion given = motion;
     effect.before(sample, given);
     double output = given.displacement_m;

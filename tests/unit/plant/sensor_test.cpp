@@ -64,11 +64,11 @@ TEST(Sensors, InverseReadingGivesTrueMotion) {
     const auto read = response(*sensor, driver, 3000, [](const Motion& motion) { return motion.displacement_m; });
     for (std::size_t i = 1001; i + 1 < read.size(); ++i) {
       const double t = kBenchPeriod_s * static_cast<double>(i);
-      const StageSample sample{.time_s = t,
-                               .motion = {.displacement_m = read[i],
+      const StageSample sample{.motion = {.displacement_m = read[i],
                                           .velocity_m_per_s = (read[i + 1] - read[i - 1]) / (2.0 * kBenchPeriod_s),
                                           .acceleration_m_per_s2 = (read[i + 1] - 2.0 * read[i] + read[i - 1]) /
-                                                                   (kBenchPeriod_s * kBenchPeriod_s)}};
+                                                                   (kBenchPeriod_s * kBenchPeriod_s)},
+                               .time_s = t};
       Motion motion = sample.motion;
       inverse->before(sample, motion);
       // Central differences and straight lines: (omega dt)^2 / 6 of the amplitude at most.
@@ -90,7 +90,7 @@ TEST(Sensors, LaggedAccelerationIsInverted) {
       for (int i = 0; i < 500; ++i) {
         const double t = kBenchPeriod_s * i;
         Motion motion{.displacement_m = 0.0, .velocity_m_per_s = 0.0, .acceleration_m_per_s2 = std::cos(kOmega * t)};
-        inverse->before({.time_s = t, .motion = motion}, motion);
+        inverse->before({.motion = motion, .time_s = t}, motion);
         if (i < 2) continue;
         const double expected = (1.0 - second_order) * std::cos(kOmega * t) - kTime_s * kOmega * std::sin(kOmega * t);
         ASSERT_NEAR(motion.acceleration_m_per_s2, expected,

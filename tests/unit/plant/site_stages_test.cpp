@@ -138,7 +138,7 @@ TEST(SiteStages, StagesTogetherEqualTheRig) {
     motion.displacement_m = transfer.displacement_m();
     motion.velocity_m_per_s = (motion.displacement_m - before.displacement_m) / kPeriod_s;
     motion.acceleration_m_per_s2 = (motion.velocity_m_per_s - before.velocity_m_per_s) / kPeriod_s;
-    EXPECT_EQ(feedback.force_n[0], specimen.step({.time_s = asked.time_s, .motion = motion}));
+    EXPECT_EQ(feedback.force_n[0], specimen.step({.motion = motion, .time_s = asked.time_s}));
   }
 }
 

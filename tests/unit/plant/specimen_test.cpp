@@ -273,7 +273,7 @@ TEST(SpecimenBacklash, FrictionDamperBacklashMovesWithReversal) {
   std::vector<double> forces;
   for (int i = 0; i <= 80; ++i) {
     const double x = i <= 40 ? 0.005 * i : 0.2 - 0.005 * (i - 40);
-    const StageSample sample{.time_s = 0.0, .motion = {.displacement_m = x}};
+    const StageSample sample{.motion = {.displacement_m = x}, .time_s = 0.0};
     Motion motion = sample.motion;
     backlash->before(sample, motion);
     double force_n = 0.0;

@@ -98,7 +98,7 @@ TEST(TransferSystemEffects, StictionSlipsInItsTime) {
 TEST(TransferSystemEffects, ComplianceYieldsUnderForce) {
   const auto effect = made(EffectInterface::transfer_system, "compliance", {2e-8, 1.0, 0.0});
   double displacement_m = 0.01;
-  effect->after({.time_s = 0.0, .motion = {}, .force_n = 1.0e5}, {}, displacement_m);
+  effect->after({.motion = {}, .time_s = 0.0, .force_n = 1.0e5}, {}, displacement_m);
   EXPECT_DOUBLE_EQ(displacement_m, 0.008);
 }
 
@@ -109,7 +109,7 @@ TEST(TransferSystemEffects, ComplianceHasJointsThatClose) {
   const auto effect = made(EffectInterface::transfer_system, "compliance", {kCompliance_m_per_n, 0.75, kClosing_n});
   const auto given_m = [&](double force_n) {
     double displacement_m = 0.0;
-    effect->after({.time_s = 0.0, .motion = {}, .force_n = force_n}, {}, displacement_m);
+    effect->after({.motion = {}, .time_s = 0.0, .force_n = force_n}, {}, displacement_m);
     return -displacement_m;
   };
   EXPECT_NEAR(given_m(1.0), kCompliance_m_per_n, 1e-8 * kCompliance_m_per_n) << "a third of the square of F / Fc";
