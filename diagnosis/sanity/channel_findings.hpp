@@ -20,6 +20,7 @@ struct ChannelFinding {
 /// Checks the measured channels of one degree of freedom of every recording:
 ///
 /// - dead: the channel never changes, or stands still while the motion goes on, or is nothing but noise;
+/// - cut off: it follows the motion in no way, and stands at one of two limits for the most part;
 /// - unrelated: it follows the motion in no way that a specimen or actuator could make (relation_between()), or so much
 ///   later or earlier that the channels belong to other times;
 /// - reversed: it runs against what the model predicts, and inertia does not explain that; or the force does work on

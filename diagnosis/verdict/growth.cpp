@@ -114,6 +114,23 @@ std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
   return numbers;
 }
 
+namespace {
+
+/// Whether the interval of an effect says that it may be absent only where a number is left out. The number was fitted,
+/// so it is known better than one that the model has.
+bool makes_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t number,
+                    const FitOutcome& rest) {
+  if (!is_number(problem, *fit.effects[number].type)) return false;
+  for (std::size_t i = 0; i < rest.effects.size(); ++i) {
+    const bool was_first = i < number;
+    if (is_number(problem, *rest.effects[i].type) || !is_needless(problem, rest, i)) continue;
+    if (!is_needless(problem, fit, was_first ? i : i + 1)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
     std::optional<FitOutcome> best;
@@ -122,6 +139,7 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
       const EffectType& type = *fit.effects[i].type;
       if (!is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit}))
         continue;
+      if (makes_needless(problem, fit, i, rest)) continue;
       if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
     }
     if (!best) return;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -197,6 +198,32 @@ std::string drift_refuted(const Suspect& suspect, std::string_view name, std::st
   return {};
 }
 
+/// How late a channel is behind the one that it follows, whatever their gain: y = g (x - T x').
+double lateness_s(const FitSegment& fit) {
+  const auto size = static_cast<Eigen::Index>(fit.segment.input.size());
+  Eigen::MatrixX3d columns{size, 3};
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Motion& motion = fit.segment.input[static_cast<std::size_t>(i)];
+    columns.row(i) << motion.displacement_m, motion.velocity_m_per_s, 1.0;
+  }
+  const Eigen::Map<const Eigen::VectorXd> read{fit.segment.measured.data(), size};
+  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(read);
+  return -solution[1] / solution[0];
+}
+
+/// What a transducer that lags reads is late behind the command, as no actuator is early.
+std::string transducer_lag_refuted(const Suspect& suspect) {
+  const double lag_s = suspect.parameter("time_constant_s").value;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (fit.segment.from != Channel::command_displacement || !suspect.ends_at(fit)) continue;
+    const double late_s = lateness_s(fit);
+    if (!is_nearer_to_none(late_s, lag_s)) continue;
+    return fmt::format("{} by {}: the reading comes {} after the command", suspect.name(), report::quantity(lag_s, "s"),
+                       report::quantity(late_s, "s"));
+  }
+  return {};
+}
+
 bool slides_as_in_model(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
   const EffectSetting* const own = place_of(suspect.problem.model, type);
@@ -283,6 +310,7 @@ constexpr std::array kChecks{
     Check{displacement_sensor, "bias", [](const Suspect& s) { return bias_refuted(s, "bias_m", "m"); }},
     Check{force_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_n_per_s", "N"); }},
     Check{displacement_sensor, "drift", [](const Suspect& s) { return drift_refuted(s, "drift_m_per_s", "m"); }},
+    Check{displacement_sensor, "lag", transducer_lag_refuted},
     Check{specimen, "fracture", instant_refuted},
     Check{specimen, "geometric_stiffness", load_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},

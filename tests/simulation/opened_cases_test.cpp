@@ -87,6 +87,16 @@ TEST(OpenedCase, LawGivesWayToASofteningBesideADampingAndANumber) {
   EXPECT_THAT(causes_of_case(1132191460, 125), Contains("specimen.cubic_stiffness"));
 }
 
+/// Its interval holds none where the strength may be off, which the fit that has the strength free excludes.
+TEST(OpenedCase, DriftIsFoundBesideAStrengthThatIsRight) {
+  EXPECT_THAT(causes_of_case(137862330, 270), Contains("force_sensor.drift"));
+}
+
+/// The force is early by 2 ms, as by a damping or by a lag of the transducer. The motion is on time.
+TEST(OpenedCase, TransducerThatReadsOnTimeHasNoLag) {
+  EXPECT_THAT(causes_of_case(137862330, 157), Not(Contains("displacement_sensor.lag")));
+}
+
 /// A damping found alone had taken up most of another one.
 TEST(OpenedCase, QuadraticDampingShowsBesideALinearOne) {
   EXPECT_THAT(causes_of_case(3943260127, 51), Contains("specimen.quadratic_damping"));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
 #include "mechanics/laws/bilinear.hpp"
@@ -64,6 +65,15 @@ TEST(ChannelFindings, DeadForceIsNotJudged) {
   const Recording noise = made_recording(made_motion_m, [](double) { return 0.0; });
   EXPECT_THAT(found_in(noise), ElementsAre(HasSubstr("! specimen: measured_force_n is nothing but noise of 20")));
   expect_not_judged(noise, "is nothing but noise");
+}
+
+/// As a load cell whose range is far below the force, which is fast: at every sample at one end or the other.
+TEST(ChannelFindings, ForceThatIsCutOffIsNoNoise) {
+  Random random{7};
+  const Recording recording = made_recording(
+      made_motion_m, [&](double) { return random.uniform(-1.0, 1.0) < 0.0 ? -500.0 : 500.0; }, 0.0);
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("stands at -500\u00a0N or 500\u00a0N for the most part")));
+  expect_not_judged(recording, "stands at");
 }
 
 TEST(ChannelFindings, FrozenForceIsNotJudged) {
