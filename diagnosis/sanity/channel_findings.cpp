@@ -117,13 +117,17 @@ bool is_white(std::span<const double> values) {
   return std::abs(neighbours) <= tuning::kTwoSided99 * squares / std::sqrt(static_cast<double>(values.size()));
 }
 
-/// Cut off at two limits: for the most part the reading stands at one or the other.
-bool stands_at_its_ends(std::span<const double> values) {
-  const auto [least, most] = std::ranges::minmax(values);
+/// For the most part the reading stands at one of two limits.
+std::optional<Words> cut_off(const Followed& pair) {
+  const auto [least, most] = std::ranges::minmax(pair.values);
   const double middle = 0.5 * (least + most);
   const double near = 0.5 * (1.0 - tuning::kBeyondLimit) * (most - least);
-  const auto at_an_end = std::ranges::count_if(values, [&](double value) { return std::abs(value - middle) >= near; });
-  return static_cast<double>(at_an_end) > tuning::kMainShare * static_cast<double>(values.size());
+  const auto at_an_end =
+      std::ranges::count_if(pair.values, [&](double value) { return std::abs(value - middle) >= near; });
+  if (static_cast<double>(at_an_end) <= tuning::kMainShare * static_cast<double>(pair.values.size())) return {};
+  return Words{fmt::format("stands at {} or {} for the most part: it is cut off there",
+                           report::quantity(least, pair.unit()), report::quantity(most, pair.unit())),
+               "Widen the range of the sensor and of its amplifier, and record again."};
 }
 
 std::optional<Words> unrelated(const Followed& pair) {
@@ -138,12 +142,7 @@ std::optional<Words> unrelated(const Followed& pair) {
   const bool is_expected =
       pair.predicted.empty() || spread_of(pair.predicted) >= tuning::kExcitedOverNoise * spread_of(pair.values);
   if (is_noise && !is_expected) return {};
-  if (stands_at_its_ends(pair.values)) {
-    const auto [least, most] = std::ranges::minmax(pair.values);
-    return Words{fmt::format("stands at {} or {} for the most part: it is cut off there",
-                             report::quantity(least, pair.unit()), report::quantity(most, pair.unit())),
-                 "Widen the range of the sensor and of its amplifier, and record again."};
-  }
+  if (std::optional<Words> limits = cut_off(pair)) return limits;
   if (is_noise) {
     return Words{fmt::format("is nothing but noise of {} while {} moves",
                              report::quantity(spread_of(pair.values), pair.unit()), column_name(pair.in)),

@@ -12,6 +12,7 @@ struct Motion {
 };
 
 /// What an effect sees of its stage at one sample, whatever other effects do to it.
+/// The motion stands first: behind the time, copying it waited for two stores.
 struct StageSample {
   Motion motion;         // into the stage: command (transfer system) or actuator motion (the others)
   double time_s = 0.0;   // since the beginning of the record or since arming
