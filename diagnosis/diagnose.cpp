@@ -31,14 +31,15 @@ using report::Verdict;
 /// @param segments_of_one   of a recording at its position.
 template <class SegmentsOfOne>
 std::vector<Segment> segments_in_role(const SiteModel& model, std::span<const Recording> recordings, RecordingRole role,
-                                      std::size_t dof, SegmentsOfOne&& segments_of_one) {
+                                      std::size_t dof, const Workers& workers, SegmentsOfOne&& segments_of_one) {
+  std::vector<std::vector<Segment>> of_recordings(recordings.size());
+  workers.for_each(recordings.size(), [&](std::size_t i) {
+    if (recordings[i].role != role || recordings[i].dofs.size() <= dof) return;
+    of_recordings[i] = segments_of_one(recordings[i], i);
+    carry_history(model, recordings, dof, of_recordings[i]);
+  });
   std::vector<Segment> segments;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    if (recordings[i].role != role || recordings[i].dofs.size() <= dof) continue;
-    std::vector<Segment> own = segments_of_one(recordings[i], i);
-    carry_history(model, recordings, dof, own);
-    std::ranges::move(own, std::back_inserter(segments));
-  }
+  for (std::vector<Segment>& own : of_recordings) std::ranges::move(own, std::back_inserter(segments));
   return segments;
 }
 
@@ -329,10 +330,12 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const PartProgress& progress = settings.progress;
   progress.report("recordings examined", 0, 1);
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
-  std::vector<Segment> segments = segments_in_role(
-      model, recordings, RecordingRole::fit, settings.dof, [&](const Recording& recording, std::size_t position) {
-        return segments_to_search(model, recording, settings.dof, position, progress);
-      });
+  const Workers workers{settings.threads};
+  std::vector<Segment> segments =
+      segments_in_role(model, recordings, RecordingRole::fit, settings.dof, workers,
+                       [&](const Recording& recording, std::size_t position) {
+                         return segments_to_search(model, recording, settings.dof, position, progress);
+                       });
   // Random network faults are found by their traces only.
   std::erase_if(segments, [&](const Segment& segment) { return explains_all_of(traces, segment); });
   if (segments.empty() && traces.empty()) {
@@ -345,21 +348,22 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     add_findings(findings, report);
     return diagnosis;
   }
-  IdentificationProblem problem = make_problem(model, segments);
+  IdentificationProblem problem = make_problem(model, segments, {}, workers);
   problem.progress = progress;
   progress.alive();
-  std::vector<Stage> stages = judge_stages(model, segments, problem, settings.policy, settings.threads,
-                                           progress.part(tuning::kPrepared, tuning::kSelected));
+  std::vector<Stage> stages =
+      judge_stages(model, segments, problem, settings.policy, progress.part(tuning::kPrepared, tuning::kSelected));
   std::vector<Judgement*> all_judgements;
   std::ranges::transform(stages, std::back_inserter(all_judgements), [](Stage& stage) { return &stage.judgement; });
   settle_corrections(all_judgements);
   // Smoothed as the fitted ones are.
   const bool is_smoothed = std::ranges::any_of(segments, &Segment::is_smoothed);
   const SiteModel completed = is_smoothed ? with_effects(model, causes_of(stages, {})) : model;
-  const std::vector<Segment> held_out = segments_in_role(
-      model, recordings, RecordingRole::held_out, settings.dof, [&](const Recording& recording, std::size_t position) {
-        return modelled_segments(model, recording, settings.dof, position, completed, progress);
-      });
+  const std::vector<Segment> held_out =
+      segments_in_role(model, recordings, RecordingRole::held_out, settings.dof, workers,
+                       [&](const Recording& recording, std::size_t position) {
+                         return modelled_segments(model, recording, settings.dof, position, completed, progress);
+                       });
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {
     drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);

@@ -30,12 +30,16 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   const auto searched = places.size();
   Linearisation result;
   result.columns.resize(projection.rows(), searched + solution.columns.cols());
-  const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, solution) : Eigen::VectorXd{};
-  for (Eigen::Index i = 0; i < searched; ++i) {
+  const Eigen::VectorXd& coefficients = solution.coefficients;
+  const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, coefficients) : Eigen::VectorXd{};
+  projection.workers().for_each(static_cast<std::size_t>(searched), [&](std::size_t parameter) {
+    const auto i = static_cast<Eigen::Index>(parameter);
     Eigen::VectorXd moved = places;
     const double step = places[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
     moved[i] += step;
-    result.columns.col(i) = (projection.predicted(moved, solution) - here) / step;
+    result.columns.col(i) = (projection.predicted(moved, coefficients) - here) / step;
+  });
+  for (Eigen::Index i = 0; i < searched; ++i) {
     const bool at_bound = places[i] < tuning::kResolution || places[i] > 1.0 - tuning::kResolution;
     if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
   }
@@ -80,8 +84,8 @@ class MovedFit {
  public:
   MovedFit(const VariableProjection& projection, const Linearisation& linear, const Eigen::VectorXd& places,
            const Projected& solution)
-      : projection_{projection}, linear_{linear}, places_{places}, solution_{solution} {
-    if (places.size() > 0) measured_ = projection.predicted(places, solution) + solution.residual;
+      : projection_{projection}, linear_{linear}, places_{places}, coefficients_{solution.coefficients} {
+    if (places.size() > 0) measured_ = projection.predicted(places, coefficients_) + solution.residual;
   }
 
   /// The prediction is a sum of columns: nothing moves but their coefficients.
@@ -89,24 +93,24 @@ class MovedFit {
   /// The residual in free simulation. @param step   of the parameters that can be fitted without a block.
   [[nodiscard]] Eigen::VectorXd residual(const Eigen::VectorXd& step) const {
     Eigen::VectorXd places = places_;
-    Projected solution = solution_;
+    Eigen::VectorXd coefficients = coefficients_;
     for (Eigen::Index i = 0; i < step.size(); ++i) {
       const auto index = linear_.free[static_cast<std::size_t>(linear_.held_out_with[static_cast<std::size_t>(i)])];
       const auto position = static_cast<Eigen::Index>(index);
       if (position < places.size()) {
         places[position] = std::clamp(places[position] + step[i], 0.0, 1.0);
       } else {
-        solution.coefficients[position - places.size()] += step[i];
+        coefficients[position - places.size()] += step[i];
       }
     }
-    return measured_ - projection_.predicted(places, solution);
+    return measured_ - projection_.predicted(places, coefficients);
   }
 
  private:
   const VariableProjection& projection_;
   const Linearisation& linear_;
   const Eigen::VectorXd& places_;
-  const Projected& solution_;
+  const Eigen::VectorXd& coefficients_;
   Eigen::VectorXd measured_;
 };
 
@@ -143,7 +147,7 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
     SegmentResult& result = outcome.segments[position];
     result.mean_square = unweighted * residual.segment(projection.first_row(t), fit.measured.size()).squaredNorm() /
                          static_cast<double>(fit.measured.size());
-    for (std::size_t b = 0; b + 1 < fit.block_begins.size(); ++b) {
+    projection.workers().for_each(result.held_out_squares.size(), [&](std::size_t b) {
       const Eigen::Index first = projection.first_row(t) + fit.block_begins[b];
       const Eigen::Index size = fit.block_begins[b + 1] - fit.block_begins[b];
       Eigen::VectorXd block = residual.segment(first, size);
@@ -154,7 +158,7 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
         block = left_out(fit_of_all, residual, inside, step, first);
       }
       result.held_out_squares[b] = unweighted * block.squaredNorm();
-    }
+    });
   }
 }
 
@@ -504,7 +508,7 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
   const Linearisation linear = linearise(projection, places, solution);
 
   FitOutcome outcome;
-  outcome.effects = projection.settings(places, solution);
+  outcome.effects = projection.settings(places, solution.coefficients);
   outcome.with_nuisance = with_nuisance;
   outcome.cost_of_numbers = cost_of_numbers(problem, outcome.effects);
   for (auto i = static_cast<Eigen::Index>(plan.linear.size()); i < solution.coefficients.size(); ++i) {

@@ -411,24 +411,22 @@ bool is_clear(const FitSegment& fit) {
   return root_mean_square(fit.measured - fit.baseline) > tuning::kNearFloor / fit.weight;
 }
 
-/// Beside every measured displacement the force that answers it; what of it follows from the command is taken off.
-/// Beside every measured force the displacement that was commanded.
-void relate_channels(std::vector<FitSegment>& segments) {
-  for (FitSegment& fit : segments) {
-    if (fit.segment.is_quasi_static) continue;
-    const bool is_force = fit.segment.to == Channel::measured_force;
-    if (!is_force && fit.segment.to != Channel::measured_displacement) continue;
-    const Channel its = is_force ? Channel::measured_displacement : Channel::measured_force;
-    const auto other = std::ranges::find_if(segments, [&](const FitSegment& one) {
-      return one.segment.recording == fit.segment.recording && one.segment.to == its &&
-             one.measured.size() == fit.measured.size();
-    });
-    if (other == segments.end()) continue;
-    if (is_force) {
-      fit.command_m = places_m(*other);
-    } else {
-      fit.answering_force = fit.discrepancy->parts(other->measured).remainder;
-    }
+/// Beside a measured displacement the force that answers it; what of it follows from the command is taken off.
+/// Beside a measured force the displacement that was commanded.
+void relate_channels(const std::vector<FitSegment>& segments, FitSegment& fit) {
+  if (fit.segment.is_quasi_static) return;
+  const bool is_force = fit.segment.to == Channel::measured_force;
+  if (!is_force && fit.segment.to != Channel::measured_displacement) return;
+  const Channel its = is_force ? Channel::measured_displacement : Channel::measured_force;
+  const auto other = std::ranges::find_if(segments, [&](const FitSegment& one) {
+    return one.segment.recording == fit.segment.recording && one.segment.to == its &&
+           one.measured.size() == fit.measured.size();
+  });
+  if (other == segments.end()) return;
+  if (is_force) {
+    fit.command_m = places_m(*other);
+  } else {
+    fit.answering_force = fit.discrepancy->parts(other->measured).remainder;
   }
 }
 
@@ -446,9 +444,10 @@ Eigen::VectorXd FitSegment::average(std::span<const double> values) const {
 }
 
 IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments,
-                                   std::span<const FoundEffect> found) {
+                                   std::span<const FoundEffect> found, const Workers& workers) {
   IdentificationProblem problem;
   problem.model = model;
+  problem.workers = workers;
   problem.scales = scales_of(segments);
   problem.inputs = input_ranges_of(model, segments);
   for (const InputRange& input : problem.inputs) mark_at_reference(input, segments);
@@ -457,21 +456,25 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   // Where it is not reached, a stiffness that the law does not have cannot be off by a ratio.
   problem.law_has_strength = !is_spring(model, reached_m / tuning::kResolution) &&
                              (!problem.law_is_spring || model.make_law()->initial_stiffness_n_per_m() > 0.0);
-  for (Segment& segment : segments) problem.segments.push_back(prepare(problem, std::move(segment), found));
-  relate_channels(problem.segments);
-  for (FitSegment& fit : problem.segments) take_noise(fit, fit.measured - fit.baseline);
-  mark_suspects(problem.segments);
+  std::vector<FitSegment>& fits = problem.segments;
+  fits.resize(segments.size());
+  workers.for_each(fits.size(), [&](std::size_t i) { fits[i] = prepare(problem, std::move(segments[i]), found); });
+  workers.for_each(fits.size(), [&](std::size_t i) {
+    relate_channels(fits, fits[i]);
+    take_noise(fits[i], fits[i].measured - fits[i].baseline);
+  });
+  mark_suspects(fits);
   return problem;
 }
 
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+  problem.workers.for_each(problem.segments.size(), [&](std::size_t i) {
     FitSegment& fit = problem.segments[i];
     const Eigen::VectorXd& change = best.segments[i].change;
     Eigen::VectorXd residual = fit.measured - fit.baseline;
     if (change.size() > 0) residual -= change;
     take_noise(fit, residual);
-  }
+  });
 }
 
 namespace {

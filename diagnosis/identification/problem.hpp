@@ -11,6 +11,7 @@
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/progress.hpp"
+#include "diagnosis/workers.hpp"
 
 namespace hybridtest {
 
@@ -112,6 +113,7 @@ struct IdentificationProblem {
   bool law_is_spring = false;     // linear in the range of the recordings, or there is no law
   bool law_has_strength = false;  // reached in the recordings, or only by a larger motion
   PartProgress progress;          // told of every prediction, so that no fit is silent, however long it takes
+  Workers workers;                // compute the predictions of a fit
 };
 
 /// An effect of the model that was found at a channel before, and how well its parameters are known there.
@@ -122,8 +124,9 @@ struct FoundEffect {
 
 /// @param segments   of recordings of the role fit.
 /// @param found      of the model's effects, the last ones in their order.
+/// @param workers    of the problem.
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments,
-                                                 std::span<const FoundEffect> found = {});
+                                                 std::span<const FoundEffect> found = {}, const Workers& workers = {});
 
 /// Takes floors, weights and numbers of independent samples from the residuals of the best fit at hand: of what the
 /// discrepancy term leaves of them on held-out cycles, which no function of the motion explains. Until then the noise

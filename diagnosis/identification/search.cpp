@@ -274,11 +274,13 @@ Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
   const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
   result.columns.resize(rows(), linear + nuisance_.cols());
   std::vector<Bounds> bounds;
-  for (Eigen::Index i = 0; i < linear; ++i) {
-    const LinearParameter& parameter = plan_.linear[static_cast<std::size_t>(i)];
+  problem_.workers.for_each(plan_.linear.size(), [&](std::size_t i) {
+    const LinearParameter& parameter = plan_.linear[i];
     std::vector<EffectSetting> present = absent;
     present[parameter.effect].values[parameter.parameter] += parameter.unit;
-    result.columns.col(i) = stacked(present) - base;
+    result.columns.col(static_cast<Eigen::Index>(i)) = stacked(present) - base;
+  });
+  for (const LinearParameter& parameter : plan_.linear) {
     bounds.push_back({parameter.low / parameter.unit, parameter.high / parameter.unit});
   }
   result.columns.rightCols(nuisance_.cols()) = nuisance_;
@@ -292,22 +294,22 @@ Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
 
 Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projected solution,
                                            const std::vector<Bounds>& bounds) const {
-  const auto linear = static_cast<Eigen::Index>(plan_.linear.size());
-  Eigen::VectorXd here = predicted(places, solution);
+  Eigen::VectorXd here = predicted(places, solution.coefficients);
   const Eigen::VectorXd off = measured_ - here - solution.residual;
   if (off.norm() <= tuning::kResolution * solution.residual.norm()) return solution;
   solution.residual = measured_ - here;
   Projected best = solution;
   for (int pass = 0; pass < tuning::kRelinearisations; ++pass) {
-    for (Eigen::Index i = 0; i < linear; ++i) {
-      Projected moved = solution;
-      const double step = moved.coefficients[i] > 0.0 ? -tuning::kCoefficientStep : tuning::kCoefficientStep;
-      moved.coefficients[i] += step;
+    problem_.workers.for_each(plan_.linear.size(), [&](std::size_t parameter) {
+      const auto i = static_cast<Eigen::Index>(parameter);
+      Eigen::VectorXd moved = solution.coefficients;
+      const double step = moved[i] > 0.0 ? -tuning::kCoefficientStep : tuning::kCoefficientStep;
+      moved[i] += step;
       solution.columns.col(i) = (predicted(places, moved) - here) / step;
-    }
+    });
     solution.coefficients = bounded_least_squares(
         solution.columns, solution.residual + solution.columns * solution.coefficients, bounds, solution.held);
-    here = predicted(places, solution);
+    here = predicted(places, solution.coefficients);
     solution.residual = measured_ - here;
     const double before = best.residual.squaredNorm();
     const double after = solution.residual.squaredNorm();
@@ -317,18 +319,19 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
   return best;
 }
 
-Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places, const Projected& solution) const {
-  return stacked(settings(places, solution)) + nuisance_ * solution.coefficients.tail(nuisance_.cols());
+Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places,
+                                              const Eigen::VectorXd& coefficients) const {
+  return stacked(settings(places, coefficients)) + nuisance_ * coefficients.tail(nuisance_.cols());
 }
 
 std::vector<EffectSetting> VariableProjection::settings(const Eigen::VectorXd& places,
-                                                        const Projected& solution) const {
+                                                        const Eigen::VectorXd& coefficients) const {
   std::vector<EffectSetting> effects = searched_at(places);
   for (std::size_t i = 0; i < plan_.linear.size(); ++i) {
     const LinearParameter& linear = plan_.linear[i];
     const EffectParameter& parameter = effects[linear.effect].type->parameters[linear.parameter];
     double& value = effects[linear.effect].values[linear.parameter];
-    value += linear.unit * solution.coefficients[static_cast<Eigen::Index>(i)];
+    value += linear.unit * coefficients[static_cast<Eigen::Index>(i)];
     value = std::clamp(value, parameter.low, parameter.high);
   }
   return effects;
@@ -368,12 +371,13 @@ class ProjectedResidual final : public ceres::CostFunction {
   }
   void find_slopes() const {
     Slopes slopes(residual_.size(), places_.size());
-    for (Eigen::Index i = 0; i < places_.size(); ++i) {
+    projection_.workers().for_each(static_cast<std::size_t>(places_.size()), [&](std::size_t searched) {
+      const auto i = static_cast<Eigen::Index>(searched);
       Eigen::VectorXd moved = places_;
       const double step = places_[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
       moved[i] += step;
       slopes.col(i) = (projection_.solve(moved).residual - residual_) / step;
-    }
+    });
     slopes_ = std::move(slopes);
   }
 
@@ -482,21 +486,20 @@ Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::V
   const bool has_instant = std::ranges::any_of(projection.plan().searched, &SearchedParameter::is_instant);
   if (has_instant) starts *= tuning::kInstantStarts;
   std::vector<Start> tried;
-  if (first.size() == searched) tried.push_back({first, cost_at(projection, first)});
+  if (first.size() == searched) tried.push_back({first});
   const Eigen::VectorXd small = nearly_absent(projection.plan());
-  if (small.size() > 0) tried.push_back({small, cost_at(projection, small)});
-  for (int i = 0; i < starts; ++i) {
-    const Eigen::VectorXd places = halton(i, searched);
-    tried.push_back({places, cost_at(projection, places)});
-  }
+  if (small.size() > 0) tried.push_back({small});
+  for (int i = 0; i < starts; ++i) tried.push_back({halton(i, searched)});
+  const Workers& workers = projection.workers();
+  workers.for_each(tried.size(), [&](std::size_t i) { tried[i].cost = cost_at(projection, tried[i].places); });
   std::ranges::stable_sort(tried, {}, &Start::cost);
-  Start best = tried.front();
-  const std::size_t refined = std::min<std::size_t>(tried.size(), tuning::kRefinedStarts);
-  for (std::size_t i = 0; i < refined; ++i) {
-    const Start found = settle_instants(projection, refine(projection, settle_instants(projection, tried[i])));
-    if (found.cost < best.cost) best = found;
-  }
-  return best.places;
+  std::vector<Start> found{tried.begin(),
+                           tried.begin() + std::min(std::ssize(tried), std::ptrdiff_t{tuning::kRefinedStarts})};
+  workers.for_each(found.size(), [&](std::size_t i) {
+    found[i] = settle_instants(projection, refine(projection, settle_instants(projection, found[i])));
+  });
+  const Start& best = *std::ranges::min_element(found, {}, &Start::cost);
+  return best.cost < tried.front().cost ? best.places : tried.front().places;
 }
 
 }  // namespace hybridtest

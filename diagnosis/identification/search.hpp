@@ -82,11 +82,14 @@ class VariableProjection {
   /// @throws ConfigError for parameters that an effect does not accept.
   [[nodiscard]] Projected solve(const Eigen::VectorXd& places) const;
   /// The weighted prediction with the linear parameters fixed.
-  [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Projected& solution) const;
+  /// @param coefficients   as of a solution.
+  [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Eigen::VectorXd& coefficients) const;
   /// The effects at a solution, in their own units.
-  [[nodiscard]] std::vector<EffectSetting> settings(const Eigen::VectorXd& places, const Projected& solution) const;
+  [[nodiscard]] std::vector<EffectSetting> settings(const Eigen::VectorXd& places,
+                                                    const Eigen::VectorXd& coefficients) const;
 
   [[nodiscard]] const SearchPlan& plan() const noexcept { return plan_; }
+  [[nodiscard]] const Workers& workers() const noexcept { return problem_.workers; }
   /// Positions in the problem of the segments that the rows stand for, and where each one's rows begin.
   [[nodiscard]] const std::vector<std::size_t>& touched() const noexcept { return touched_; }
   [[nodiscard]] Eigen::Index first_row(std::size_t touched) const noexcept { return first_rows_[touched]; }

@@ -15,14 +15,17 @@ std::vector<double> explained_by_subset(const IdentificationProblem& problem, co
   const std::size_t subsets = std::size_t{1} << chosen.size();
   const double total = gap_energy(problem, fit_nothing(problem, false)).total;
   std::vector<double> explained(subsets, 0.0);
-  for (std::size_t subset = 1; subset < subsets; ++subset) {
-    progress.report("combinations of the causes", subset - 1, subsets - 1);
-    std::vector<EffectSetting> effects;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if ((subset >> i & 1U) != 0) effects.push_back(chosen[i]);
-    }
-    explained[subset] = std::max(0.0, total - gap_energy(problem, refit_effects(problem, effects, false)).total);
-  }
+  fit_each(
+      problem.workers, subsets - 1,
+      [&](std::size_t position) {
+        const std::size_t subset = position + 1;  // the first one is empty
+        std::vector<EffectSetting> effects;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+          if ((subset >> i & 1U) != 0) effects.push_back(chosen[i]);
+        }
+        explained[subset] = std::max(0.0, total - gap_energy(problem, refit_effects(problem, effects, false)).total);
+      },
+      [&](std::size_t done, std::size_t all) { progress.report("combinations of the causes", done, all); });
   return explained;
 }
 

@@ -133,17 +133,18 @@ bool makes_needless(const IdentificationProblem& problem, const FitOutcome& fit,
 
 void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit) {
   while (fit.effects.size() > 1) {
-    std::optional<FitOutcome> best;
-    for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    std::vector<std::optional<FitOutcome>> rests(fit.effects.size());  // without each effect that can be done without
+    problem.workers.for_each(rests.size(), [&](std::size_t i) {
       FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
       const EffectType& type = *fit.effects[i].type;
-      if (!is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit}))
-        continue;
-      if (makes_needless(problem, fit, i, rest)) continue;
-      if (!best || held_out_score(problem, rest) > held_out_score(problem, *best)) best = std::move(rest);
-    }
-    if (!best) return;
-    fit = std::move(*best);
+      const bool is_needed =
+          !is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit});
+      if (!is_needed && !makes_needless(problem, fit, i, rest)) rests[i] = std::move(rest);
+    });
+    std::erase(rests, std::nullopt);
+    if (rests.empty()) return;
+    const auto score = [&](const std::optional<FitOutcome>& rest) { return held_out_score(problem, *rest); };
+    fit = *std::move(*std::ranges::max_element(rests, {}, score));
   }
 }
 
@@ -233,6 +234,13 @@ bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
   return typeid(first) == typeid(second);
 }
 
+/// What is tried in the place of an effect, and its fit beside the others.
+struct Instead {
+  const EffectType* type = nullptr;
+  std::vector<EffectSetting> start;
+  std::optional<Candidate> fitted;
+};
+
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
 /// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
 /// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
@@ -252,20 +260,25 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     highest = scores.back();
     best = std::move(instead);
   };
+  std::vector<Instead> tried;
   std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
     const bool is_another_law = candidate.type->replacement != nullptr;
     if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
     const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
     if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
-    const std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
+    std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
     if (!is_of_law_too && !starts.empty()) ++others;
-    for (const std::vector<EffectSetting>& start : starts) {
-      std::optional<Candidate> instead = fit_together(problem, candidate.type, start, refit_effects);
-      if (instead && is_law && !is_another_law) instead = without_needless_numbers(problem, *std::move(instead));
-      if (instead && refutation(problem, *instead).empty()) compare(std::move(instead));
-    }
+    for (std::vector<EffectSetting>& start : starts) tried.push_back({candidate.type, std::move(start), {}});
   }
+  problem.workers.for_each(tried.size(), [&](std::size_t i) {
+    auto& [type, start, fitted] = tried[i];
+    fitted = fit_together(problem, type, start, refit_effects);
+    const bool is_another_law = type->replacement != nullptr;
+    if (fitted && is_law && !is_another_law) fitted = without_needless_numbers(problem, *std::move(fitted));
+    if (fitted && !refutation(problem, *fitted).empty()) fitted.reset();
+  });
+  for (Instead& instead : tried) compare(std::move(instead.fitted));
   // Which of the numbers are needed is asked at the end.
   if (is_law) {
     const std::vector<EffectSetting> start = with_all_numbers(problem, without(effects, position));
@@ -290,18 +303,7 @@ void settle_effects(const IdentificationProblem& problem, const Selection& selec
 void merge(const IdentificationProblem& problem, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const double both = score_of(problem, growth.fit);
-  std::optional<Candidate> best;
-  double highest = both - decisive_gain(problem);
-  const auto try_instead_of = [&](std::size_t first, std::size_t second, const EffectSetting& number) {
-    std::vector<EffectSetting> start = without(without(effects, second), first);
-    start.push_back(number);
-    std::optional<Candidate> one = fit_together(problem, number.type, start, search_effects);
-    if (!one || !refutation(problem, *one).empty()) return;
-    const double score = score_of(problem, one->fit);
-    if (score <= highest) return;
-    highest = score;
-    best = std::move(one);
-  };
+  std::vector<Instead> tried;
   for (const EffectSetting& number : numbers_of(problem)) {
     if (holds(effects, number.type)) continue;
     for (std::size_t second = 1; second < effects.size(); ++second) {
@@ -311,9 +313,24 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
         const bool are_its = one.interface == number.type->interface && other.interface == number.type->interface;
         const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
         if (!are_its || is_a_law || (is_number(problem, one) && is_number(problem, other))) continue;
-        try_instead_of(first, second, number);
+        tried.push_back({number.type, without(without(effects, second), first), {}});
+        tried.back().start.push_back(number);
       }
     }
+  }
+  problem.workers.for_each(tried.size(), [&](std::size_t i) {
+    auto& [type, start, fitted] = tried[i];
+    fitted = fit_together(problem, type, start, search_effects);
+    if (fitted && !refutation(problem, *fitted).empty()) fitted.reset();
+  });
+  std::optional<Candidate> best;
+  double highest = both - decisive_gain(problem);
+  for (Instead& one : tried) {
+    if (!one.fitted) continue;
+    const double score = score_of(problem, one.fitted->fit);
+    if (score <= highest) continue;
+    highest = score;
+    best = std::move(one.fitted);
   }
   if (!best) return;
   growth.accepted.push_back({best->type, softmax({highest + decisive_gain(problem), both}).front()});
@@ -334,11 +351,11 @@ std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutco
 }
 
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                  Beside freedom, std::size_t threads, const PartProgress& progress, Growth& growth) {
+                  Beside freedom, const PartProgress& progress, Growth& growth) {
   for (std::size_t round = 0;
        growth.fit.effects.size() < tuning::kEffectsMax && gap_energy(problem, growth.fit).is_clear(); ++round) {
-    const std::vector<Candidate> beside = fit_beside(problem, coarse, growth.fit.effects, freedom, threads,
-                                                     progress.round(round, 3 * tuning::kEffectsMax));
+    const std::vector<Candidate> beside =
+        fit_beside(problem, coarse, growth.fit.effects, freedom, progress.round(round, 3 * tuning::kEffectsMax));
     if (std::optional<Growth> next = grown(problem, selection.by_numbers, growth, beside)) {
       growth = std::move(*next);
       freedom = Beside::as_found;

@@ -63,7 +63,7 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
 /// with the numbers of the model free, which a further effect may move, and at last with what was found giving way.
 /// @param freedom   how the first one is looked for.
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                  Beside freedom, std::size_t threads, const PartProgress& progress, Growth& growth);
+                  Beside freedom, const PartProgress& progress, Growth& growth);
 
 /// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost. What is lost so
 /// at the full rate is asked there: what moves within a few samples, as a slip, hardly exists at the lower one.

@@ -110,15 +110,14 @@ std::size_t place_of_found(const Selection& selection, Leader& leader) {
 
 /// The leading candidates, each with the further effect that it needs most; by their positions in the library.
 std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                           const Selection& selection, std::size_t threads,
-                                           const PartProgress& progress) {
+                                           const Selection& selection, const PartProgress& progress) {
   std::map<std::size_t, Growth> grown_leaders;
   std::vector<Leader> leaders = leaders_of(problem, coarse, selection);
   for (std::size_t i = 0; i < leaders.size(); ++i) {
     Growth& leader = leaders[i].growth;
     if (gap_energy(problem, leader.fit).is_clear()) {
       const std::vector<Candidate> beside =
-          fit_beside(problem, coarse, leader.fit.effects, Beside::as_found, threads, progress.round(i, leaders.size()));
+          fit_beside(problem, coarse, leader.fit.effects, Beside::as_found, progress.round(i, leaders.size()));
       if (std::optional<Growth> pair = grown(problem, selection.by_numbers, leader, beside)) leader = std::move(*pair);
     }
     const std::size_t position = place_of_found(selection, leaders[i]);
@@ -157,8 +156,8 @@ std::optional<FitOutcome> needed_numbers(const IdentificationProblem& problem, c
 }
 
 Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
-                  std::size_t threads, const PartProgress& progress) {
-  std::map<std::size_t, Growth> leaders = grow_leaders(problem, coarse, selection, threads, progress);
+                  const PartProgress& progress) {
+  std::map<std::size_t, Growth> leaders = grow_leaders(problem, coarse, selection, progress);
   if (leaders.size() == 1) {
     auto& [position, growth] = *leaders.begin();
     weigh_numbers(problem, position, growth, selection);

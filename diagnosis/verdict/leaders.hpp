@@ -14,6 +14,6 @@ void add_numbers(Selection& selection);
 /// The best of the leading candidates; of a sensor only if none of a stage changes the prediction alike. The
 /// probabilities become those of what was found with them.
 [[nodiscard]] Growth best_start(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                Selection& selection, std::size_t threads, const PartProgress& progress);
+                                Selection& selection, const PartProgress& progress);
 
 }  // namespace hybridtest

@@ -1,12 +1,10 @@
 #include "diagnosis/verdict/library_fits.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <thread>
 
 #include "core/config_error.hpp"
 #include "diagnosis/identification/law_candidates.hpp"
@@ -233,22 +231,16 @@ std::optional<Candidate> fit_together(const IdentificationProblem& problem, cons
   return {};
 }
 
-void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
-                          const FitProgress& progress) {
-  std::atomic<std::size_t> next = 0;
+void fit_each(const Workers& workers, std::size_t count, const std::function<void(std::size_t)>& fit,
+              const FitProgress& progress) {
   std::size_t done = 0;
   std::mutex mutex;
   progress(0, count);
-  const auto run = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      work(i);
-      const std::scoped_lock lock{mutex};
-      progress(++done, count);
-    }
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(threads, count); ++i) others.emplace_back(run);
-  run();
+  workers.for_each(count, [&](std::size_t i) {
+    fit(i);
+    const std::scoped_lock lock{mutex};
+    progress(++done, count);
+  });
 }
 
 namespace {
@@ -384,13 +376,13 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
 }  // namespace
 
 std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                   std::size_t threads, const PartProgress& progress) {
+                                   const PartProgress& progress) {
   const std::vector<const EffectType*> effects = judged_effects(problem);
   const double nuisance_score = held_out_score(coarse, fit_nothing(coarse, true));
   std::vector<std::optional<Candidate>> fitted(effects.size());
   const std::vector<std::size_t> order = longest_first(coarse, effects);
-  for_each_in_parallel(
-      effects.size(), threads,
+  fit_each(
+      coarse.workers, effects.size(),
       [&](std::size_t i) { fitted[order[i]] = fit_one(coarse, *effects[order[i]], nuisance_score); },
       counted(progress.part(0.0, tuning::kLibrarySearched), "effects fitted one by one"));
   std::vector<Candidate> candidates = best_first(std::move(fitted));
@@ -401,8 +393,8 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
       held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
   const double best = candidates.front().score;
   std::vector<std::optional<Candidate>> refined(candidates.size());
-  for_each_in_parallel(
-      candidates.size(), threads,
+  fit_each(
+      coarse.workers, candidates.size(),
       [&](std::size_t i) {
         const Candidate& found = candidates[i];
         if (found.score > best - tuning::kFarBehind) {
@@ -433,14 +425,14 @@ bool is_half_told(const Candidate& law) {
 }  // namespace
 
 std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                        std::size_t threads, const PartProgress& progress) {
+                                        const PartProgress& progress) {
   std::vector<const EffectType*> laws;
   for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
     if (law.is_special && touches_a_gap(problem, law.type)) laws.push_back(&law.type);
   }
   std::vector<std::optional<Candidate>> fitted(laws.size());
-  for_each_in_parallel(
-      laws.size(), threads,
+  fit_each(
+      coarse.workers, laws.size(),
       [&](std::size_t i) {
         if (std::optional<Candidate> found = fit_one(coarse, *laws[i], 0.0)) fitted[i] = refine(problem, *found);
       },
@@ -536,7 +528,7 @@ void free_nearby(const IdentificationProblem& problem, const std::vector<EffectS
 }  // namespace
 
 std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                  const std::vector<EffectSetting>& base, Beside freedom, std::size_t threads,
+                                  const std::vector<EffectSetting>& base, Beside freedom,
                                   const PartProgress& progress) {
   std::vector<const EffectType*> effects = judged_effects(problem);
   std::erase_if(effects, [&](const EffectType* effect) {
@@ -552,8 +544,8 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
   IdentificationProblem screen = extended;
   if (freedom == Beside::all_giving_way) free_nearby(coarse, base, screen);
   std::vector<std::optional<Candidate>> screened(effects.size());
-  for_each_in_parallel(
-      effects.size(), threads,
+  fit_each(
+      coarse.workers, effects.size(),
       [&](std::size_t i) {
         try {
           Candidate candidate{.type = effects[i], .fit = fit_effects(screen, {effects[i]}, are_free)};
@@ -570,8 +562,8 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     return position++ >= tuning::kRefittedPairs && !is_model_number(problem, *candidate.type);
   });
   std::vector<std::optional<Candidate>> together(promising.size());
-  for_each_in_parallel(
-      promising.size(), threads,
+  fit_each(
+      coarse.workers, promising.size(),
       [&](std::size_t i) {
         try {
           EffectSetting further = promising[i].fit.effects.front();
@@ -598,8 +590,8 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
     });
   }
   std::vector<std::optional<Candidate>> refitted(promising.size());
-  for_each_in_parallel(
-      promising.size(), threads,
+  fit_each(
+      coarse.workers, promising.size(),
       [&](std::size_t i) {
         refitted[i] = fit_together(problem, promising[i].type, promising[i].fit.effects, refit_effects);
       },

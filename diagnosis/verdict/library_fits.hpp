@@ -57,9 +57,9 @@ struct Candidate {
 /// Receives the number of finished fits and of all fits; called from any thread, one call at a time.
 using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Runs `work(i)` for every i below `count` on `threads` threads; the result does not depend on the threads.
-void for_each_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work,
-                          const FitProgress& progress);
+/// Runs `fit(i)` for every i below `count`, and counts them; see Workers::for_each().
+void fit_each(const Workers& workers, std::size_t count, const std::function<void(std::size_t)>& fit,
+              const FitProgress& progress);
 
 /// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves, but
 /// for those of special devices.
@@ -83,14 +83,13 @@ void for_each_in_parallel(std::size_t count, std::size_t threads, const std::fun
 /// @param coarse   the same problem at a lower rate, where every effect is searched over its whole range; those
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
-                                                 const IdentificationProblem& coarse, std::size_t threads,
-                                                 const PartProgress& progress);
+                                                 const IdentificationProblem& coarse, const PartProgress& progress);
 
 /// The laws of special devices (LawCandidate::is_special), each by itself, best first. Omitted are refuted ones, and
 /// those of which a parameter that cannot be absent is at the limit of its range: a rubber without Mullins effect is
 /// none.
 [[nodiscard]] std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem,
-                                                      const IdentificationProblem& coarse, std::size_t threads,
+                                                      const IdentificationProblem& coarse,
                                                       const PartProgress& progress);
 
 /// Scores of the same fits after the noise of the problem has changed, best first.
@@ -128,6 +127,6 @@ enum class Beside : std::uint8_t { as_found, numbers_free, all_giving_way };
 [[nodiscard]] std::vector<Candidate> fit_beside(const IdentificationProblem& problem,
                                                 const IdentificationProblem& coarse,
                                                 const std::vector<EffectSetting>& base, Beside freedom,
-                                                std::size_t threads, const PartProgress& progress);
+                                                const PartProgress& progress);
 
 }  // namespace hybridtest

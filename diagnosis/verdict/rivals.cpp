@@ -227,13 +227,13 @@ std::optional<Candidate> rival_in(const IdentificationProblem& problem, const Ve
 
 /// Effects of about the same signature at the lower rate.
 std::vector<EffectSetting> of_same_signature(const IdentificationProblem& coarse, const Place& place,
-                                             std::size_t threads, const PartProgress& progress) {
+                                             const PartProgress& progress) {
   const IdentificationProblem extended = beside_effects(coarse, place.others);
   std::vector<const EffectType*> effects = judged_effects(coarse);
   std::erase_if(effects, [&](const EffectType* type) { return type->replacement != nullptr || is_found(place, type); });
   std::vector<std::optional<EffectSetting>> same(effects.size());
-  for_each_in_parallel(
-      effects.size(), threads,
+  fit_each(
+      coarse.workers, effects.size(),
       [&](std::size_t i) {
         try {
           const IdentificationProblem beside = with_numbers_beside(extended, place, effects[i]);
@@ -317,7 +317,7 @@ std::optional<Candidate> lag_of_transducer(IdentificationProblem whole, const st
 }
 
 void find_rivals(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                 const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress, Judgement& judgement) {
+                 const VerdictPolicy& policy, const PartProgress& progress, Judgement& judgement) {
   if (!report::names_a_cause(judgement.verdict)) return;
   const FitOutcome chosen = refit_effects(problem, selection.chosen.effects, false);
   const FitOutcome thin = refit_effects(coarse, selection.chosen.effects, false);
@@ -326,11 +326,13 @@ void find_rivals(const IdentificationProblem& problem, const IdentificationProbl
     const std::size_t position = causes[i];
     Rivals rivals{.chosen = position, .fitted = {}, .probability = 1.0};
     const Place place = place_in(problem, chosen, position, judgement);
-    for (const EffectSetting& effect : of_same_signature(coarse, place_in(coarse, thin, position, judgement), threads,
-                                                         progress.round(i, causes.size()))) {
-      if (std::optional<Candidate> rival = rival_in(problem, policy, place, effect)) {
-        rivals.fitted.push_back(std::move(*rival));
-      }
+    const std::vector<EffectSetting> same =
+        of_same_signature(coarse, place_in(coarse, thin, position, judgement), progress.round(i, causes.size()));
+    std::vector<std::optional<Candidate>> fitted(same.size());
+    problem.workers.for_each(same.size(),
+                             [&](std::size_t j) { fitted[j] = rival_in(problem, policy, place, same[j]); });
+    for (std::optional<Candidate>& rival : fitted) {
+      if (rival) rivals.fitted.push_back(*std::move(rival));
     }
     if (rivals.fitted.empty()) continue;
     rivals.probability = probability_of_all(selection, rivals) / static_cast<double>(1 + rivals.fitted.size());

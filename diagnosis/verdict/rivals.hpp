@@ -26,7 +26,7 @@ namespace hybridtest {
 /// so does what leaves little enough.
 /// @param coarse   the same problem at a lower rate, for the searches.
 void find_rivals(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
-                 const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress, Judgement& judgement);
+                 const VerdictPolicy& policy, const PartProgress& progress, Judgement& judgement);
 
 /// A displacement transducer that lags shows at two channels: the motion seems late, as by a delay or a bandwidth of
 /// the actuator, and the force early, as by damping of the specimen. The channels are judged one after the other, which

@@ -32,16 +32,15 @@ FitOutcome fit_numbers(const IdentificationProblem& problem, const Identificatio
 
 /// The effects that explain the gap, from the library as it stands.
 Growth find_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
-                    std::size_t threads, const PartProgress& progress) {
-  Growth growth =
-      best_start(problem, coarse, selection, threads, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
+                    const PartProgress& progress) {
+  Growth growth = best_start(problem, coarse, selection, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   // Beside a leader alone nothing was accepted.
   const Beside freedom = growth.accepted.size() > 1 ? Beside::as_found : Beside::numbers_free;
-  grow_further(problem, coarse, selection, freedom, threads, further, growth);
+  grow_further(problem, coarse, selection, freedom, further, growth);
   // In place of what was dropped, something else may be needed.
   if (settle(problem, coarse, selection, growth)) {
-    grow_further(problem, coarse, selection, Beside::as_found, threads, further, growth);
+    grow_further(problem, coarse, selection, Beside::as_found, further, growth);
     settle(problem, coarse, selection, growth);
   }
   return growth;
@@ -50,7 +49,7 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
 /// The noise is known better beside what was found than it was beside the best effect by itself. Where the floor was
 /// too high for that, what it hid is looked for.
 void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, Selection& selection,
-                std::size_t threads, const PartProgress& progress, Growth& growth) {
+                const PartProgress& progress, Growth& growth) {
   if (growth.fit.effects.empty() || gap_energy(problem, growth.fit).is_clear()) return;
   IdentificationProblem settled = problem;
   settle_noise(settled, growth.fit);
@@ -59,7 +58,7 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   settle_noise(coarse, refit_effects(coarse, growth.fit.effects, false));
   growth.fit = refit_effects(problem, growth.fit.effects, false);
   score_again(problem, selection.library);
-  grow_further(problem, coarse, selection, Beside::as_found, threads, progress, growth);
+  grow_further(problem, coarse, selection, Beside::as_found, progress, growth);
   settle(problem, coarse, selection, growth);
 }
 
@@ -79,9 +78,9 @@ bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcom
 /// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
 /// itself. Nothing is looked for beside it: what it leaves is told as left.
 void try_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
-                      std::size_t threads, const PartProgress& progress, Growth& growth) {
+                      const PartProgress& progress, Growth& growth) {
   if (!gap_energy(problem, growth.fit).is_clear()) return;
-  std::vector<Candidate> laws = fit_special_laws(problem, coarse, threads, progress);
+  std::vector<Candidate> laws = fit_special_laws(problem, coarse, progress);
   const double before = score_of(problem, growth.fit);
   if (laws.empty() || laws.front().score <= before + decisive_gain(problem)) return;
   std::vector<double> scores = scores_of(laws);
@@ -135,12 +134,12 @@ void drop_gone(const IdentificationProblem& problem, FitOutcome& fit) {
 }
 
 Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, const VerdictPolicy& policy,
-                         std::size_t threads, const PartProgress& progress) {
+                         const PartProgress& progress) {
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
   if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return selection;
-  selection.library = fit_library(problem, coarse, threads, progress.part(0.0, tuning::kLibraryFitted));
+  selection.library = fit_library(problem, coarse, progress.part(0.0, tuning::kLibraryFitted));
   if (selection.library.empty()) return selection;
   // Under a large gap the noise is not known: it is that of the best candidate, and the others are judged by it.
   const Candidate& best = selection.library.front();
@@ -157,14 +156,13 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
            selection.library.front().score >= held_out_score(problem, selection.baseline) + decisive_gain(problem);
   };
   Growth growth{.fit = selection.baseline, .accepted = {}};
-  if (is_explained()) growth = find_effects(problem, coarse, selection, threads, progress);
+  if (is_explained()) growth = find_effects(problem, coarse, selection, progress);
   if (drop_law_without_loop(problem, growth.fit, selection)) {
     growth = {.fit = selection.baseline, .accepted = {}};
-    if (is_explained()) growth = find_effects(problem, coarse, selection, threads, progress);
+    if (is_explained()) growth = find_effects(problem, coarse, selection, progress);
   }
-  look_again(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
-  try_special_laws(problem, coarse, selection, threads, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen),
-                   growth);
+  look_again(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
+  try_special_laws(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   keep_what_tells(problem, policy, selection, growth);
   if (growth.fit.effects.empty()) return selection;
   // Of what was chosen at the lower rate, the full rate may leave nothing.

@@ -39,7 +39,7 @@ struct Selection {
 /// @param coarse    the same problem at a lower rate, for the searches.
 /// Both problems take their noise from the best candidate (settle_noise()).
 [[nodiscard]] Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse,
-                                       const VerdictPolicy& policy, std::size_t threads, const PartProgress& progress);
+                                       const VerdictPolicy& policy, const PartProgress& progress);
 
 /// Of several effects, drops those that a fit left nothing of and that the model does not have.
 void drop_gone(const IdentificationProblem& problem, FitOutcome& fit);

@@ -121,7 +121,7 @@ void fit_beside_later(const std::vector<Segment>& segments, const std::vector<Ch
       if (is_seen) add_effect(beside, effect);
     }
     if (beside.effects.size() == stage.problem.model.effects.size()) continue;
-    IdentificationProblem again = judged_at(make_problem(beside, segments), outputs[i]);
+    IdentificationProblem again = judged_at(make_problem(beside, segments, {}, stage.problem.workers), outputs[i]);
     settle_noise(again, refit_effects(again, stage.selection.chosen.effects, false));
     stage.selection.chosen = refit_effects(again, stage.selection.chosen.effects, false);
   }
@@ -150,12 +150,12 @@ void find_lag_of_transducer(const IdentificationProblem& whole, const VerdictPol
 }  // namespace
 
 std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
-                                const IdentificationProblem& whole, const VerdictPolicy& policy, std::size_t threads,
+                                const IdentificationProblem& whole, const VerdictPolicy& policy,
                                 const PartProgress& progress) {
   std::vector<Segment> thin;
   for (const Segment& segment : segments) thin.push_back(thinned(segment, tuning::kFitRate_hz));
   IdentificationProblem fine = whole;
-  IdentificationProblem coarse = make_problem(model, thin);
+  IdentificationProblem coarse = make_problem(model, thin, {}, whole.workers);
   std::vector<Channel> outputs;
   for (const Segment& segment : segments) {
     if (std::ranges::find(outputs, segment.to) == outputs.end()) outputs.push_back(segment.to);
@@ -169,11 +169,10 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
     const PartProgress of_stage = progress.round(i, outputs.size());
     stage.problem.progress = of_stage;
     thinner.progress = of_stage;
-    stage.selection =
-        select_effects(stage.problem, thinner, policy, threads, of_stage.part(0.0, tuning::kEffectsChosen));
+    stage.selection = select_effects(stage.problem, thinner, policy, of_stage.part(0.0, tuning::kEffectsChosen));
     settle_noise(stage.problem, stage.selection.chosen);
     stage.judgement = judge(stage.problem, stage.selection, policy);
-    find_rivals(stage.problem, thinner, stage.selection, policy, threads, of_stage.part(tuning::kEffectsChosen, 1.0),
+    find_rivals(stage.problem, thinner, stage.selection, policy, of_stage.part(tuning::kEffectsChosen, 1.0),
                 stage.judgement);
     if (stage.changes_model() && i + 1 < outputs.size()) {
       SiteModel corrected = fine.model;
@@ -182,8 +181,8 @@ std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segmen
       for (std::size_t j = 0; j < chosen.effects.size(); ++j) {
         found.push_back({chosen.effects[j], chosen.covariances[j]});
       }
-      fine = make_problem(corrected, segments, found);
-      coarse = make_problem(corrected, thin, found);
+      fine = make_problem(corrected, segments, found, whole.workers);
+      coarse = make_problem(corrected, thin, found, whole.workers);
     }
     stages.push_back(std::move(stage));
   }

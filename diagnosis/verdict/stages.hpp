@@ -30,7 +30,7 @@ struct Stage {
 /// @param whole      the problem of all segments.
 [[nodiscard]] std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
                                               const IdentificationProblem& whole, const VerdictPolicy& policy,
-                                              std::size_t threads, const PartProgress& progress);
+                                              const PartProgress& progress);
 
 /// Causes and corrections.
 [[nodiscard]] std::vector<EffectSetting> causes_of(std::span<const Stage> stages, std::span<const Trace> traces);
