@@ -483,6 +483,23 @@ SegmentResult untouched(const FitSegment& fit) {
   return result;
 }
 
+/// See SegmentResult::more_noise. Where the numbers of the model suit every prediction, they suit its noise, too.
+/// @param numbers   coefficients of the segment's nuisances, the first of them; empty: not free.
+double more_noise_of(const IdentificationProblem& problem, const FitSegment& fit, std::vector<EffectSetting> effects,
+                     std::span<const double> numbers) {
+  if (effects.empty() || fit.numbers.directions.cols() > 0) return 0.0;
+  for (std::size_t i = 0; i < fit.nuisance_types.size() && !numbers.empty(); ++i) {
+    const EffectType& type = *fit.nuisance_types[i];
+    // What the model has is moved along a direction, and not by its parameter.
+    if (place_of(problem.model, type) != nullptr) continue;
+    const std::size_t position = searched_number(problem, type);
+    const EffectParameter& parameter = type.parameters[position];
+    effects.push_back(absent(type));
+    effects.back().values[position] = std::clamp(numbers[i], parameter.low, parameter.high);
+  }
+  return noise_of_input(problem, fit, effects) - fit.noise_of_input;
+}
+
 std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effects) {
   std::vector<const EffectType*> types;
   std::ranges::transform(effects, std::back_inserter(types), &EffectSetting::type);
@@ -516,12 +533,15 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
   }
   std::ranges::transform(problem.segments, std::back_inserter(outcome.segments), untouched);
   hold_out(projection, problem, linear, {projection, linear, places, solution}, solution.residual, outcome);
+  std::span<const double> numbers = outcome.nuisance;  // of the segments that are left
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const FitSegment& fit = problem.segments[projection.touched()[t]];
     SegmentResult& result = outcome.segments[projection.touched()[t]];
     result.touched = true;
     result.change = fit.measured - fit.baseline -
                     solution.residual.segment(projection.first_row(t), fit.measured.size()) / fit.weight;
+    result.more_noise = more_noise_of(problem, fit, outcome.effects, numbers);
+    if (with_nuisance) numbers = numbers.subspan(static_cast<std::size_t>(fit.nuisance.cols()));
   }
   estimate(projection, problem, places, solution, linear, outcome);
   return outcome;
@@ -637,6 +657,10 @@ Eigen::MatrixXd covariance_for_draws(const FitOutcome& fit) {
 double SegmentResult::held_out_mean_square(const FitSegment& segment) const {
   return std::accumulate(held_out_squares.begin(), held_out_squares.end(), 0.0) /
          static_cast<double>(segment.measured.size());
+}
+
+double SegmentResult::left(const FitSegment& segment) const {
+  return std::max(0.0, held_out_mean_square(segment) - more_noise);
 }
 
 FitOutcome fit_effects(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,

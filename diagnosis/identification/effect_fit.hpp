@@ -33,8 +33,11 @@ struct SegmentResult {
   double mean_square = 0.0;              // of the residual, parameters fitted to it
   std::vector<double> held_out_squares;  // per block: sum over a block that was not fitted
   Eigen::VectorXd change;                // change of the baseline by the effects; empty if they do not act here
+  double more_noise = 0.0;               // that they make of the input's noise than the baseline does [mean square]
 
   [[nodiscard]] double held_out_mean_square(const FitSegment& segment) const;
+  /// The same less what the effects make more of the input's noise: what they leave by themselves.
+  [[nodiscard]] double left(const FitSegment& segment) const;
 };
 
 /// Effects fitted together.

@@ -178,11 +178,11 @@ void leave_out_ends(const Segment& segment, std::vector<double>& predicted) {
   std::copy_n(segment.measured.rbegin(), end, predicted.rbegin());
 }
 
-std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& others) {
+std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& others, double times = 1.0) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    motions[i].displacement_m += others[i].displacement_m;
-    motions[i].velocity_m_per_s += others[i].velocity_m_per_s;
-    motions[i].acceleration_m_per_s2 += others[i].acceleration_m_per_s2;
+    motions[i].displacement_m += times * others[i].displacement_m;
+    motions[i].velocity_m_per_s += times * others[i].velocity_m_per_s;
+    motions[i].acceleration_m_per_s2 += times * others[i].acceleration_m_per_s2;
   }
   return motions;
 }
@@ -209,6 +209,12 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   return predicted;
 }
 
+Segment with_noise_again(const Segment& segment, double times) {
+  Segment noisy = segment;
+  noisy.input = sum(segment.input, segment.noise, times);
+  return noisy;
+}
+
 InputErrors input_errors(const SiteModel& model, const Segment& segment) {
   if (segment.noise.empty()) return {};
   const auto predicted = [&](const std::vector<Motion>& input) {
@@ -222,7 +228,7 @@ InputErrors input_errors(const SiteModel& model, const Segment& segment) {
   };
   const std::vector<double> wide = predict(model, segment);
   InputErrors errors;
-  errors.of_noise = change(predicted(sum(segment.input, segment.noise)), wide);
+  errors.of_noise = change(predict(model, with_noise_again(segment)), wide);
   if (segment.narrow_input.empty()) return errors;
   const std::vector<double> narrow = predicted(segment.narrow_input);
   errors.of_window = change(narrow, wide);

@@ -388,6 +388,11 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   for (const std::vector<double>& values : wrong) {
     if (!values.empty()) fit.input_errors.push_back(fit.average(values));
   }
+  if (!errors.of_noise.empty()) {
+    fit.noisy = std::make_shared<const NoisySegments>(
+        NoisySegments{with_noise_again(fit.segment), with_noise_again(fit.segment, -1.0)});
+    fit.noise_of_input = noise_of_input(problem, fit, {});
+  }
   fit.block_begins = blocks_of(fit);
   add_nuisances(model, problem.law_has_strength, fit);
   add_number_slopes(model, fit);
@@ -538,11 +543,13 @@ bool is_model_number(const IdentificationProblem& problem, const EffectType& typ
 
 namespace {
 
+bool touch(std::span<const EffectSetting> effects, const Segment& segment) {
+  return std::ranges::any_of(effects, [&](const EffectSetting& effect) { return segment.touched_by(*effect.type); });
+}
+
 Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem, const FitSegment& segment,
                                            std::span<const EffectSetting> added) {
-  const bool touched =
-      std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
-  if (!touched) return segment.baseline;
+  if (!touch(added, segment.segment)) return segment.baseline;
   if (segment.law == nullptr) return segment.average(predict(problem.model, segment.segment, added));
   SiteModel remembered = problem.model;
   remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };
@@ -558,6 +565,17 @@ Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& 
   const Eigen::MatrixXd& directions = segment.numbers.directions;
   if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));
   return predicted;
+}
+
+double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,
+                      std::span<const EffectSetting> added) {
+  if (segment.noisy == nullptr) return 0.0;
+  problem.progress.alive();
+  std::vector<EffectSetting> effects{added.begin(), added.end()};
+  std::erase_if(effects, [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; });
+  const Eigen::VectorXd noise = 0.5 * (segment.average(predict(problem.model, segment.noisy->with, effects)) -
+                                       segment.average(predict(problem.model, segment.noisy->against, effects)));
+  return noise.squaredNorm() / static_cast<double>(noise.size());
 }
 
 double cost_of_numbers(const IdentificationProblem& problem, std::span<const EffectSetting> added) {

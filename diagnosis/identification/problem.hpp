@@ -54,6 +54,12 @@ struct FreeNumbers {
   double resolved = 1.0;       // over that, what noise leaves of doubt in it
 };
 
+/// A segment with a draw of the noise of its input once more in it, and taken off.
+struct NoisySegments {
+  Segment with;
+  Segment against;
+};
+
 /// A segment for fits: averaged over `averaged` neighbouring samples, which keeps the frequencies that a
 /// hybrid test excites and removes noise above them.
 struct FitSegment {
@@ -80,6 +86,8 @@ struct FitSegment {
   double smoothing_floor = 0.0;
   // What the prediction has wrong by noise of its input and by smoothing, each in its averaged samples.
   std::vector<Eigen::VectorXd> input_errors;
+  std::shared_ptr<const NoisySegments> noisy;  // null where the input is exact
+  double noise_of_input = 0.0;                 // in the baseline [mean square]; see noise_of_input()
   // Of a measured displacement: what of the force that answers it no function of the command explains. Empty without.
   Eigen::VectorXd answering_force;
   // Of a measured force: the displacement that was commanded, which rests without noise. Empty without.
@@ -150,5 +158,11 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 /// segment.
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                                       std::span<const EffectSetting> added);
+
+/// What noise of the input does to that prediction, to first order [mean square]. A damping makes much of it, and a lag
+/// takes it away: neither says anything about them. What noise does alike whatever its sign is none: a loop that it
+/// narrows. Nor is what it does by what the specimen went through, as cycles that it adds: without degradation.
+[[nodiscard]] double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,
+                                    std::span<const EffectSetting> added);
 
 }  // namespace hybridtest

@@ -125,6 +125,20 @@ double left_out(const IdentificationProblem& problem, const EffectType& effect, 
   return own == nullptr ? effect.parameters[parameter].fallback : own->values[parameter];
 }
 
+EffectSetting absent(const EffectType& effect) {
+  EffectSetting setting{.type = &effect, .values = {}};
+  for (const EffectParameter& parameter : effect.parameters) {
+    setting.values.push_back(std::isnan(parameter.fallback) ? parameter.neutral : parameter.fallback);
+  }
+  return setting;
+}
+
+std::size_t searched_number(const IdentificationProblem& problem, const EffectType& number) {
+  const auto searched = std::ranges::find_if(
+      number.parameters, [&](const EffectParameter& parameter) { return !is_fixed(problem, number, parameter); });
+  return static_cast<std::size_t>(searched - number.parameters.begin());
+}
+
 double SearchedParameter::at(double place) const noexcept {
   return logarithmic ? low * std::pow(high / low, place) : low + (high - low) * place;
 }

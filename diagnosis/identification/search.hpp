@@ -42,6 +42,13 @@ struct SearchPlan {
   bool linear_ones_remove_all = false;  // without them every effect is absent
 };
 
+/// An effect at values with which it changes nothing.
+[[nodiscard]] EffectSetting absent(const EffectType& effect);
+
+/// Position of the parameter of a number of the model that is searched: of a stiffness the spring beside another one,
+/// or the ratio of a law's.
+[[nodiscard]] std::size_t searched_number(const IdentificationProblem& problem, const EffectType& number);
+
 /// Which parameters of an effect are free: all, or only those that a scenario has to give; of an effect that the model
 /// has, only its size.
 enum class Freedom : std::uint8_t { all, required };

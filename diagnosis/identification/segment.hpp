@@ -110,6 +110,10 @@ struct InputErrors {
 };
 [[nodiscard]] InputErrors input_errors(const SiteModel& model, const Segment& segment);
 
+/// The segment with Segment::noise, a draw of the noise that its input has, once more in it.
+/// @param times   as large.
+[[nodiscard]] Segment with_noise_again(const Segment& segment, double times = 1.0);
+
 /// What the prediction of a force changes by where the motion alone is smoothed, just as far as it helps: until it is
 /// about as near to the recorded force as it gets, beside a spring and a damper that the model may lack. So much the
 /// noise that rides on the motion has changed it, coloured noise too. One value per sample; empty where nothing helps,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -20,7 +21,7 @@ double held_out_score(const IdentificationProblem& problem, const FitOutcome& ou
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
     const double allowed = 1.0 / (fit.weight * fit.weight);
-    double left = outcome.segments[i].held_out_mean_square(fit);
+    double left = outcome.segments[i].left(fit);
     if (fit.is_settled) {
       left = std::max(left, (fit.measured - fit.baseline).squaredNorm() / static_cast<double>(fit.measured.size()));
     }
@@ -43,7 +44,7 @@ bool GapEnergy::is_clear(double energy) const noexcept {
 GapEnergy gap_energy(const FitSegment& segment, const SegmentResult& result) {
   const double variance = segment.measured.squaredNorm() / static_cast<double>(segment.measured.size());
   if (variance <= 0.0) return {};
-  return {.total = result.held_out_mean_square(segment) / variance,
+  return {.total = result.left(segment) / variance,
           .floor = segment.floor * segment.floor / variance,
           .allowed = 1.0 / (segment.weight * segment.weight * variance)};
 }
@@ -284,14 +285,6 @@ bool is_of_law(const EffectType& effect) noexcept {
          (number == ModelNumber::stiffness || number == ModelNumber::strength);
 }
 
-EffectSetting absent(const EffectType& effect) {
-  EffectSetting setting{.type = &effect, .values = {}};
-  for (const EffectParameter& parameter : effect.parameters) {
-    setting.values.push_back(std::isnan(parameter.fallback) ? parameter.neutral : parameter.fallback);
-  }
-  return setting;
-}
-
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
   std::vector<EffectSetting> numbers;
   std::vector<double> found;
@@ -308,12 +301,8 @@ std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, c
         number = numbers.insert(numbers.end(), absent(*type));
         found.push_back(0.0);
       }
-      // The parameter that is searched: of a stiffness the spring beside another one, or the ratio of a law's.
-      const auto searched = std::ranges::find_if(
-          type->parameters, [&](const EffectParameter& parameter) { return !is_fixed(problem, *type, parameter); });
-      const auto position = static_cast<std::size_t>(searched - type->parameters.begin());
       double& count = found[static_cast<std::size_t>(number - numbers.begin())];
-      double& value = number->values[position];
+      double& value = number->values[searched_number(problem, *type)];
       value = (value * count + fit.nuisance[column++]) / (count + 1.0);
       count += 1.0;
     }
@@ -375,6 +364,17 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
 
 }  // namespace
 
+namespace {
+
+/// Score of the best candidate that the recordings do not refute by themselves; minus infinity where there is none.
+double best_to_believe(const IdentificationProblem& problem, const std::vector<Candidate>& best_first) {
+  const auto first = std::ranges::find_if(
+      best_first, [&](const Candidate& candidate) { return refutation(problem, candidate).empty(); });
+  return first == best_first.end() ? -std::numeric_limits<double>::infinity() : first->score;
+}
+
+}  // namespace
+
 std::vector<Candidate> fit_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                    const PartProgress& progress) {
   const std::vector<const EffectType*> effects = judged_effects(problem);
@@ -391,7 +391,7 @@ std::vector<Candidate> fit_library(const IdentificationProblem& problem, const I
   // The coarse record has fewer samples: scores are compared with those of the full one relative to no effect.
   const double offset =
       held_out_score(problem, fit_nothing(problem, false)) - held_out_score(coarse, fit_nothing(coarse, false));
-  const double best = candidates.front().score;
+  const double best = best_to_believe(coarse, candidates);
   std::vector<std::optional<Candidate>> refined(candidates.size());
   fit_each(
       coarse.workers, candidates.size(),
@@ -582,13 +582,8 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
       counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));
   // Candidates with a much lower score on the coarse record than one that may be the cause are dropped.
   promising = best_first(std::move(together));
-  const auto first = std::ranges::find_if(
-      promising, [&](const Candidate& candidate) { return refutation(coarse, candidate).empty(); });
-  if (first != promising.end()) {
-    std::erase_if(promising, [best = first->score](const Candidate& candidate) {
-      return candidate.score < best - tuning::kFarBehind;
-    });
-  }
+  const double best = best_to_believe(coarse, promising);
+  std::erase_if(promising, [best](const Candidate& candidate) { return candidate.score < best - tuning::kFarBehind; });
   std::vector<std::optional<Candidate>> refitted(promising.size());
   fit_each(
       coarse.workers, promising.size(),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/progress.hpp"
 
 namespace hybridtest {
@@ -70,9 +71,6 @@ void fit_each(const Workers& workers, std::size_t count, const std::function<voi
 /// factor n / a with a probability of at most a / n, whatever the candidate (Vovk and Wang, Annals of Statistics 49,
 /// 2021: e-values).
 [[nodiscard]] double decisive_gain(const IdentificationProblem& problem);
-
-/// An effect at values with which it changes nothing.
-[[nodiscard]] EffectSetting absent(const EffectType& effect);
 
 /// The wrong numbers of the model that a fit with nuisance parameters found at the suspect segments, as effects; of
 /// several recordings the mean. What it needs elsewhere is a matter of the channel there.

@@ -20,6 +20,7 @@ namespace hybridtest {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::Not;
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -95,6 +96,16 @@ TEST(OpenedCase, DriftIsFoundBesideAStrengthThatIsRight) {
 /// The force is early by 2 ms, as by a damping or by a lag of the transducer. The motion is on time.
 TEST(OpenedCase, TransducerThatReadsOnTimeHasNoLag) {
   EXPECT_THAT(causes_of_case(137862330, 157), Not(Contains("displacement_sensor.lag")));
+}
+
+/// A filter takes noise of the recorded motion away, and so left less than the delay of the force that is there.
+TEST(OpenedCase, ForceThatIsReadLateIsNotFiltered) {
+  EXPECT_THAT(causes_of_case(2607950161, 129), ElementsAre("force_sensor.time_skew"));
+}
+
+/// A damping makes more noise of the recorded motion than a fractional one of an order a little below one.
+TEST(OpenedCase, DamperIsNotFractional) {
+  EXPECT_THAT(causes_of_case(2607950161, 280), ElementsAre("specimen.viscous_damping"));
 }
 
 /// A damping found alone had taken up most of another one.

@@ -61,7 +61,7 @@ TEST(HeldOutScore, EachBlockThatIsLeftOutCountsForOneSample) {
   const FitOutcome found = fit_effects(problem, {find_effect(specimen, ModelNumber::stiffness)}, false);
   const FitOutcome nothing = fit_nothing(problem, false);
   const auto allowed = [&](const FitOutcome& outcome) {
-    return outcome.segments.back().held_out_mean_square(fit) + 1.0 / (fit.weight * fit.weight);
+    return outcome.segments.back().left(fit) + 1.0 / (fit.weight * fit.weight);
   };
   // Of 12 s, each with a cycle of 0.9 Hz.
   EXPECT_EQ(fit.block_begins.size(), 12U);

@@ -286,18 +286,33 @@ namespace {
 
 using ReadingPart = std::function<double(const MotionPoint&, double)>;
 
+/// One pole, exact for an input that is straight between two points: it lags by the time constant, however short.
+class Pole {
+ public:
+  Pole(double time_constant_s, double period_s)
+      : decay_{std::exp(-period_s / time_constant_s)}, lag_in_steps_{time_constant_s / period_s} {}
+
+  double next(double v) {
+    if (!std::exchange(started_, true)) input_ = output_ = v;
+    const double lag = lag_in_steps_ * (v - input_);
+    output_ = v - lag + (output_ - input_ + lag) * decay_;
+    input_ = v;
+    return output_;
+  }
+
+ private:
+  double decay_;
+  double lag_in_steps_;
+  double input_ = 0.0;
+  double output_ = 0.0;
+  bool started_ = false;
+};
+
 /// Two equal poles that together lag by the time constant.
 ReadingPart lagging(double time_constant_s, double period_s) {
-  const double decay = std::exp(-2.0 * period_s / time_constant_s);
-  return [decay, past = 0.0, first = 0.0, second = 0.0, started = false](const MotionPoint& /*at*/, double v) mutable {
-    if (!std::exchange(started, true)) past = first = second = v;
-    const double middle = 0.5 * (v + std::exchange(past, v));
-    const double before = first;
-    first = middle + (first - middle) * decay;
-    const double between = 0.5 * (before + first);
-    second = between + (second - between) * decay;
-    return second;
-  };
+  const Pole pole{0.5 * time_constant_s, period_s};
+  return
+      [first = pole, second = pole](const MotionPoint& /*at*/, double v) mutable { return second.next(first.next(v)); };
 }
 
 /// A converter whose steps are up to a tenth wider or narrower than they should be.

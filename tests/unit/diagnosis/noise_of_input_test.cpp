@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "diagnosis/identification/problem.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+/// The noise of a measured displacement goes through everything that a candidate makes of the motion: a damping makes
+/// more of it, a lag takes it away. What is left of a gap is compared without that; OpenedCase has answers.
+namespace hybridtest {
+namespace {
+
+constexpr double kForceNoise_n = 2.0;
+
+/// Of a transducer whose noise is much more force, times the stiffness, than the load cell's own.
+Recording with_noisy_motion(double noise_m, const std::function<double(double)>& force_n) {
+  Random random{9};
+  return made_recording([&](double t) { return made_motion_m(t) + noise_m * random.normal(); }, force_n, kForceNoise_n);
+}
+
+FitSegment of_force(const IdentificationProblem& problem) { return problem.segments.back(); }
+
+TEST(NoiseOfInput, IsThatOfDisplacementTimesStiffnessAndOfVelocityTimesDamping) {
+  constexpr double kDamping_n_s_per_m = 1.0e5;
+  const Recording recording =
+      with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const auto problem = make_problem(made_model(), segments_of(recording, 0, 0));
+  const FitSegment fit = of_force(problem);
+  const EffectSetting damping{.type = find_effect(EffectInterface::specimen, ModelNumber::damping),
+                              .values = {kDamping_n_s_per_m}};
+  const auto made_of = [&](double damping_n_s_per_m) {
+    std::vector<double> noise;
+    for (const Motion& motion : fit.segment.noise) {
+      noise.push_back(kMadeStiffness_n_per_m * motion.displacement_m + damping_n_s_per_m * motion.velocity_m_per_s);
+    }
+    return fit.average(noise).squaredNorm() / static_cast<double>(fit.measured.size());
+  };
+  EXPECT_NEAR(fit.noise_of_input, made_of(0.0), 1e-9 * made_of(0.0));
+  EXPECT_NEAR(noise_of_input(problem, fit, std::span{&damping, 1}), made_of(kDamping_n_s_per_m),
+              1e-9 * made_of(kDamping_n_s_per_m));
+  EXPECT_GT(made_of(kDamping_n_s_per_m), 2.0 * made_of(0.0));
+}
+
+TEST(NoiseOfInput, IsLessBehindALag) {
+  const Recording recording =
+      with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const auto problem = make_problem(made_model(), segments_of(recording, 0, 0));
+  const FitSegment fit = of_force(problem);
+  const EffectSetting lag{.type = find_effect(EffectInterface::force_sensor, "lag"), .values = {0.1, 0.0}};
+  EXPECT_LT(noise_of_input(problem, fit, std::span{&lag, 1}), 0.5 * fit.noise_of_input);
+}
+
+TEST(NoiseOfInput, OfAnExactInputIsNone) {
+  const Recording recording =
+      made_recording(made_motion_m, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const auto problem = make_problem(made_model(), segments_of(recording, 0, 0));
+  const EffectSetting delay{.type = find_effect(EffectInterface::transfer_system, ModelNumber::delay),
+                            .values = {0.01}};
+  EXPECT_EQ(problem.segments.front().noise_of_input, 0.0);
+  EXPECT_EQ(noise_of_input(problem, problem.segments.front(), std::span{&delay, 1}), 0.0);
+}
+
+}  // namespace
+}  // namespace hybridtest
