@@ -212,6 +212,9 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
 Segment with_noise_again(const Segment& segment, double times) {
   Segment noisy = segment;
   noisy.input = sum(segment.input, segment.noise, times);
+  // What a prediction does not read.
+  for (std::vector<Motion>* unread : {&noisy.noise, &noisy.narrow_input, &noisy.narrow_noise}) *unread = {};
+  noisy.smoothing_errors = {};
   return noisy;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
@@ -46,6 +47,22 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
   return growth;
 }
 
+/// Scores of the library after the noise of the problem has changed, best first; its probabilities and leaders go
+/// along.
+void score_library_again(const IdentificationProblem& problem, Selection& selection) {
+  std::vector<Candidate>& library = selection.library;
+  std::vector<const EffectType*> before;
+  std::ranges::transform(library, std::back_inserter(before), &Candidate::type);
+  const std::vector<double> probabilities = selection.probabilities;
+  score_again(problem, library);
+  const auto place_now = [&](std::size_t place_before) {
+    return static_cast<std::size_t>(std::ranges::find(library, before[place_before], &Candidate::type) -
+                                    library.begin());
+  };
+  for (std::size_t i = 0; i < before.size(); ++i) selection.probabilities[place_now(i)] = probabilities[i];
+  for (AlikeLeader& leader : selection.alike) leader.position = place_now(leader.position);
+}
+
 /// The noise is known better beside what was found than it was beside the best effect by itself. Where the floor was
 /// too high for that, what it hid is looked for.
 void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, Selection& selection,
@@ -57,7 +74,7 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   problem = std::move(settled);
   settle_noise(coarse, refit_effects(coarse, growth.fit.effects, false));
   growth.fit = refit_effects(problem, growth.fit.effects, false);
-  score_again(problem, selection.library);
+  score_library_again(problem, selection);
   grow_further(problem, coarse, selection, Beside::as_found, progress, growth);
   settle(problem, coarse, selection, growth);
 }
