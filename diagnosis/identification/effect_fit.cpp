@@ -483,11 +483,13 @@ SegmentResult untouched(const FitSegment& fit) {
   return result;
 }
 
-/// See SegmentResult::more_noise. Where the numbers of the model suit every prediction, they suit its noise, too.
+/// See SegmentResult::more_noise. Where the numbers of the model suit every prediction, they suit its noise, too. What
+/// noise does by what the specimen went through, as cycles that it adds, is no noise: nothing with degradation.
 /// @param numbers   coefficients of the segment's nuisances, the first of them; empty: not free.
 double more_noise_of(const IdentificationProblem& problem, const FitSegment& fit, std::vector<EffectSetting> effects,
                      std::span<const double> numbers) {
-  if (effects.empty() || fit.numbers.directions.cols() > 0) return 0.0;
+  const auto degrades = [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; };
+  if (effects.empty() || fit.numbers.directions.cols() > 0 || std::ranges::any_of(effects, degrades)) return 0.0;
   for (std::size_t i = 0; i < fit.nuisance_types.size() && !numbers.empty(); ++i) {
     const EffectType& type = *fit.nuisance_types[i];
     // What the model has is moved along a direction, and not by its parameter.

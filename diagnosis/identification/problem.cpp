@@ -571,10 +571,8 @@ double noise_of_input(const IdentificationProblem& problem, const FitSegment& se
                       std::span<const EffectSetting> added) {
   if (segment.noisy == nullptr) return 0.0;
   problem.progress.alive();
-  std::vector<EffectSetting> effects{added.begin(), added.end()};
-  std::erase_if(effects, [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; });
-  const Eigen::VectorXd noise = 0.5 * (segment.average(predict(problem.model, segment.noisy->with, effects)) -
-                                       segment.average(predict(problem.model, segment.noisy->against, effects)));
+  const Eigen::VectorXd noise = 0.5 * (segment.average(predict(problem.model, segment.noisy->with, added)) -
+                                       segment.average(predict(problem.model, segment.noisy->against, added)));
   return noise.squaredNorm() / static_cast<double>(noise.size());
 }
 

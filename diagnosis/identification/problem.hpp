@@ -161,7 +161,7 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
 /// What noise of the input does to that prediction, to first order [mean square]. A damping makes much of it, and a lag
 /// takes it away: neither says anything about them. What noise does alike whatever its sign is none: a loop that it
-/// narrows. Nor is what it does by what the specimen went through, as cycles that it adds: without degradation.
+/// narrows.
 [[nodiscard]] double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,
                                     std::span<const EffectSetting> added);
 
