@@ -662,7 +662,10 @@ double SegmentResult::held_out_mean_square(const FitSegment& segment) const {
 }
 
 double SegmentResult::left(const FitSegment& segment) const {
-  return std::max(0.0, held_out_mean_square(segment) - more_noise);
+  const double all = held_out_mean_square(segment);
+  const double noise = segment.noise_of_input + more_noise;
+  // With less left than that noise would be, there is less of it.
+  return more_noise > 0.0 && all < noise ? all * segment.noise_of_input / noise : all - more_noise;
 }
 
 FitOutcome fit_effects(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
