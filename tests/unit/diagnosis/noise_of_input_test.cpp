@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/problem.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -60,6 +61,37 @@ TEST(NoiseOfInput, OfAnExactInputIsNone) {
                             .values = {0.01}};
   EXPECT_EQ(problem.segments.front().noise_of_input, 0.0);
   EXPECT_EQ(noise_of_input(problem, problem.segments.front(), std::span{&delay, 1}), 0.0);
+}
+
+/// A stiffness that is lost within half a cycle and given back by a free number would make four times the noise.
+TEST(NoiseOfInput, IsNotAskedOfWhatDegrades) {
+  const Recording recording =
+      with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const auto problem = make_problem(made_model(), segments_of(recording, 0, 0));
+  const auto more_noise_of = [&](const EffectType* type) {
+    return fit_effects(problem, {type}, true).segments.back().more_noise;
+  };
+  EXPECT_EQ(more_noise_of(find_effect(EffectInterface::specimen, "stiffness_degradation_with_cycles")), 0.0);
+  EXPECT_NE(more_noise_of(find_effect(EffectInterface::specimen, "cubic_stiffness")), 0.0);  // control
+}
+
+/// With less left than the noise would be, the noise is in proportion.
+TEST(NoiseOfInput, IsTakenOffWhatIsLeft) {
+  FitSegment fit;
+  fit.measured = Eigen::VectorXd::Zero(10);
+  fit.noise_of_input = 1.0;
+  SegmentResult result;
+  result.held_out_squares = {20.0, 30.0};  // a mean square of 5
+  const auto left_with = [&](double more_noise) {
+    result.more_noise = more_noise;
+    return result.left(fit);
+  };
+  EXPECT_DOUBLE_EQ(left_with(0.0), 5.0);
+  EXPECT_DOUBLE_EQ(left_with(3.0), 2.0);
+  EXPECT_DOUBLE_EQ(left_with(-0.5), 5.5);
+  EXPECT_DOUBLE_EQ(left_with(4.0), 1.0);
+  EXPECT_DOUBLE_EQ(left_with(9.0),
+                   0.5);  // 5 are left where the noise would be 10: half of it, and the model's own stays
 }
 
 }  // namespace
