@@ -388,7 +388,8 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   for (const std::vector<double>& values : wrong) {
     if (!values.empty()) fit.input_errors.push_back(fit.average(values));
   }
-  if (!errors.of_noise.empty()) {
+  // What a coarse converter has wrong follows from the motion, and has no other sign.
+  if (!errors.of_noise.empty() && !(fit.segment.input_step > 0.0)) {
     fit.noisy = std::make_shared<const NoisySegments>(
         NoisySegments{with_noise_again(fit.segment), with_noise_again(fit.segment, -1.0)});
     fit.noise_of_input = noise_of_input(problem, fit, {});

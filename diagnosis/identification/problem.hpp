@@ -86,7 +86,7 @@ struct FitSegment {
   double smoothing_floor = 0.0;
   // What the prediction has wrong by noise of its input and by smoothing, each in its averaged samples.
   std::vector<Eigen::VectorXd> input_errors;
-  std::shared_ptr<const NoisySegments> noisy;  // null where the input is exact
+  std::shared_ptr<const NoisySegments> noisy;  // null where the input is exact, or read in coarse steps
   double noise_of_input = 0.0;                 // in the baseline [mean square]; see noise_of_input()
   // Of a measured displacement: what of the force that answers it no function of the command explains. Empty without.
   Eigen::VectorXd answering_force;
