@@ -59,13 +59,6 @@ TEST(OpenedCase, FrictionIsLookedForWhereTheFloorTurnsOutLower) {
   EXPECT_THAT(causes_of_case(1625051447, 266), Contains("specimen.coulomb_friction"));
 }
 
-/// Nothing is wrong but numbers, one of them the bandwidth: a delay and another bandwidth were named for it.
-TEST(OpenedCase, OneNumberIsNotTwoEffects) {
-  const std::vector<std::string> causes = causes_of_case(3045078726, 146);
-  EXPECT_THAT(causes, Not(Contains("transfer_system.bandwidth")));
-  EXPECT_THAT(causes, Not(Contains("transfer_system.delay")));
-}
-
 /// The recording to fit does not reach the strength, the one held out does, and the stiffness is off by 1.7 %: told as
 /// a spring beside the model it was contradicted, and all was `unknown`.
 TEST(OpenedCase, FrameIsFoundBesideAStiffnessThatCarriesOver) {
