@@ -107,12 +107,12 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
     const Candidate& candidate = selection.library[i];
     if (std::ranges::find(listed, candidate.type) != listed.end()) continue;
     const bool in_set = std::ranges::find(judgement.indistinguishable, i) != judgement.indistinguishable.end();
-    const auto alike = std::ranges::find(selection.alike, i, &AlikeLeader::position);
+    const auto alike = std::ranges::find(selection.alike, candidate.type, &AlikeLeader::type);
     const FitOutcome& fit = alike == selection.alike.end() ? candidate.fit : alike->fit;
     // Beside numbers of the model it need not come first.
     const auto own = std::ranges::find(fit.effects, candidate.type, &EffectSetting::type);
     RankedCause cause = ranked(stage.problem.model, fit, static_cast<std::size_t>(own - fit.effects.begin()));
-    cause.probability = tuning::kAnswerRight * selection.probabilities[i];
+    cause.probability = tuning::kAnswerRight * candidate.probability;
     cause.is_indistinguishable = in_set;
     cause.is_cause = in_set && is_set;
     ranking.push_back(std::move(cause));

@@ -13,7 +13,7 @@ namespace hybridtest::tuning {
 
 /// Minimum number of rows of data.
 inline constexpr std::size_t kSamplesMin = 16;
-/// Most rows of data: a diagnosis keeps all of them in memory, with all that it makes of them about 2.6 kB per row and
+/// Most rows of data: a diagnosis keeps all of them in memory, with all that it makes of them about 3 kB per row and
 /// degree of freedom. 35 minutes at 1 kHz.
 inline constexpr std::size_t kSamplesMax = std::size_t{1} << 21U;
 /// Largest file that is read: 2 GiB.

@@ -544,13 +544,11 @@ bool is_model_number(const IdentificationProblem& problem, const EffectType& typ
 
 namespace {
 
-bool touch(std::span<const EffectSetting> effects, const Segment& segment) {
-  return std::ranges::any_of(effects, [&](const EffectSetting& effect) { return segment.touched_by(*effect.type); });
-}
-
 Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem, const FitSegment& segment,
                                            std::span<const EffectSetting> added) {
-  if (!touch(added, segment.segment)) return segment.baseline;
+  const bool touched =
+      std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
+  if (!touched) return segment.baseline;
   if (segment.law == nullptr) return segment.average(predict(problem.model, segment.segment, added));
   SiteModel remembered = problem.model;
   remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "core/parameters/unit_of.hpp"
@@ -66,7 +65,7 @@ std::vector<std::size_t> credible(const IdentificationProblem& problem, const Se
     const bool is_untold = behind <= 0.0 || (behind <= told && are_alike(first.fit, candidate.fit));
     const bool is_simple = candidate.parameters <= first.parameters && !stands_beside(problem, candidate, first.type);
     if (i == 0 || sum < probability || (is_untold && is_simple)) members.push_back(i);
-    sum += selection.probabilities[i];
+    sum += candidate.probability;
   }
   return members;
 }
@@ -152,13 +151,17 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   // One of the leaders still, if none was exchanged for it; perhaps beside other causes.
   const std::vector<EffectSetting>& effects = selection.chosen.effects;
   const auto is_told = [&](const AlikeLeader& leader) {
-    const auto found = std::ranges::find(effects, selection.library[leader.position].type, &EffectSetting::type);
+    const auto found = std::ranges::find(effects, leader.type, &EffectSetting::type);
     return found != effects.end() && !judgement.is_correction(static_cast<std::size_t>(found - effects.begin()));
   };
   if (selection.library.front().type == only_cause(problem, selection, judgement)) {
     judgement.indistinguishable = credible(problem, selection, policy.credible);
   } else if (std::ranges::any_of(selection.alike, is_told)) {
-    std::ranges::transform(selection.alike, std::back_inserter(judgement.indistinguishable), &AlikeLeader::position);
+    const std::vector<Candidate>& library = selection.library;
+    for (const AlikeLeader& leader : selection.alike) {
+      const auto place = std::ranges::find(library, leader.type, &Candidate::type) - library.begin();
+      judgement.indistinguishable.push_back(static_cast<std::size_t>(place));
+    }
   }
   if (judgement.may_be_set && judgement.indistinguishable.size() > 1) judgement.verdict = Verdict::set;
   return judgement;

@@ -29,6 +29,11 @@ std::vector<double> scores_of(const std::vector<Candidate>& candidates) {
   return scores;
 }
 
+void weigh(std::vector<Candidate>& candidates, std::vector<double> scores) {
+  const std::vector<double> probabilities = softmax(std::move(scores));
+  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].probability = probabilities[i];
+}
+
 double score_of(const IdentificationProblem& problem, const FitOutcome& fit) {
   return held_out_score(problem, fit) + prior(problem, fit);
 }
@@ -313,8 +318,9 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
         const bool are_its = one.interface == number.type->interface && other.interface == number.type->interface;
         const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
         if (!are_its || is_a_law || (is_number(problem, one) && is_number(problem, other))) continue;
-        tried.push_back({number.type, without(without(effects, second), first), {}});
-        tried.back().start.push_back(number);
+        std::vector<EffectSetting> start = without(without(effects, second), first);
+        start.push_back(number);
+        tried.push_back({number.type, std::move(start), {}});
       }
     }
   }

@@ -30,6 +30,9 @@ struct Growth {
 
 [[nodiscard]] std::vector<double> scores_of(const std::vector<Candidate>& candidates);
 
+/// Gives each candidate its probability: the softmax of these scores, one for each.
+void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
+
 /// The score of a fit on held-out blocks, and what its parameters cost [nats].
 [[nodiscard]] double score_of(const IdentificationProblem& problem, const FitOutcome& fit);
 

@@ -23,7 +23,7 @@ namespace {
 Growth with_its_numbers(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                         const Selection& selection, std::size_t position) {
   const Candidate& candidate = selection.library[position];
-  Growth growth{.fit = {}, .accepted = {{candidate.type, selection.probabilities[position]}}};
+  Growth growth{.fit = {}, .accepted = {{candidate.type, candidate.probability}}};
   if (!candidate.fit.with_nuisance) {
     growth.fit = refit_effects(problem, candidate.fit.effects, false);
     return growth;
@@ -128,10 +128,13 @@ std::map<std::size_t, Growth> grow_leaders(const IdentificationProblem& problem,
 }
 
 /// Between effects that the recordings cannot tell apart, the score decides nothing.
-void share_evenly(const std::vector<AlikeLeader>& alike, std::vector<double>& probabilities) {
+void share_evenly(const std::vector<AlikeLeader>& alike, std::vector<Candidate>& library) {
+  const auto probability_of = [&](const AlikeLeader& leader) -> double& {
+    return std::ranges::find(library, leader.type, &Candidate::type)->probability;
+  };
   double sum = 0.0;
-  for (const AlikeLeader& leader : alike) sum += probabilities[leader.position];
-  for (const AlikeLeader& leader : alike) probabilities[leader.position] = sum / static_cast<double>(alike.size());
+  for (const AlikeLeader& leader : alike) sum += probability_of(leader);
+  for (const AlikeLeader& leader : alike) probability_of(leader) = sum / static_cast<double>(alike.size());
 }
 
 /// Numbers of the model that lead alone are preferred to what has to be decidedly better than they are: that is their
@@ -140,8 +143,8 @@ void weigh_numbers(const IdentificationProblem& problem, std::size_t position, G
   if (!holds(selection.by_numbers.effects, selection.library[position].type)) return;
   std::vector<double> scores = scores_of(selection.library);
   scores[position] = std::max(scores[position], score_of(problem, growth.fit) + decisive_gain(problem));
-  selection.probabilities = softmax(std::move(scores));
-  growth.accepted.front().probability = selection.probabilities[position];
+  weigh(selection.library, std::move(scores));
+  growth.accepted.front().probability = selection.library[position].probability;
 }
 
 }  // namespace
@@ -182,11 +185,11 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
                             !holds(leader.second.fit.effects, selection.library[best->first].type);
     if (leader.first != best->first && !is_instead) continue;
     scores[leader.first] = std::max(scores[leader.first], by_score(leader));
-    if (is_there && is_alike(leader)) selection.alike.push_back({leader.first, leader.second.fit});
+    if (is_there && is_alike(leader)) selection.alike.push_back({type, leader.second.fit});
   }
-  selection.probabilities = softmax(std::move(scores));
-  share_evenly(selection.alike, selection.probabilities);
-  best->second.accepted.front().probability = selection.probabilities[best->first];
+  weigh(selection.library, std::move(scores));
+  share_evenly(selection.alike, selection.library);
+  best->second.accepted.front().probability = selection.library[best->first].probability;
   return std::move(best->second);
 }
 

@@ -53,6 +53,9 @@ struct Candidate {
   double score = 0.0;       // on held-out blocks, with prior() and the penalty for free nuisance parameters
   double held_out = 0.0;    // held_out_score() alone
   double parameters = 0.0;  // number of free ones
+  // That it is the first cause, against the others of a library; it stays with the candidate when these are put in
+  // another order.
+  double probability = 0.0;
 };
 
 /// Receives the number of finished fits and of all fits; called from any thread, one call at a time.

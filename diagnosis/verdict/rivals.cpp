@@ -271,10 +271,9 @@ std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, c
 /// Of the chosen effect and of its rivals together.
 double probability_of_all(const Selection& selection, const Rivals& rivals) {
   double sum = selection.chosen_probabilities[rivals.chosen];
-  for (std::size_t i = 0; i < selection.library.size() && rivals.chosen == 0; ++i) {
-    if (std::ranges::find(rivals.fitted, selection.library[i].type, &Candidate::type) != rivals.fitted.end()) {
-      sum += selection.probabilities[i];
-    }
+  for (const Candidate& candidate : selection.library) {
+    const bool is_rival = std::ranges::find(rivals.fitted, candidate.type, &Candidate::type) != rivals.fitted.end();
+    if (is_rival && rivals.chosen == 0) sum += candidate.probability;
   }
   return std::min(1.0, sum);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
@@ -47,22 +46,6 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
   return growth;
 }
 
-/// Scores of the library after the noise of the problem has changed, best first; its probabilities and leaders go
-/// along.
-void score_library_again(const IdentificationProblem& problem, Selection& selection) {
-  std::vector<Candidate>& library = selection.library;
-  std::vector<const EffectType*> before;
-  std::ranges::transform(library, std::back_inserter(before), &Candidate::type);
-  const std::vector<double> probabilities = selection.probabilities;
-  score_again(problem, library);
-  const auto place_now = [&](std::size_t place_before) {
-    return static_cast<std::size_t>(std::ranges::find(library, before[place_before], &Candidate::type) -
-                                    library.begin());
-  };
-  for (std::size_t i = 0; i < before.size(); ++i) selection.probabilities[place_now(i)] = probabilities[i];
-  for (AlikeLeader& leader : selection.alike) leader.position = place_now(leader.position);
-}
-
 /// The noise is known better beside what was found than it was beside the best effect by itself. Where the floor was
 /// too high for that, what it hid is looked for.
 void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, Selection& selection,
@@ -74,7 +57,7 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   problem = std::move(settled);
   settle_noise(coarse, refit_effects(coarse, growth.fit.effects, false));
   growth.fit = refit_effects(problem, growth.fit.effects, false);
-  score_library_again(problem, selection);
+  score_again(problem, selection.library);
   grow_further(problem, coarse, selection, Beside::as_found, progress, growth);
   settle(problem, coarse, selection, growth);
 }
@@ -86,7 +69,7 @@ bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcom
     std::erase_if(selection.library,
                   [&](const Candidate& candidate) { return candidate.type == found.effects[i].type; });
     selection.alike.clear();
-    selection.probabilities = softmax(scores_of(selection.library));
+    weigh(selection.library, scores_of(selection.library));
     return true;
   }
   return false;
@@ -105,8 +88,8 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   const double probability = softmax(scores).front();
   Candidate& law = laws.front();
   growth = {.fit = law.fit, .accepted = {{law.type, probability}}};
-  for (double& other : selection.probabilities) other *= 1.0 - probability;
-  selection.probabilities.insert(selection.probabilities.begin(), probability);
+  for (Candidate& other : selection.library) other.probability *= 1.0 - probability;
+  law.probability = probability;
   selection.library.insert(selection.library.begin(), std::move(law));
   selection.alike.clear();
 }
@@ -167,7 +150,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   add_numbers(selection);
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
-  selection.probabilities = softmax(scores_of(selection.library));
+  weigh(selection.library, scores_of(selection.library));
   const auto is_explained = [&] {
     return !selection.library.empty() &&
            selection.library.front().score >= held_out_score(problem, selection.baseline) + decisive_gain(problem);

@@ -10,18 +10,17 @@ namespace hybridtest {
 
 /// A leading candidate with the further effects that it needs, where these recordings cannot tell it from another one.
 struct AlikeLeader {
-  std::size_t position = 0;  // in Selection::library
-  FitOutcome fit;            // the candidate and what was found with it
+  const EffectType* type = nullptr;
+  FitOutcome fit;  // the candidate and what was found with it
 };
 
 /// The selected effects.
 struct Selection {
-  FitOutcome baseline;                // the model as the user gave it
-  FitOutcome by_numbers;              // the model with its numbers free, and damping
-  std::vector<Candidate> library;     // every effect and law by itself, best first
-  FitOutcome chosen;                  // effects together; `effects` is empty if no effect is needed
-  std::vector<double> probabilities;  // one per entry of `library`: that it is the first cause
-  std::vector<AlikeLeader> alike;     // the chosen one included; empty if there was one leader only
+  FitOutcome baseline;             // the model as the user gave it
+  FitOutcome by_numbers;           // the model with its numbers free, and damping
+  std::vector<Candidate> library;  // every effect and law by itself, best first
+  FitOutcome chosen;               // effects together; `effects` is empty if no effect is needed
+  std::vector<AlikeLeader> alike;  // the chosen one included; empty if there was one leader only
   // One per chosen effect: against the others that were tried in its place.
   std::vector<double> chosen_probabilities;
   // Likewise of the gap that they explain together (Shapley, 1953): an effect's gain on held-out blocks, averaged over

@@ -183,7 +183,7 @@ TEST(Judge, GivesNoNameToWhatMayBeAbsentByItsInterval) {
   Selection selection;
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = damping.fit;
-  selection.probabilities = {0.9};
+  damping.probability = 0.9;
   selection.library.push_back(damping);
   EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::named);
   EXPECT_THAT(judge(problem, selection).may_be_absent, IsEmpty());
