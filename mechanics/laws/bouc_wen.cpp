@@ -71,6 +71,7 @@ double BoucWen::carried_by_substeps(double w, double path) const noexcept {
   for (int i = 0; i < kSubstepsMax && left > 0.0; ++i) {
     double step = std::min(left, substep(w));
     double next = runge_kutta_step(w, step);
+    if (next == w) break;         // at its limit: the rest of the way changes nothing
     if (w < 0.0 && next > 0.0) {  // the slope has a kink at zero: stop there
       step = std::min(step, path_to_zero(w));
       next = 0.0;
