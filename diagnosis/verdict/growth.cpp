@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <typeinfo>
+#include <utility>
 
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
@@ -155,24 +156,40 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
 
 namespace {
 
-/// The best of `beside` that is accepted; null when there is none.
-/// A wrong number of the model that explains nearly as much is preferred, so that it is not called a missing effect.
-const Candidate* first_that_earns(const IdentificationProblem& problem, const FitOutcome& by_numbers,
-                                  const FitOutcome& without, const std::vector<Candidate>& beside) {
+/// How much better than a number of the model what is none has to be: a number is expected to be off [nats].
+double expected(const IdentificationProblem& problem, const EffectType& type) {
+  return is_number(problem, type) ? decisive_gain(problem) : 0.0;
+}
+
+/// The best of `beside` that is accepted, with its probability; nothing where there is none. A wrong number of the
+/// model that explains nearly as much is preferred, so that it is not called a missing effect: those that are refused
+/// are not in its place. An effect that is no number is doubtful where what is refused predicts better.
+std::optional<std::pair<const Candidate*, double>> first_that_earns(const IdentificationProblem& problem,
+                                                                    const FitOutcome& by_numbers,
+                                                                    const FitOutcome& without,
+                                                                    const std::vector<Candidate>& beside) {
   const double before = gap_energy(problem, without).excess();
-  // What predicts better by moving the others, and leaves more of the gap, explains nothing of it.
-  const auto earns = [&](const Candidate& candidate) {
-    return gap_energy(problem, candidate.fit).excess() < before &&
-           earns_its_place(problem, by_numbers, without, candidate);
-  };
-  const auto best = std::ranges::find_if(beside, earns);
-  if (best == beside.end()) return nullptr;
-  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, best->fit).excess());
-  const auto number = std::ranges::find_if(beside, [&](const Candidate& candidate) {
-    return is_model_number(problem, *candidate.type) && before - gap_energy(problem, candidate.fit).excess() > enough &&
-           earns(candidate);
+  std::vector<const Candidate*> earning;
+  std::vector<double> scores;
+  for (const Candidate& candidate : beside) {
+    // What predicts better by moving the others, and leaves more of the gap, explains nothing of it.
+    if (gap_energy(problem, candidate.fit).excess() >= before) continue;
+    if (!earns_its_place(problem, by_numbers, without, candidate)) continue;
+    earning.push_back(&candidate);
+    scores.push_back(candidate.score);
+  }
+  if (earning.empty()) return {};
+  const double enough = tuning::kNumberInstead * (before - gap_energy(problem, earning.front()->fit).excess());
+  const auto number = std::ranges::find_if(earning, [&](const Candidate* candidate) {
+    return is_model_number(problem, *candidate->type) && before - gap_energy(problem, candidate->fit).excess() > enough;
   });
-  return number == beside.end() ? &*best : &*number;
+  const auto place = static_cast<std::size_t>(number == earning.end() ? 0 : number - earning.begin());
+  const Candidate* const chosen = earning[place];
+  if (!is_number(problem, *chosen->type) || chosen->type->traits.number == ModelNumber::offset) {
+    return std::pair{chosen, softmax(scores_of(beside))[static_cast<std::size_t>(chosen - beside.data())]};
+  }
+  scores[place] += expected(problem, *chosen->type);
+  return std::pair{chosen, softmax(std::move(scores))[place]};
 }
 
 /// The numbers of the model behind the effects that are there.
@@ -254,13 +271,12 @@ struct Instead {
 void exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
-  const auto expected = [&](const EffectType& type) { return is_number(problem, type) ? decisive_gain(problem) : 0.0; };
-  std::vector<double> scores{score_of(problem, growth.fit) + expected(*effects[position].type)};
+  std::vector<double> scores{score_of(problem, growth.fit) + expected(problem, *effects[position].type)};
   std::optional<Candidate> best;
   double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
   const auto compare = [&](std::optional<Candidate> instead) {
     if (!instead) return;
-    scores.push_back(score_of(problem, instead->fit) + expected(*instead->type));
+    scores.push_back(score_of(problem, instead->fit) + expected(problem, *instead->type));
     if (scores.back() <= highest) return;
     highest = scores.back();
     best = std::move(instead);
@@ -347,12 +363,12 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
 
 std::optional<Growth> grown(const IdentificationProblem& problem, const FitOutcome& by_numbers, const Growth& from,
                             const std::vector<Candidate>& beside) {
-  const Candidate* const next = first_that_earns(problem, by_numbers, from.fit, beside);
-  if (next == nullptr) return {};
+  const auto next = first_that_earns(problem, by_numbers, from.fit, beside);
+  if (!next) return {};
+  const auto& [candidate, probability] = *next;
   Growth growth = from;
-  growth.fit = next->fit;
-  const auto position = static_cast<std::size_t>(next - beside.data());
-  growth.accepted.push_back({next->type, softmax(scores_of(beside))[position]});
+  growth.fit = candidate->fit;
+  growth.accepted.push_back({candidate->type, probability});
   return growth;
 }
 

@@ -3,12 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/verdict/growth.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -155,6 +160,35 @@ TEST_P(GapOfNoLibrary, IsNotToldInPartForAStiffnessThatIsOff) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SoftRightAndStiff, GapOfNoLibrary, testing::Values(-0.2, 0.0, 0.2, 0.3));
+
+/// Of what is fitted beside a model, the first one predicts best and leaves all of the gap: it is refused. That does
+/// not count against a number of the model, which is told in its place; it makes an effect that is no number doubtful.
+TEST(GrownEffect, ProbabilityOfANumberIsNotThatAgainstWhatIsRefused) {
+  const auto probability_of = [](std::string_view name, double parameter, const std::function<double(double)>& n) {
+    const IdentificationProblem problem = make_problem(
+        made_model(),
+        segments_of(
+            made_recording(made_motion_m, [&](double t) { return kMadeStiffness_n_per_m * made_motion_m(t) + n(t); }),
+            0, 0));
+    const Growth nothing{.fit = fit_nothing(problem, false), .accepted = {}};
+    const EffectType* const type = find_effect(EffectInterface::specimen, name);
+    Candidate refused{.type = find_effect(EffectInterface::force_sensor, "lag"), .fit = nothing.fit};
+    Candidate right{.type = type, .fit = refit_effects(problem, {{type, {parameter}}}, false)};
+    right.score = score_of(problem, right.fit);
+    refused.score = right.score + 100.0;
+    const std::optional<Growth> next = grown(problem, nothing.fit, nothing, {refused, right});
+    return next && next->accepted.back().type == type ? next->accepted.back().probability : -1.0;
+  };
+  constexpr double kDamping_n_s_per_m = 2e4;
+  EXPECT_GT(probability_of("viscous_damping", kDamping_n_s_per_m,
+                           [](double t) { return kDamping_n_s_per_m * made_velocity_m_per_s(t); }),
+            0.99);
+  constexpr double kCubic_n_per_m3 = -3e8;
+  const double doubtful = probability_of("cubic_stiffness", kCubic_n_per_m3,
+                                         [](double t) { return kCubic_n_per_m3 * std::pow(made_motion_m(t), 3); });
+  EXPECT_GE(doubtful, 0.0) << "it is accepted";
+  EXPECT_LT(doubtful, 0.01);
+}
 
 }  // namespace
 }  // namespace hybridtest
