@@ -199,6 +199,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.measured = smoother.smooth(dof.of(segment.to));
   result.unjudged = std::min(smoother.reach() + LocalPolynomial::kHalfWidthMin, result.measured.size() / 2);
   result.is_smoothed = deviation > 0.0;
+  if (result.is_smoothed) result.recorded = {dof.of(segment.to), segment.measured_noise};
   result.noise_span = 1.0 / smoother.noise_share();
   result.measured_noise = segment.measured_noise * std::sqrt(smoother.noise_share());
   result.step_noise = segment.step_noise * std::sqrt(smoother.noise_share());
@@ -227,6 +228,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
     result.inputs.values.insert(result.inputs.values.end(), segment.inputs.at(i), segment.inputs.at(i + 1));
   }
   result.measured = every(segment.measured);
+  result.recorded.values = every(segment.recorded.values);
   result.smoothing_errors = every(segment.smoothing_errors);
   if (segment.history) result.history = std::make_shared<const Segment>(thinned(*segment.history, rate_hz));
   return result;

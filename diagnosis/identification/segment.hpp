@@ -30,6 +30,12 @@ struct InputTable {
   }
 };
 
+/// Readings before any smoothing, and the standard deviation of their white noise.
+struct AsRecorded {
+  std::vector<double> values;
+  double noise = 0.0;
+};
+
 /// The part of the chain between two consecutive recorded channels of one degree of freedom. Its input is the
 /// measured one, so that an error does not propagate to the next segment.
 struct Segment {
@@ -50,6 +56,7 @@ struct Segment {
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
   bool is_smoothed = false;  // `measured`, see smoothed_alike()
+  AsRecorded recorded;       // what was smoothed, where `measured` is: beside a limit the smoothed goes beyond it
   // Samples at both ends where the motion is not known well enough to judge; their prediction is set to the measured
   // value.
   std::size_t unjudged = 0;

@@ -100,7 +100,10 @@ std::vector<Bounded> speeds(const FitSegment& fit) {
 }
 
 std::vector<Bounded> readings(const FitSegment& fit) {
-  return {{fit.segment.measured, noise_peak(fit), own_noise_peak(fit)}};
+  if (!fit.segment.is_smoothed) return {{fit.segment.measured, noise_peak(fit), own_noise_peak(fit)}};
+  const AsRecorded& recorded = fit.segment.recorded;
+  return {{recorded.values, peak_of_noise(fit, std::max(recorded.noise, fit.sample_floor)),
+           peak_of_noise(fit, recorded.noise)}};
 }
 
 /// A limit that bounds what is read: `unit` of the limit.

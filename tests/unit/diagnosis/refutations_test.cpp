@@ -54,6 +54,23 @@ TEST(Refutation, LoadCellLimitThatReadingsPass) {
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
 }
 
+/// A smoothed force overshoots at the corners of a clipped one. What counts is what the cell read.
+TEST(Refutation, LoadCellLimitThatOnlyTheSmoothedForcePasses) {
+  const auto clipped_n = [](double t) { return std::clamp(5.0 * spring_n(t), -30e3, 30e3); };
+  const Recording recording = made_recording(made_motion_m, clipped_n);
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  for (Segment& segment : segments) {
+    if (segment.to == Channel::measured_force) segment = smoothed_alike(segment, recording.dofs[0], 20.0);
+  }
+  const std::vector<double>& smooth_n = segments.back().measured;
+  ASSERT_GT(std::ranges::count_if(smooth_n, [](double value) { return value > 1.06 * 30e3; }), 10);
+  const IdentificationProblem problem = make_problem(made_model(), segments);
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {30e3})), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {20e3})),
+              HasSubstr("of the readings pass its limit"));
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
+}
+
 /// A second and a half of the rest is not judged, as where a recording is smoothed: the prediction is set to the
 /// readings there.
 TEST(Refutation, BiasIsReadWhereItIsJudged) {
