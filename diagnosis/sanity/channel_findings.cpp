@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,7 +33,6 @@ struct Followed {
   bool is_quasi_static = false;
 
   [[nodiscard]] bool is_force() const noexcept { return out == Channel::measured_force; }
-  [[nodiscard]] std::string name() const { return std::string{column_name(out)}; }
   [[nodiscard]] std::string unit() const { return is_force() ? "N" : "m"; }
 };
 
@@ -104,6 +105,55 @@ std::optional<Words> frozen(const Followed& pair) {
                "Export the part of the recording without this stretch, and check cable and amplifier."};
 }
 
+/// Single readings that hold most of a channel's energy about its median, as a bad contact makes them, or a number that
+/// stands for a missing value: at most the square root of all, and no more in a row than a blow has at least.
+struct WildReadings {
+  std::size_t count = 0;
+  double largest = 0.0;
+  double over_others = 0.0;  // distance from the median over that of the farthest of the others
+};
+
+std::optional<WildReadings> wild_readings(std::span<const double> values) {
+  std::vector<double> sorted{values.begin(), values.end()};
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  const double median = *middle;
+  std::vector<double> distances(values.size());
+  std::ranges::transform(values, distances.begin(), [&](double value) { return std::abs(value - median); });
+  sorted = distances;
+  std::ranges::sort(sorted, std::greater{});
+  const double energy = std::inner_product(sorted.begin(), sorted.end(), sorted.begin(), 0.0);
+  const auto most = static_cast<std::size_t>(std::sqrt(static_cast<double>(values.size())));
+  std::size_t count = 0;
+  for (double held = 0.0; count < most && held <= tuning::kMainShare * energy; ++count) {
+    held += sorted[count] * sorted[count];
+  }
+  if (count == 0 || energy == 0.0) return {};
+  const double beyond = tuning::kMainShare * sorted[count - 1];
+  while (count < values.size() && sorted[count] > beyond) ++count;
+  if (count > most || count == values.size() || sorted[count] == 0.0) return {};
+  WildReadings wild{.count = count, .over_others = sorted.front() / sorted[count]};
+  std::size_t in_a_row = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    in_a_row = distances[i] > beyond ? in_a_row + 1 : 0;
+    if (in_a_row > tuning::kClippedRun) return {};
+    if (distances[i] == sorted.front()) wild.largest = values[i];
+  }
+  const double held =
+      std::inner_product(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count), sorted.begin(), 0.0);
+  if (held <= tuning::kMainShare * energy) return {};
+  return wild;
+}
+
+std::optional<Words> words_of(const std::optional<WildReadings>& wild, std::string_view unit) {
+  if (!wild) return {};
+  // As it stands in the file, so that a number like -9999 is recognised.
+  const std::string readings = wild->count == 1 ? "a reading of" : fmt::format("{} readings of up to", wild->count);
+  return Words{fmt::format("has {} {:.4g} {}, {:.0f} times as far out as all others", readings, wild->largest, unit,
+                           wild->over_others),
+               "Put the mean of their neighbours in their place, and check connector and cable."};
+}
+
 /// Neighbouring readings have nothing in common.
 bool is_white(std::span<const double> values) {
   double mean = 0.0;
@@ -117,14 +167,21 @@ bool is_white(std::span<const double> values) {
   return std::abs(neighbours) <= tuning::kTwoSided99 * squares / std::sqrt(static_cast<double>(values.size()));
 }
 
-/// For the most part the reading stands at one of two limits.
+/// For the most part the reading stands at one of two limits: as near to it as noise allows, of which the end of the
+/// range is the largest draw. A single blow makes a range of which all else is near one end, and does not stand there.
 std::optional<Words> cut_off(const Followed& pair) {
   const auto [least, most] = std::ranges::minmax(pair.values);
-  const double middle = 0.5 * (least + most);
-  const double near = 0.5 * (1.0 - tuning::kBeyondLimit) * (most - least);
-  const auto at_an_end =
-      std::ranges::count_if(pair.values, [&](double value) { return std::abs(value - middle) >= near; });
-  if (static_cast<double>(at_an_end) <= tuning::kMainShare * static_cast<double>(pair.values.size())) return {};
+  const double near = tuning::kBeyondLimit * 0.5 * (most - least);
+  std::vector<double> distances;
+  for (const double value : pair.values) {
+    const double distance = std::min(value - least, most - value);
+    if (distance <= near) distances.push_back(distance);
+  }
+  const auto size = static_cast<double>(pair.values.size());
+  if (static_cast<double>(distances.size()) <= tuning::kMainShare * size) return {};
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::ranges::nth_element(distances, middle);
+  if (*middle > tuning::kNearFloor * std::sqrt(2.0 * std::log(size)) * white_noise_level(pair.values)) return {};
   return Words{fmt::format("stands at {} or {} for the most part: it is cut off there",
                            report::quantity(least, pair.unit()), report::quantity(most, pair.unit())),
                "Widen the range of the sensor and of its amplifier, and record again."};
@@ -272,6 +329,20 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
   const Recording& recording = recordings[position];
   const DofRecording& channels = recording.dofs[dof];
   const Chain chain = chain_to(out, model, recording, dof);
+  const auto add_to = [&](std::string_view interface, const std::optional<Words>& words, bool is_unusable) {
+    if (!words) return false;
+    findings.push_back({.said = {.recording = recording.file,
+                                 .interface = std::string{interface},
+                                 .what = std::string{column_name(out)} + " " + words->what,
+                                 .what_to_do = words->what_to_do},
+                        .recording = position,
+                        .channel = out,
+                        .is_unusable = is_unusable});
+    return true;
+  };
+  const bool is_force = out == Channel::measured_force;
+  const EffectInterface sensor = is_force ? EffectInterface::force_sensor : EffectInterface::displacement_sensor;
+  if (add_to(name_of(sensor), words_of(wild_readings(channels.of(out)), is_force ? "N" : "m"), true)) return;
   if (chain.segment.empty()) return;
   const Segment& segment = chain.segment.front();
   const Followed pair{.in = chain.in,
@@ -284,15 +355,7 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
                       .is_quasi_static = recording.is_quasi_static};
   if (!moves(pair)) return;
   const auto add = [&](const std::optional<Words>& words, bool is_unusable) {
-    if (!words) return false;
-    findings.push_back({.said = {.recording = recording.file,
-                                 .interface = std::string{name_of(segment.interface)},
-                                 .what = pair.name() + " " + words->what,
-                                 .what_to_do = words->what_to_do},
-                        .recording = position,
-                        .channel = out,
-                        .is_unusable = is_unusable});
-    return true;
+    return add_to(name_of(segment.interface), words, is_unusable);
   };
   if (add(frozen(pair), true) || add(reversed(pair), true) || add(unrelated(pair), true)) return;
   add(sampled_too_slowly(pair, pair.is_force() && needs_derivatives(model)), false);

@@ -25,11 +25,12 @@ struct ChannelFinding {
 ///   later or earlier that the channels belong to other times;
 /// - reversed: it runs against what the model predicts, and inertia does not explain that; or the force does work on
 ///   the actuator;
+/// - wild: a few single readings hold most of the energy;
 /// - sampled too slowly: a tenth of its energy has fewer than four samples per cycle, or fewer than ten where the
 ///   model's force follows velocity or acceleration;
 /// - force and displacement are apart by less than a sample.
 ///
-/// The first three make a channel unusable.
+/// The first five make a channel unusable.
 [[nodiscard]] std::vector<ChannelFinding> check_channels(const SiteModel& model, std::span<const Recording> recordings,
                                                          std::size_t dof);
 

@@ -76,6 +76,46 @@ TEST(ChannelFindings, ForceThatIsCutOffIsNoNoise) {
   expect_not_judged(recording, "stands at");
 }
 
+/// The spring reads 56 kN at most.
+TEST(ChannelFindings, WildReadingsAreSaid) {
+  Recording recording = made_recording(made_motion_m, spring_n);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  const double most_n = std::ranges::max(force_n);
+  force_n[2000] = -7e6;
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("! force_sensor: measured_force_n has a reading of "
+                                                         "-7e+06 N")));
+  expect_not_judged(recording, "has a reading of -7e+06 N");
+  for (const std::size_t at : {2000U, 2001U, 4500U}) force_n[at] = 80.0 * most_n;
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("! force_sensor: measured_force_n has 3 readings of up to")));
+  // A transducer has them, too, with nothing recorded in front of it.
+  force_n[2000] = force_n[2001] = force_n[4500] = 0.0;
+  recording.dofs[0].of(Channel::command_displacement).clear();
+  recording.dofs[0].of(Channel::measured_displacement)[100] = -9999.0;
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("! displacement_sensor: measured_displacement_m has a "
+                                                         "reading of -9999 m")));
+}
+
+/// As large and longer is a blow; and a reading is not wild that holds little of the energy.
+TEST(ChannelFindings, BlowsAreNotWild) {
+  Recording recording = made_recording(made_motion_m, spring_n);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  const double most_n = std::ranges::max(force_n);
+  for (const std::size_t at : {2000U, 2001U, 2002U, 2003U}) force_n[at] = 80.0 * most_n;
+  EXPECT_THAT(found_in(recording), testing::Not(testing::Contains(HasSubstr("times as far out"))));
+  std::fill_n(force_n.begin() + 2000, 4, 0.0);
+  force_n[2000] = 4.0 * most_n;
+  EXPECT_THAT(found_in(recording), IsEmpty());
+}
+
+/// A blow in a force that otherwise follows nothing: it stands at no limit.
+TEST(ChannelFindings, BlowIsNoLimit) {
+  Recording recording = made_recording(
+      made_motion_m, [](double t) { return 1e-2 * other_n(t); }, 1.0);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  for (std::size_t i = 0; i < 30; ++i) force_n[3000 + i] = 7e4 * std::sin(0.21 * static_cast<double>(i));
+  EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("has nothing to do with measured_displacement_m")));
+}
+
 TEST(ChannelFindings, FrozenForceIsNotJudged) {
   Recording recording = made_recording(made_motion_m, spring_n);
   std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
