@@ -359,9 +359,11 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   double deviation = is_noise ? noise_level(fit, parts.remainder, independent) : 0.0;
   deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));
   // What smoothing does to the prediction is no noise and comes on top.
-  fit.floor = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
+  const double told = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
+  // All noise is left: where less is, the model makes less of the noise of its input than the one at hand would.
+  fit.floor = std::min(told, root_mean_square(residual));
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
-  fit.sample_floor = std::max(fit.channel_sample_floor, std::sqrt(fit.floor * fit.floor + averaged_away));
+  fit.sample_floor = std::sqrt(fit.floor * fit.floor + averaged_away);
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.independent = independent;

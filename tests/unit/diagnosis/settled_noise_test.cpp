@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 
 #include "diagnosis/diagnose.hpp"
@@ -188,6 +189,26 @@ TEST(SettledNoise, WrongModelIsNotNone) {
       EXPECT_NE(verdict_on(law, beside, {.correlation = 0.99}, 1, 1.5), report::Verdict::none) << law.name;
     }
   }
+}
+
+/// Noise of the transducer is ten times as much force in a model that is ten times too stiff as in the specimen.
+TEST(SettledNoise, IsNoMoreThanTheBestFitLeaves) {
+  const Recording recording = made_recording(
+      made_motion_m, [](double t) { return kStiffness_n_per_m * made_motion_m(t); }, 0.1);
+  const IdentificationProblem right = make_problem(made_model(), segments_of(recording, 0, 0));
+  const FitSegment& beside = right.segments.back();
+  const double left_n =
+      (beside.measured - beside.baseline).norm() / std::sqrt(static_cast<double>(beside.measured.size()));
+  SiteModel stiff = made_model();
+  stiff.make_law = [] { return std::make_unique<Elastic>(10.0 * kStiffness_n_per_m); };
+  IdentificationProblem problem = make_problem(stiff, segments_of(recording, 0, 0));
+  const FitSegment& force = problem.segments.back();
+  ASSERT_EQ(force.segment.to, Channel::measured_force);
+  EXPECT_GT(force.floor, 5.0 * left_n);
+  const EffectType* const stiffness = find_effect(EffectInterface::specimen, "stiffness_error");
+  settle_noise(problem, refit_effects(problem, {{stiffness, {-0.9, 0.0}}}, false));
+  // One number fitted to thousands of samples takes off far less than a hundredth.
+  EXPECT_NEAR(force.floor, left_n, 0.01 * left_n);
 }
 
 }  // namespace
