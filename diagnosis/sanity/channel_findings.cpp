@@ -114,6 +114,7 @@ struct WildReadings {
 };
 
 std::optional<WildReadings> wild_readings(std::span<const double> values) {
+  if (values.empty()) return {};
   std::vector<double> sorted{values.begin(), values.end()};
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::ranges::nth_element(sorted, middle);
