@@ -133,9 +133,7 @@ report::InterfaceSeries series_of(const SiteModel& model, const Segment& segment
   for (const Motion& motion : segment.input) series.input_m.push_back(motion.displacement_m);
   series.measured = segment.measured;
   series.model = predict(model, segment);
-  const bool touched = std::ranges::any_of(diagnosis.causes,
-                                           [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
-  if (touched) series.augmented = predict(model, segment, diagnosis.causes);
+  if (segment.touched_by(diagnosis.causes)) series.augmented = predict(model, segment, diagnosis.causes);
   return series;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnosis/localisation/gap_shares.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -32,10 +33,9 @@ std::vector<double> shape_of(double correlation, double white, std::size_t lines
 bool is_hum(const std::vector<double>& density, std::size_t line) {
   const std::size_t begin = line - std::min(line, tuning::kSpectrumAverages);
   const std::size_t end = std::min(density.size(), line + tuning::kSpectrumAverages + 1);
-  std::vector<double> near(density.begin() + static_cast<std::ptrdiff_t>(begin),
-                           density.begin() + static_cast<std::ptrdiff_t>(end));
-  std::ranges::nth_element(near, near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2));
-  return density[line] > tuning::kNearFloor * tuning::kNearFloor * near[near.size() / 2];
+  const double near = upper_median(
+      {density.begin() + static_cast<std::ptrdiff_t>(begin), density.begin() + static_cast<std::ptrdiff_t>(end)});
+  return density[line] > tuning::kNearFloor * tuning::kNearFloor * near;
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   for (const EffectSetting& effect : added) {
     if (segment.touched_by(*effect.type)) add_effect(extended, effect);
   }
-  if (segment.is_smoothed) {
+  if (segment.is_smoothed()) {
     // Smoothing removes the steps of the converter too.
     const EffectType* const steps = find_effect(EffectInterface::force_sensor, DigitTrace::rounding);
     std::erase_if(extended.effects, [steps](const EffectSetting& effect) { return effect.type == steps; });

@@ -548,9 +548,7 @@ namespace {
 
 Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem, const FitSegment& segment,
                                            std::span<const EffectSetting> added) {
-  const bool touched =
-      std::ranges::any_of(added, [&](const EffectSetting& effect) { return segment.segment.touched_by(*effect.type); });
-  if (!touched) return segment.baseline;
+  if (!segment.segment.touched_by(added)) return segment.baseline;
   if (segment.law == nullptr) return segment.average(predict(problem.model, segment.segment, added));
   SiteModel remembered = problem.model;
   remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -49,9 +51,7 @@ double noise_along_path(std::span<const double> displacement_m, std::span<const 
     deviations.push_back(std::abs(difference) / std::sqrt(squares));
   }
   if (deviations.empty()) return 0.0;
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return *middle / 0.6745;  // the median of the magnitude of a standard normal variable
+  return upper_median(std::move(deviations)) / 0.6745;  // the median of the magnitude of a standard normal variable
 }
 
 std::vector<Segment> quasi_static_segments(const Recording& recording, const DofRecording& dof, std::size_t position) {

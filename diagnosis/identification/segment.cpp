@@ -182,6 +182,10 @@ bool Segment::touched_by(const EffectType& effect) const noexcept {
   return effect.input.empty() || (inputs.has(effect.input) && !contains(inputs.at_reference, effect.input));
 }
 
+bool Segment::touched_by(std::span<const EffectSetting> effects) const noexcept {
+  return std::ranges::any_of(effects, [&](const EffectSetting& effect) { return touched_by(*effect.type); });
+}
+
 bool Segment::is_reference_of(const EffectType& effect) const noexcept {
   return can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
@@ -198,8 +202,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.inputs = smooth_inputs(smoother, segment.inputs);
   result.measured = smoother.smooth(dof.of(segment.to));
   result.unjudged = std::min(smoother.reach() + LocalPolynomial::kHalfWidthMin, result.measured.size() / 2);
-  result.is_smoothed = deviation > 0.0;
-  if (result.is_smoothed) result.recorded = {dof.of(segment.to), segment.measured_noise};
+  result.recorded = deviation > 0.0 ? AsRecorded{dof.of(segment.to), segment.measured_noise} : AsRecorded{};
   result.noise_span = 1.0 / smoother.noise_share();
   result.measured_noise = segment.measured_noise * std::sqrt(smoother.noise_share());
   result.step_noise = segment.step_noise * std::sqrt(smoother.noise_share());
@@ -373,7 +376,7 @@ std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& 
 }  // namespace
 
 std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& segment) {
-  if (!can_be_smoothed(segment) || segment.noise.empty() || segment.is_smoothed) return {};
+  if (!can_be_smoothed(segment) || segment.noise.empty() || segment.is_smoothed()) return {};
   std::vector<Deviation> tried;
   for (const double deviation : tuning::kSmoothingDeviations) {
     tried.push_back({deviation, left_beside(model, segment.measured, with_smooth_motion(segment, deviation), false)});

@@ -55,8 +55,7 @@ struct Segment {
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
-  bool is_smoothed = false;  // `measured`, see smoothed_alike()
-  AsRecorded recorded;       // what was smoothed, where `measured` is: beside a limit the smoothed goes beyond it
+  AsRecorded recorded;  // what was smoothed, where `measured` is: beside a limit the smoothed goes beyond it
   // Samples at both ends where the motion is not known well enough to judge; their prediction is set to the measured
   // value.
   std::size_t unjudged = 0;
@@ -77,6 +76,10 @@ struct Segment {
   /// An effect at that interface changes what this segment predicts. One that needs time changes no quasi-static one,
   /// one that follows an input only one where that acts.
   [[nodiscard]] bool touched_by(const EffectType& effect) const noexcept;
+  /// By one of them, at least.
+  [[nodiscard]] bool touched_by(std::span<const EffectSetting> effects) const noexcept;
+  /// Whether `measured` is, see smoothed_alike().
+  [[nodiscard]] bool is_smoothed() const noexcept { return !recorded.values.empty(); }
   /// It would, but its input stays at its reference here: this segment shows the model without the effect.
   [[nodiscard]] bool is_reference_of(const EffectType& effect) const noexcept;
 };

@@ -128,9 +128,7 @@ double mean_interval(const std::vector<double>& time_s) {
 double median_interval(const std::vector<double>& time_s) {
   std::vector<double> intervals(time_s.size() - 1);
   for (std::size_t i = 1; i < time_s.size(); ++i) intervals[i - 1] = time_s[i] - time_s[i - 1];
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return upper_median(std::move(intervals));
 }
 
 /// What is wrong with one interval; empty when nothing is.

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "core/parameters/unit_of.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/page/wording.hpp"
@@ -33,7 +34,7 @@ struct Followed {
   bool is_quasi_static = false;
 
   [[nodiscard]] bool is_force() const noexcept { return out == Channel::measured_force; }
-  [[nodiscard]] std::string unit() const { return is_force() ? "N" : "m"; }
+  [[nodiscard]] std::string unit() const { return unit_of(column_name(out)); }
 };
 
 /// What was found, in words.
@@ -115,24 +116,21 @@ struct WildReadings {
 
 std::optional<WildReadings> wild_readings(std::span<const double> values) {
   if (values.empty()) return {};
-  std::vector<double> sorted{values.begin(), values.end()};
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  const double median = *middle;
+  const double median = upper_median({values.begin(), values.end()});
   std::vector<double> distances(values.size());
   std::ranges::transform(values, distances.begin(), [&](double value) { return std::abs(value - median); });
-  sorted = distances;
+  const double most_energy =
+      tuning::kMainShare * std::inner_product(distances.begin(), distances.end(), distances.begin(), 0.0);
+  const auto few = static_cast<std::size_t>(std::sqrt(static_cast<double>(values.size())));
+  std::vector<double> sorted = distances;
   std::ranges::sort(sorted, std::greater{});
-  const double energy = std::inner_product(sorted.begin(), sorted.end(), sorted.begin(), 0.0);
-  const auto most = static_cast<std::size_t>(std::sqrt(static_cast<double>(values.size())));
   std::size_t count = 0;
-  for (double held = 0.0; count < most && held <= tuning::kMainShare * energy; ++count) {
-    held += sorted[count] * sorted[count];
-  }
-  if (count == 0 || energy == 0.0) return {};
+  double held = 0.0;
+  for (; count < few && held <= most_energy; ++count) held += sorted[count] * sorted[count];
+  if (held <= most_energy) return {};
   const double beyond = tuning::kMainShare * sorted[count - 1];
-  while (count < values.size() && sorted[count] > beyond) ++count;
-  if (count > most || count == values.size() || sorted[count] == 0.0) return {};
+  while (count < sorted.size() && sorted[count] > beyond) ++count;
+  if (count > few || count == sorted.size() || sorted[count] == 0.0) return {};
   WildReadings wild{.count = count, .over_others = sorted.front() / sorted[count]};
   std::size_t in_a_row = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -140,9 +138,6 @@ std::optional<WildReadings> wild_readings(std::span<const double> values) {
     if (in_a_row > tuning::kClippedRun) return {};
     if (distances[i] == sorted.front()) wild.largest = values[i];
   }
-  const double held =
-      std::inner_product(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count), sorted.begin(), 0.0);
-  if (held <= tuning::kMainShare * energy) return {};
   return wild;
 }
 
@@ -178,11 +173,9 @@ std::optional<Words> cut_off(const Followed& pair) {
     const double distance = std::min(value - least, most - value);
     if (distance <= near) distances.push_back(distance);
   }
-  const auto size = static_cast<double>(pair.values.size());
-  if (static_cast<double>(distances.size()) <= tuning::kMainShare * size) return {};
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::ranges::nth_element(distances, middle);
-  if (*middle > tuning::kNearFloor * std::sqrt(2.0 * std::log(size)) * white_noise_level(pair.values)) return {};
+  if (static_cast<double>(distances.size()) <= tuning::kMainShare * static_cast<double>(pair.values.size())) return {};
+  const double largest_draw = peak_of_noise(white_noise_level(pair.values), pair.values.size());
+  if (upper_median(std::move(distances)) > tuning::kNearFloor * largest_draw) return {};
   return Words{fmt::format("stands at {} or {} for the most part: it is cut off there",
                            report::quantity(least, pair.unit()), report::quantity(most, pair.unit())),
                "Widen the range of the sensor and of its amplifier, and record again."};
@@ -258,10 +251,7 @@ std::optional<Words> reversed(const Followed& pair) {
 double samples_per_cycle_of_fast_part(std::span<const double> values, double period_s) {
   const Spectra spectra = welch(values, values, period_s, welch_segment(values.size()));
   std::vector<double> density = spectra.input;
-  std::vector<double> sorted = density;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double noise = *middle;  // of the median line: white noise
+  const double noise = upper_median(density);  // of the median line: white noise
   double all = 0.0;
   for (double& line : density) {
     line = std::max(0.0, line - noise);
@@ -341,9 +331,9 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
                         .is_unusable = is_unusable});
     return true;
   };
-  const bool is_force = out == Channel::measured_force;
-  const EffectInterface sensor = is_force ? EffectInterface::force_sensor : EffectInterface::displacement_sensor;
-  if (add_to(name_of(sensor), words_of(wild_readings(channels.of(out)), is_force ? "N" : "m"), true)) return;
+  const EffectInterface sensor =
+      out == Channel::measured_force ? EffectInterface::force_sensor : EffectInterface::displacement_sensor;
+  if (add_to(name_of(sensor), words_of(wild_readings(channels.of(out)), unit_of(column_name(out))), true)) return;
   if (chain.segment.empty()) return;
   const Segment& segment = chain.segment.front();
   const Followed pair{.in = chain.in,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/assert.hpp"
 #include "diagnosis/tuning.hpp"
@@ -163,6 +164,16 @@ double LocalPolynomial::noise_share() const noexcept {
   return weights_(static_cast<Eigen::Index>(3 * half_width_), static_cast<Eigen::Index>(half_width_));
 }
 
+double peak_of_noise(double deviation, std::size_t draws) {
+  return deviation * std::sqrt(2.0 * std::log(static_cast<double>(draws)));
+}
+
+double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 double white_noise_level(std::span<const double> values) {
   return std::sqrt(implied_variance(values, LocalPolynomial::kHalfWidthMin));
 }
@@ -171,10 +182,8 @@ double typical_white_noise(std::span<const double> values) {
   const LocalPolynomial polynomial{LocalPolynomial::kHalfWidthMin, 1.0};
   std::vector<double> left = polynomial.smooth(values);
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = std::abs(values[i] - left[i]);
-  const auto middle = left.begin() + std::ssize(left) / 2;
-  std::ranges::nth_element(left, middle);
   // The median of the magnitude of a standard normal variable is 0.6745.
-  return *middle / (0.6745 * std::sqrt(1.0 - polynomial.noise_share()));
+  return upper_median(std::move(left)) / (0.6745 * std::sqrt(1.0 - polynomial.noise_share()));
 }
 
 std::size_t widest_faithful_half_width(std::span<const double> values) {

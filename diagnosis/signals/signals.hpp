@@ -82,6 +82,13 @@ class LocalPolynomial {
   Eigen::MatrixXd weights_;
 };
 
+/// The largest of so many independent draws of normal noise, as it is expected.
+[[nodiscard]] double peak_of_noise(double deviation, std::size_t draws);
+
+/// The one in the middle; of an even number the greater of the two.
+/// @param values   at least one.
+[[nodiscard]] double upper_median(std::vector<double> values);
+
 /// Standard deviation of the white part of a signal: what a narrow local polynomial leaves. An
 /// upper limit for signals with content up to half the sampling rate.
 /// @param values   at least 7 samples.

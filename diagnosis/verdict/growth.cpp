@@ -111,11 +111,19 @@ bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_
   return change.leaves < tuning::kAnotherEffectLeaves && matters;
 }
 
+namespace {
+
+/// A number that may be off: a zero is known exactly before a test.
+bool may_be_off(const IdentificationProblem& problem, const EffectType& type) {
+  return is_number(problem, type) && type.traits.number != ModelNumber::offset;
+}
+
+}  // namespace
+
 std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
   std::vector<EffectSetting> numbers;
   for (const EffectType* const type : judged_effects(problem)) {
-    if (!is_number(problem, *type) || type->traits.number == ModelNumber::offset) continue;
-    if (place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
+    if (may_be_off(problem, *type) && place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
   }
   return numbers;
 }
@@ -185,7 +193,7 @@ std::optional<std::pair<const Candidate*, double>> first_that_earns(const Identi
   });
   const auto place = static_cast<std::size_t>(number == earning.end() ? 0 : number - earning.begin());
   const Candidate* const chosen = earning[place];
-  if (!is_number(problem, *chosen->type) || chosen->type->traits.number == ModelNumber::offset) {
+  if (!may_be_off(problem, *chosen->type)) {
     return std::pair{chosen, softmax(scores_of(beside))[static_cast<std::size_t>(chosen - beside.data())]};
   }
   scores[place] += expected(problem, *chosen->type);

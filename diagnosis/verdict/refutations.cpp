@@ -49,16 +49,13 @@ struct Suspect {
   }
 };
 
-/// The largest of so many independent draws of noise, as it is expected.
-double peak_of_noise(const FitSegment& fit, double level) {
-  return level * std::sqrt(2.0 * std::log(static_cast<double>(fit.segment.measured.size())));
-}
-
 double noise_peak(const FitSegment& fit) {
-  return peak_of_noise(fit, std::max(fit.segment.measured_noise, fit.sample_floor));
+  return peak_of_noise(std::max(fit.segment.measured_noise, fit.sample_floor), fit.segment.measured.size());
 }
 
-double own_noise_peak(const FitSegment& fit) { return peak_of_noise(fit, fit.segment.measured_noise); }
+double own_noise_peak(const FitSegment& fit) {
+  return peak_of_noise(fit.segment.measured_noise, fit.segment.measured.size());
+}
 
 double largest(std::span<const double> values) {
   double most = 0.0;
@@ -100,10 +97,11 @@ std::vector<Bounded> speeds(const FitSegment& fit) {
 }
 
 std::vector<Bounded> readings(const FitSegment& fit) {
-  if (!fit.segment.is_smoothed) return {{fit.segment.measured, noise_peak(fit), own_noise_peak(fit)}};
+  if (!fit.segment.is_smoothed()) return {{fit.segment.measured, noise_peak(fit), own_noise_peak(fit)}};
   const AsRecorded& recorded = fit.segment.recorded;
-  return {{recorded.values, peak_of_noise(fit, std::max(recorded.noise, fit.sample_floor)),
-           peak_of_noise(fit, recorded.noise)}};
+  const std::size_t size = recorded.values.size();
+  return {{recorded.values, peak_of_noise(std::max(recorded.noise, fit.sample_floor), size),
+           peak_of_noise(recorded.noise, size)}};
 }
 
 /// A limit that bounds what is read: `unit` of the limit.

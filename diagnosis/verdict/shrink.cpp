@@ -104,9 +104,7 @@ report::Shrink shrink_on(const SiteModel& model, std::span<const EffectSetting> 
                          std::span<const Segment> held_out, std::uint64_t seed, std::span<const FitSegment> fitted) {
   std::vector<BlockEnergy> blocks;
   for (const Segment& segment : held_out) {
-    const bool touched =
-        std::ranges::any_of(causes, [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
-    if (touched) add_blocks(model, causes, segment, fitted, blocks);
+    if (segment.touched_by(causes)) add_blocks(model, causes, segment, fitted, blocks);
   }
   report::Shrink shrink;
   if (blocks.empty()) return shrink;

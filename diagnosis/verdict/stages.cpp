@@ -63,9 +63,7 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
                                     std::uint64_t seed) {
   std::map<std::pair<Channel, Channel>, std::vector<Segment>> kinds;
   for (const Segment& segment : segments) {
-    const bool touched =
-        std::ranges::any_of(causes, [&](const EffectSetting& cause) { return segment.touched_by(*cause.type); });
-    if (touched) kinds[{segment.from, segment.to}].push_back(segment);
+    if (segment.touched_by(causes)) kinds[{segment.from, segment.to}].push_back(segment);
   }
   std::vector<report::Shrink> result;
   for (const auto& [channels, alike] : kinds) result.push_back(shrink_on(model, causes, alike, seed, fitted));

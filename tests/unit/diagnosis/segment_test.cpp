@@ -94,7 +94,7 @@ TEST(ModelledSegments, ConverterStepsAreSmoothed) {
       motion_m, [](double t) { return 200.0 * std::round(kMass_kg * acceleration_m_per_s2(t) / 200.0); }, 0.0);
   const auto segments = modelled_segments(coarse, recording, 0, 0);
   const Segment& smooth = of_force(segments);
-  ASSERT_TRUE(smooth.is_smoothed);
+  ASSERT_TRUE(smooth.is_smoothed());
   EXPECT_EQ(predict(coarse, smooth), predict(mass_only(), smooth));
   // Of an even error between half a step each way less than half is left.
   EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
@@ -128,7 +128,7 @@ TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {
       [&](double t) { return motion_m(t) + 2e-4 * random.normal(); },
       [](double t) { return kMadeStiffness_n_per_m * motion_m(t) + 0.1 * kMass_kg * acceleration_m_per_s2(t); });
   const auto segments = segments_to_search(made_model(), recording, 0, 0);
-  ASSERT_TRUE(of_force(segments).is_smoothed);
+  ASSERT_TRUE(of_force(segments).is_smoothed());
   const FitOutcome fit = fit_effects(make_problem(made_model(), {of_force(segments)}),
                                      {find_effect(EffectInterface::specimen, "inertia")}, false);
   EXPECT_NEAR(fit.effects[0].values[0], 0.1 * kMass_kg, 0.02 * 0.1 * kMass_kg);
