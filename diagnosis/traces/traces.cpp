@@ -185,10 +185,17 @@ struct Readings {
   }
   [[nodiscard]] double coherence(double steps_in_span) const {
     std::complex<double> sum;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      sum += std::polar(ways[i], 2.0 * std::numbers::pi * steps_in_span * (values[i] - first) / span);
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) sum += std::polar(ways[i], phase(i, steps_in_span));
     return std::abs(sum) / way;
+  }
+  /// Each reading counts the same.
+  [[nodiscard]] double coherence_of_readings(double steps_in_span) const {
+    std::complex<double> sum;
+    for (std::size_t i = 0; i < values.size(); ++i) sum += std::polar(1.0, phase(i, steps_in_span));
+    return std::abs(sum) / static_cast<double>(values.size());
+  }
+  [[nodiscard]] double phase(std::size_t reading, double steps_in_span) const {
+    return 2.0 * std::numbers::pi * steps_in_span * (values[reading] - first) / span;
   }
 };
 
@@ -269,7 +276,10 @@ ReadingSteps steps_of_readings(std::span<const double> values) {
   if (*peak < std::max(tuning::kStepCoherenceMin, tuning::kStepOverChance * std::max(by_chance, by_few))) return {};
   const double steps = whole_steps(readings, refined(readings, rough));
   ReadingSteps result{.step = readings.span / steps, .coherence = readings.coherence(steps)};
-  return result.coherence < tuning::kStepCoherenceMin ? ReadingSteps{} : result;
+  // Of a motion that sticks and jumps the jumps alone are the way, and where they end and begin may be so many equal
+  // steps apart. The readings at rest between them are not.
+  const double least = std::min(result.coherence, readings.coherence_of_readings(steps));
+  return least < tuning::kStepCoherenceMin ? ReadingSteps{} : result;
 }
 
 namespace {

@@ -68,7 +68,8 @@ struct ReadingSteps {
 /// behind the converter, and about q per way between reversals without one.
 ///
 /// Steps between a sixth of the span and twice the white noise of the readings are looked for; of several that divide
-/// each other the largest is meant.
+/// each other the largest is meant. The readings have to be at multiples of the step along the way, and each for
+/// itself.
 /// @param values   finite.
 [[nodiscard]] ReadingSteps steps_of_readings(std::span<const double> values);
 

@@ -88,6 +88,22 @@ TEST(ReadingSteps, NotFoundInAFewSpikes) {
   }
 }
 
+/// A motion that sticks and jumps between places a whole step apart, and at last comes to rest between two of them:
+/// what it passes on its way is all at multiples of the step, and where it is half of the time is not.
+TEST(ReadingSteps, NotFoundInMotionThatSticksAndJumps) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random{seed};
+    std::vector<double> values;
+    double place = 0.0;
+    while (values.size() < kSamples / 2) {
+      place = random.uniform() < 0.5 ? std::min(place + 1.0, 4.0) : std::max(place - 1.0, -4.0);
+      values.insert(values.end(), 100, place);
+    }
+    values.resize(kSamples, place + 0.4);
+    EXPECT_EQ(steps_of_readings(with_noise(values, 1e-3, seed)).step, 0.0) << seed;
+  }
+}
+
 TEST(ReadingSteps, NotFoundWhenHiddenByNoise) {
   const double step = span_of(motion_m()) / 50.0;
   EXPECT_EQ(steps_of_readings(with_noise(in_steps(motion_m(), step), 0.3 * step)).step, 0.0);
