@@ -78,6 +78,37 @@ bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& 
   });
 }
 
+/// How late a ramp is at last that goes as far and takes as long as a segment, as it comes out of the model's transfer
+/// system [s].
+double delay_of_ramp_s(const IdentificationProblem& problem, const SiteModel& model, const Segment& like) {
+  const double length_s = like.period_s * static_cast<double>(like.input.size());
+  const double speed_m_per_s = problem.scales.displacement_m / length_s;
+  const std::unique_ptr<TransferSystem> transfer_system = transfer_system_of(model, like.period_s);
+  double late_s = 0.0;
+  for (double time_s = 0.0; time_s < length_s; time_s += like.period_s) {
+    late_s = time_s - transfer_system->step(speed_m_per_s * time_s) / speed_m_per_s;
+  }
+  return late_s;
+}
+
+/// The delay or the bandwidth is off for certain by more than this share of the model's own delay. An output with
+/// little in it that is fast hardly shows that.
+bool delays_by_more_than(const IdentificationProblem& problem, const EffectSetting& effect,
+                         const ParameterEstimate& estimate, double share) {
+  const auto touched = std::ranges::find_if(
+      problem.segments, [&](const FitSegment& fit) { return fit.is_suspect && fit.segment.touched_by(*effect.type); });
+  if (touched == problem.segments.end() || estimate.value == 0.0) return false;
+  const double own_s = delay_of_ramp_s(problem, problem.model, touched->segment);
+  double off_s = effect.values[0];
+  if (effect.type->traits.number == ModelNumber::bandwidth) {
+    SiteModel with = problem.model;
+    add_effect(with, effect);
+    off_s = delay_of_ramp_s(problem, with, touched->segment) - own_s;
+  }
+  const double sure_s = std::abs(off_s) * (1.0 - half_width_95(estimate) / std::abs(estimate.value));
+  return own_s > 0.0 && sure_s > share * own_s;
+}
+
 /// Numbers of the model that are slightly off. Not among them: a zero, which is known exactly before a test, and
 /// damping that the model does not have.
 std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, const Selection& selection, double share) {
@@ -90,6 +121,8 @@ std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, cons
     // An output follows a gain, a stiffness or a strength in proportion. A delay and a bandwidth that are as much off
     // change it by less.
     const bool is_timing = number == ModelNumber::delay || number == ModelNumber::bandwidth;
+    const ParameterEstimate& estimate = selection.chosen.parameters[i].front();
+    if (is_timing && delays_by_more_than(problem, effect, estimate, 2.0 * share)) continue;
     if (changes_at_most(problem, effect, is_timing ? 0.5 * share : share)) corrections.push_back(i);
   }
   return corrections;

@@ -1,6 +1,7 @@
 #include "diagnosis/verdict/leaders.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "diagnosis/tuning.hpp"
@@ -137,6 +138,10 @@ void share_evenly(const std::vector<AlikeLeader>& alike, std::vector<Candidate>&
   for (const AlikeLeader& leader : alike) probability_of(leader) = sum / static_cast<double>(alike.size());
 }
 
+void put_most_probable_first(std::vector<Candidate>& library) {
+  std::ranges::stable_sort(library, std::greater{}, &Candidate::probability);
+}
+
 /// Numbers of the model that lead alone are preferred to what has to be decidedly better than they are: that is their
 /// probability, too.
 void weigh_numbers(const IdentificationProblem& problem, std::size_t position, Growth& growth, Selection& selection) {
@@ -144,7 +149,9 @@ void weigh_numbers(const IdentificationProblem& problem, std::size_t position, G
   std::vector<double> scores = scores_of(selection.library);
   scores[position] = std::max(scores[position], score_of(problem, growth.fit) + decisive_gain(problem));
   weigh(selection.library, std::move(scores));
+  selection.library[position].held_out = held_out_score(problem, growth.fit);
   growth.accepted.front().probability = selection.library[position].probability;
+  put_most_probable_first(selection.library);
 }
 
 }  // namespace
@@ -177,19 +184,25 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
   }
   std::vector<double> scores = scores_of(selection.library);
   for (const auto& leader : leaders) {
-    // What stands beside the best, or beside which the best stands, is not in its place; nor is what was dropped from
-    // what was found with it.
+    // What stands beside the best, or beside which the best stands, is not in its place, and does not count against it;
+    // nor does what was dropped from what was found with it.
     const EffectType* const type = selection.library[leader.first].type;
     const bool is_there = holds(leader.second.fit.effects, type);
     const bool is_instead = is_there && !holds(best->second.fit.effects, type) &&
                             !holds(leader.second.fit.effects, selection.library[best->first].type);
-    if (leader.first != best->first && !is_instead) continue;
-    scores[leader.first] = std::max(scores[leader.first], by_score(leader));
+    if (leader.first != best->first && !is_instead) {
+      scores[leader.first] = -std::numeric_limits<double>::infinity();
+      continue;
+    }
+    // By itself it had numbers of its own in each recording; these are the same in all.
+    scores[leader.first] = by_score(leader);
+    selection.library[leader.first].held_out = held_out_score(problem, leader.second.fit);
     if (is_there && is_alike(leader)) selection.alike.push_back({type, leader.second.fit});
   }
   weigh(selection.library, std::move(scores));
   share_evenly(selection.alike, selection.library);
   best->second.accepted.front().probability = selection.library[best->first].probability;
+  put_most_probable_first(selection.library);
   return std::move(best->second);
 }
 

@@ -51,7 +51,7 @@ struct Candidate {
   const EffectType* type = nullptr;
   FitOutcome fit;           // alone or, if needed, together with slightly wrong parameters of the model
   double score = 0.0;       // on held-out blocks, with prior() and the penalty for free nuisance parameters
-  double held_out = 0.0;    // held_out_score() alone
+  double held_out = 0.0;    // held_out_score() alone; of a leader with what was found beside it
   double parameters = 0.0;  // number of free ones
   // That it is the first cause, against the others of a library; it stays with the candidate when these are put in
   // another order.

@@ -113,5 +113,22 @@ TEST(OpenedCase, QuadraticDampingShowsBesideALinearOne) {
   EXPECT_THAT(causes_of_case(3943260127, 51), Contains("specimen.quadratic_damping"));
 }
 
+/// A motion that sticks and jumps: its jumps end so many equal steps apart, told as a coarse converter of the load
+/// cell.
+TEST(OpenedCase, StictionIsNoQuantization) {
+  EXPECT_THAT(causes_of_case(954709659, 7), ElementsAre("transfer_system.stiction"));
+}
+
+/// Laws and dampings that predicted better by themselves, each with numbers of its own in each recording, were listed
+/// with the bias as effects that cannot be told from it.
+TEST(OpenedCase, BiasIsToldFromWhatLeavesMore) {
+  EXPECT_THAT(causes_of_case(954709659, 150), Not(Contains("specimen.fractional_damping")));
+}
+
+/// The model's delay is 4 ms, the missing pole makes it 7.3 ms: told as numbers that are slightly off.
+TEST(OpenedCase, MissingPoleIsNoSlightDelay) {
+  EXPECT_THAT(causes_of_case(148278244, 197), Contains("transfer_system.delay"));
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -6,6 +6,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
 #include "diagnosis/verdict/library_fits.hpp"
+#include "plant/transfer_systems/delay.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Numbers of the user's model that are slightly off: corrected, and no causes.
@@ -27,11 +28,15 @@ Recording site_with(double gain, double stiffness_ratio) {
   return made_recording(moved_m, [=](double t) { return stiffness_ratio * kMadeStiffness_n_per_m * moved_m(t); });
 }
 
-Diagnosis diagnosis_of(const Recording& recording, const VerdictPolicy& policy = {}) {
+Diagnosis diagnosis_with(const SiteModel& model, const Recording& recording, const VerdictPolicy& policy = {}) {
   DiagnoseSettings settings;
   settings.threads = 2;
   settings.policy = policy;
-  return diagnose(made_model(), {&recording, 1}, settings);
+  return diagnose(model, {&recording, 1}, settings);
+}
+
+Diagnosis diagnosis_of(const Recording& recording, const VerdictPolicy& policy = {}) {
+  return diagnosis_with(made_model(), recording, policy);
 }
 
 std::vector<std::string> names_in(const std::vector<report::RankedCause>& entries, bool causes_alone) {
@@ -139,6 +144,31 @@ TEST(Corrections, WrongGainOfTheActuatorEarnsASensorNothing) {
               testing::IsSupersetOf({"transfer_system gain", "transfer_system compliance"}));
   EXPECT_THAT(names_in(diagnosis.report.ranking, true), Not(testing::Contains(HasSubstr("displacement_sensor"))));
   EXPECT_THAT(names_in(diagnosis.report.ranking, true), testing::Contains("specimen viscous_damping"));
+}
+
+/// An actuator that is this late, with a model of 4 ms, under a spring that is a little stiffer than its model.
+Diagnosis diagnosis_of_actuator_late_by(double delay_s) {
+  SiteModel model = made_model();
+  model.make_transfer_system = [](double sample_period_s, double change_s) {
+    return std::make_unique<Delay>(from_seconds(0.004 + change_s), from_seconds(sample_period_s));
+  };
+  model.removable_delay_s = 0.004;
+  const auto moved_m = [delay_s](double t) { return made_motion_m(t - delay_s); };
+  return diagnosis_with(model,
+                        made_recording(moved_m, [&](double t) { return 1.015 * kMadeStiffness_n_per_m * moved_m(t); }));
+}
+
+TEST(Corrections, DelayFarFromThatOfTheModelIsACause) {
+  // It changes less than a hundredth of the motion, which is slow.
+  const Diagnosis diagnosis = diagnosis_of_actuator_late_by(0.0052);
+  EXPECT_THAT(names_in(diagnosis.report.ranking, true), testing::Contains("transfer_system delay"));
+  EXPECT_THAT(names_in(diagnosis.report.corrections, false), UnorderedElementsAre("specimen stiffness_error"));
+}
+
+TEST(Corrections, DelayNearThatOfTheModelIsNone) {  // control
+  const Diagnosis diagnosis = diagnosis_of_actuator_late_by(0.0042);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
+  EXPECT_THAT(names_in(diagnosis.report.corrections, false), testing::Contains("transfer_system delay"));
 }
 
 }  // namespace
