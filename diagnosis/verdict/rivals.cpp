@@ -44,6 +44,17 @@ bool is_small(const Eigen::VectorXd& difference, const Eigen::VectorXd& change) 
   return difference.norm() <= std::sqrt(1.0 - tuning::kSameSignature * tuning::kSameSignature) * change.norm();
 }
 
+/// A difference that hardly matters, though it may be told.
+bool is_slight(const Eigen::VectorXd& difference, const Eigen::VectorXd& change) {
+  return difference.squaredNorm() <= tuning::kHardlyLeft * change.squaredNorm();
+}
+
+/// Of a fit at the lower rate whose numbers are free for small changes only: no more than what a further effect has to
+/// explain.
+bool may_be_slight(const Eigen::VectorXd& difference, const Eigen::VectorXd& change) {
+  return difference.squaredNorm() <= tuning::kAnotherEffectExplains * change.squaredNorm();
+}
+
 /// What a chosen effect changes beside the others.
 struct Place {
   const FitOutcome* chosen = nullptr;
@@ -56,8 +67,6 @@ struct Place {
 
   [[nodiscard]] const EffectType* type() const { return chosen->effects[position].type; }
 
-  /// Whether changes have the same signature, and so the same size.
-  [[nodiscard]] bool is_same(const Eigen::VectorXd& changes) const { return is_small(changes - all, alone); }
   /// Whether the others are beside a rival, the first effect of its fit, as they are beside the effect.
   [[nodiscard]] bool has_same_others(const IdentificationProblem& problem, const FitOutcome& rival) const {
     const std::span beside{rival.effects.data() + 1, others.size()};
@@ -144,15 +153,16 @@ Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, cons
   return loss;
 }
 
-/// The numbers of the model beside a rival are slightly off only, or as they are beside the effect, and change less
-/// than the rival does.
+/// The numbers of the model beside a rival and the other causes are slightly off only, or as they are beside the
+/// effect, and change less than the rival does.
 bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
-  if (!fit.with_nuisance) return true;
-  const Eigen::VectorXd by_effects = changes_by(problem, fit.effects);
+  const std::span causes = std::span{fit.effects}.first(1 + place.others.size());
+  if (!fit.with_nuisance && causes.size() == fit.effects.size()) return true;
+  const Eigen::VectorXd by_effects = changes_by(problem, causes);
   const Eigen::VectorXd by_numbers = changes_of(problem, fit) - by_effects;
   const Eigen::VectorXd measured =
       stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd { return problem.segments[i].measured; });
-  const Eigen::VectorXd own = by_effects - changes_by(problem, std::span{fit.effects}.subspan(1));
+  const Eigen::VectorXd own = by_effects - changes_by(problem, causes.subspan(1));
   const bool is_slight =
       by_numbers.norm() <= within * measured.norm() || is_small(by_numbers - place.by_corrections, place.alone);
   return is_slight && by_numbers.norm() <= own.norm();
@@ -179,6 +189,13 @@ bool is_told(const IdentificationProblem& problem, const FitOutcome& rival, cons
   return loss.nats - of_numbers > std::max(loss.standard_error, decides) && !is_negligible(problem, rival, chosen);
 }
 
+/// The held-out log density with the rival, numbers of the model that it needs included, is smaller by less than
+/// decides between two effects, however little is known of that loss.
+bool predicts_as_well(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen,
+                      double decides) {
+  return held_out_score(problem, chosen) - held_out_score(problem, rival) < decides;
+}
+
 /// Whether something speaks against the rival by itself. That what it stands for may also be there in part is no doubt
 /// about it: it is in its place.
 template <class StandsFor>
@@ -193,60 +210,82 @@ bool is_refuted(IdentificationProblem problem, StandsFor&& stands_for, const Can
   return !refutation(problem, instead).empty();
 }
 
-/// Whether these recordings cannot tell the rival, the first effect of its fit, from the chosen one.
+/// Whether these recordings cannot tell the rival, the first effect of its fit, from the chosen one. It may predict
+/// less well, within what is known of that, only if it is alike: of the same signature by itself.
 bool is_rival(const IdentificationProblem& problem, const VerdictPolicy& policy, const Place& place,
-              const Candidate& rival) {
-  if (!place.is_same(changes_of(problem, rival.fit))) return false;
+              const Candidate& rival, bool is_alike) {
+  const Eigen::VectorXd difference = changes_of(problem, rival.fit) - place.all;
+  if (!is_slight(difference, place.alone)) return false;
+  const double decides = nats_that_decide(policy.credible);
+  const bool may_lose = is_alike && is_small(difference, place.alone);
+  if (!may_lose && !predicts_as_well(problem, rival.fit, *place.chosen, decides)) return false;
   if (!place.has_same_others(problem, rival.fit)) return false;
-  if (is_told(problem, rival.fit, *place.chosen, nats_that_decide(policy.credible))) return false;
+  if (is_told(problem, rival.fit, *place.chosen, decides)) return false;
   const std::vector<ParameterEstimate>& estimates = rival.fit.parameters.front();
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     if (estimates[i].at_bound && estimates[i].value != rival.type->parameters[i].fallback) return false;
   }
-  return are_slight(problem, place, rival.fit, tuning::kNumbersWithin) &&
+  return are_slight(problem, place, rival.fit, policy.numbers_within) &&
          free_parameters(problem, rival.fit, 0) <= free_parameters(problem, *place.chosen, place.position) &&
          !is_refuted(
              problem, [&](const EffectType& type) { return &type == place.type(); }, rival);
 }
 
+/// An effect that may be in the place of the chosen one, by its fit at the lower rate.
+struct PossibleRival {
+  EffectSetting effect;
+  bool is_alike = false;  // of the same signature, not only of about the same
+};
+
 /// The effect in the place of the chosen one, fitted at the full rate; beside numbers of the model only where it is no
-/// rival without them.
+/// rival without them, first for small changes of them and then for any.
 std::optional<Candidate> rival_in(const IdentificationProblem& problem, const VerdictPolicy& policy, const Place& place,
-                                  const EffectSetting& effect) try {
+                                  const PossibleRival& possible) try {
+  const EffectSetting& effect = possible.effect;
   std::vector<EffectSetting> effects{effect};
   effects.insert(effects.end(), place.others.begin(), place.others.end());
   Candidate rival{.type = effect.type, .fit = refit_effects(problem, effects, false)};
-  if (is_rival(problem, policy, place, rival)) return rival;
+  if (is_rival(problem, policy, place, rival, possible.is_alike)) return rival;
   const IdentificationProblem beside = with_numbers_beside(problem, place, effect.type);
   rival.fit = refit_effects(beside, rival.fit.effects, true);
-  if (is_rival(beside, policy, place, rival)) return rival;
+  if (is_rival(beside, policy, place, rival, possible.is_alike)) return rival;
+  // A law does not follow its numbers in proportion.
+  const std::vector<EffectSetting> numbers = wrong_numbers(beside, rival.fit);
+  if (numbers.empty() || !may_be_slight(changes_of(beside, rival.fit) - place.all, place.alone)) return {};
+  effects = rival.fit.effects;
+  effects.insert(effects.end(), numbers.begin(), numbers.end());
+  rival.fit = refit_effects(problem, effects, false);
+  if (is_rival(problem, policy, place, rival, false)) return rival;
   return {};
 } catch (const ConfigError&) {
   return {};
 }
 
 /// Effects of about the same signature at the lower rate.
-std::vector<EffectSetting> of_same_signature(const IdentificationProblem& coarse, const Place& place,
-                                             const PartProgress& progress) {
+std::vector<PossibleRival> of_about_the_same_signature(const IdentificationProblem& coarse, const Place& place,
+                                                       const PartProgress& progress) {
   const IdentificationProblem extended = beside_effects(coarse, place.others);
   std::vector<const EffectType*> effects = judged_effects(coarse);
   std::erase_if(effects, [&](const EffectType* type) { return type->replacement != nullptr || is_found(place, type); });
-  std::vector<std::optional<EffectSetting>> same(effects.size());
+  std::vector<std::optional<PossibleRival>> same(effects.size());
   fit_each(
       coarse.workers, effects.size(),
       [&](std::size_t i) {
         try {
           const IdentificationProblem beside = with_numbers_beside(extended, place, effects[i]);
           const FitOutcome fit = fit_effects(beside, {effects[i]}, true);
-          if (place.is_same(place.by_others + changes_of(beside, fit))) same[i] = fit.effects.front();
+          const Eigen::VectorXd difference = place.by_others + changes_of(beside, fit) - place.all;
+          if (may_be_slight(difference, place.alone)) {
+            same[i] = PossibleRival{.effect = fit.effects.front(), .is_alike = is_small(difference, place.alone)};
+          }
         } catch (const ConfigError&) {
           same[i].reset();
         }
       },
       [&](std::size_t done, std::size_t all) { progress.report("effects compared with the causes", done, all); });
-  std::vector<EffectSetting> found;
-  for (std::optional<EffectSetting>& effect : same) {
-    if (effect) found.push_back(std::move(*effect));
+  std::vector<PossibleRival> found;
+  for (std::optional<PossibleRival>& possible : same) {
+    if (possible) found.push_back(std::move(*possible));
   }
   return found;
 }
@@ -258,12 +297,15 @@ std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, c
   const std::vector<EffectSetting>& effects = selection.chosen.effects;
   std::vector<std::size_t> causes;
   for (std::size_t i = 0; i < effects.size(); ++i) {
+    // A single number that is slightly off may be the cause after all, see settle_corrections().
+    if (effects.size() == 1 || !judgement.is_correction(i)) causes.push_back(i);
+  }
+  const std::size_t told = causes.size();
+  std::erase_if(causes, [&](std::size_t i) {
     const EffectType& type = *effects[i].type;
     const bool is_of_law = type.interface == EffectInterface::specimen && is_model_number(problem, type);
-    // A single number that is slightly off may be the cause after all, see settle_corrections().
-    const bool may_be_cause = effects.size() == 1 || (!judgement.is_correction(i) && !is_of_law);
-    if (may_be_cause && type.replacement == nullptr) causes.push_back(i);
-  }
+    return type.replacement != nullptr || (is_of_law && told > 1);
+  });
   std::ranges::stable_sort(causes, std::greater{}, [&](std::size_t i) { return selection.shares[i]; });
   return causes;
 }
@@ -325,8 +367,8 @@ void find_rivals(const IdentificationProblem& problem, const IdentificationProbl
     const std::size_t position = causes[i];
     Rivals rivals{.chosen = position, .fitted = {}, .probability = 1.0};
     const Place place = place_in(problem, chosen, position, judgement);
-    const std::vector<EffectSetting> same =
-        of_same_signature(coarse, place_in(coarse, thin, position, judgement), progress.round(i, causes.size()));
+    const std::vector<PossibleRival> same = of_about_the_same_signature(
+        coarse, place_in(coarse, thin, position, judgement), progress.round(i, causes.size()));
     std::vector<std::optional<Candidate>> fitted(same.size());
     problem.workers.for_each(same.size(),
                              [&](std::size_t j) { fitted[j] = rival_in(problem, policy, place, same[j]); });

@@ -11,7 +11,8 @@ namespace hybridtest {
 /// that has any. Each is fitted in its place, beside the other causes. It is a rival if
 ///
 /// - the model replays the same with either: the difference is a twentieth of what the chosen effect changes, at most
-///   (tuning::kSameSignature), and the other causes stay as they are;
+///   (tuning::kSameSignature), or a tenth (tuning::kHardlyLeft) where the recordings do not speak for the chosen one,
+///   and the other causes stay as they are;
 /// - the recordings do not resolve that difference: the held-out log density loses no more than the standard error of
 ///   that loss (Vehtari, Gelman and Gabry, Stat. Comput. 27, 2017) or than decides between two effects, or no model is
 ///   expected to reproduce the difference (tuning::kModelAllowance). Numbers at other channels that would have to be

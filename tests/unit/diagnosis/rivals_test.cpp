@@ -129,6 +129,34 @@ std::vector<Site> drawn_sites() {
   return sites;
 }
 
+/// Of a specimen that is stiffer than its model by what the load cell reads too little, the stiffness seems right and
+/// the strength off; and less stiff by as much beside a strength that is less off by as much, the load cell.
+class GainOrStrength : public testing::TestWithParam<unsigned> {};
+
+TEST_P(GainOrStrength, IsASetWhereTheStiffnessMayBeOffToo) {
+  constexpr double kGain = 0.93;
+  constexpr double kStiffer = 1.0 / 0.965;
+  Random random{GetParam()};
+  Bilinear law{Bilinear::Parameters{kStiffer * kMadeStiffness_n_per_m, kStrength_n, 0.05}};
+  Recording recording;
+  recording.file = "made.csv";
+  recording.sample_period_s = kSitePeriod_s;
+  recording.samples = 6000;
+  recording.dofs.resize(1);
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    const double place_m = made_motion_m(kSitePeriod_s * static_cast<double>(i));
+    const double force_n = law.trial(place_m, 0.0);
+    law.commit();
+    recording.dofs[0].of(Channel::measured_displacement).push_back(place_m + 1e-5 * random.normal());
+    recording.dofs[0].of(Channel::measured_force).push_back(kGain * force_n + 200.0 * random.normal());
+  }
+  const report::DiagnosisReport answer = answer_to(recording, that_yields);
+  EXPECT_EQ(answer.verdict, Verdict::set);
+  EXPECT_THAT(members_in(answer), IsSupersetOf({"gain", "strength_error"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawn, GainOrStrength, testing::Range(1U, 11U));
+
 INSTANTIATE_TEST_SUITE_P(Drawn, GainOrFrame, testing::ValuesIn(drawn_sites()), testing::PrintToStringParamName());
 
 }  // namespace
