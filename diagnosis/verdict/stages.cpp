@@ -1,6 +1,7 @@
 #include "diagnosis/verdict/stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -70,6 +71,69 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
   return result;
 }
 
+/// What the causes of all stages leave in held-out recordings, of each kind of segment that they act on.
+std::vector<report::Shrink> left_by_all(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
+                                        const std::vector<Stage>& stages, const Stage& stage) {
+  const std::vector<EffectSetting> causes = causes_of(stages, {});
+  return shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed);
+}
+
+/// Of all kinds of segments together, each by its gap before.
+double share_left(std::span<const report::Shrink> held_out) {
+  double left = 0.0;
+  for (const report::Shrink& one : held_out) left += std::pow(one.nrmse_after / one.nrmse_before, 2);
+  return left;
+}
+
+/// Chosen without the effect at this position; whether it is a set is not asked again.
+void leave_out(const VerdictPolicy& policy, std::size_t position, FitOutcome rest, Stage& stage) {
+  Selection& selection = stage.selection;
+  const auto at = static_cast<std::ptrdiff_t>(position);
+  selection.chosen = std::move(rest);
+  selection.chosen_probabilities.erase(selection.chosen_probabilities.begin() + at);
+  const double kept = 1.0 - selection.shares[position];
+  selection.shares.erase(selection.shares.begin() + at);
+  for (double& share : selection.shares)
+    share = kept > 0.0 ? share / kept : 1.0 / static_cast<double>(selection.shares.size());
+  std::optional<Rivals> rivals = std::move(stage.judgement.rivals);
+  stage.judgement = judge(stage.problem, selection, policy);
+  if (!rivals || rivals->chosen == position || !stage.has_causes()) return;
+  if (rivals->chosen > position) --rivals->chosen;
+  stage.judgement.rivals = std::move(rivals);
+  if (stage.judgement.may_be_set) stage.judgement.verdict = Verdict::set;
+}
+
+/// Of several effects, leaves out those with which a held-out recording is further from the model than without any, the
+/// worst first. The others are fitted again to the recordings they were found in.
+void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
+                            const VerdictPolicy& policy, std::vector<Stage>& stages, Stage& stage,
+                            std::vector<std::string>& notes) {
+  std::vector<report::Shrink> shrinks = left_by_all(model, held_out, seed, stages, stage);
+  while (stage.has_causes() && stage.selection.chosen.effects.size() > 1 && std::ranges::any_of(shrinks, is_worse)) {
+    FitOutcome& chosen = stage.selection.chosen;
+    const FitOutcome all = chosen;
+    std::size_t worst = 0;
+    FitOutcome best;
+    std::vector<report::Shrink> least;
+    for (std::size_t i = 0; i < all.effects.size(); ++i) {
+      std::vector<EffectSetting> rest = all.effects;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      chosen = refit_effects(stage.problem, rest, false);
+      std::vector<report::Shrink> without = left_by_all(model, held_out, seed, stages, stage);
+      if (!least.empty() && share_left(without) >= share_left(least)) continue;
+      worst = i;
+      best = chosen;
+      least = std::move(without);
+    }
+    chosen = all;
+    if (share_left(least) >= share_left(shrinks)) return;
+    notes.push_back(std::string{all.effects[worst].type->name} +
+                    " is left out: with it, held-out recordings are further from the model than without.");
+    leave_out(policy, worst, std::move(best), stage);
+    shrinks = std::move(least);
+  }
+}
+
 }  // namespace
 
 void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
@@ -77,12 +141,11 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
                                    std::vector<std::string>& notes) {
   for (Stage& stage : stages) {
     if (!stage.has_causes()) continue;
+    leave_out_what_worsens(model, held_out, seed, policy, stages, stage, notes);
+    if (!stage.has_causes()) continue;
     // Beside the causes of the other stages, so that this one's own part is judged.
-    const std::vector<EffectSetting> causes = causes_of(stages, {});
-    Verdict verdict = verdict_carried_over(
-        stage.judgement.verdict,
-        shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed),
-        policy);
+    Verdict verdict =
+        verdict_carried_over(stage.judgement.verdict, left_by_all(model, held_out, seed, stages, stage), policy);
     if (verdict == stage.judgement.verdict) continue;
     // A gap that is clear where it was fitted stays one: with causes that do not hold, noise may be taken for anything.
     if (verdict == Verdict::none && stands_above_floor(stage.problem, stage.selection.baseline, tuning::kNearFloor)) {

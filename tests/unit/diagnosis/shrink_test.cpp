@@ -38,6 +38,15 @@ TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
   EXPECT_EQ(carried_over(Verdict::unknown, removing({-0.4, 0.2}, 0.015)), Verdict::unknown);
 }
 
+TEST(CarryingOver, DropsCauseThatMakesTheGapLarger) {
+  // One block in which the model runs away makes the interval wide.
+  Shrink shrink = removing({-60.0, 0.98});
+  shrink.nrmse_after = 0.12;
+  EXPECT_EQ(carried_over(Verdict::partial, shrink), Verdict::unknown);
+  shrink.nrmse_after = 0.1004;  // by less than the floor, sqrt(0.1^2 + 0.01^2) = 0.1005
+  EXPECT_EQ(carried_over(Verdict::partial, shrink), Verdict::partial);
+}
+
 TEST(CarryingOver, KeepsCauseOfOneChannelDespiteOtherChannel) {
   const Shrink explained = removing({0.98, 0.99});
   const Shrink not_explained = removing({0.1, 0.2});
