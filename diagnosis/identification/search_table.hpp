@@ -219,7 +219,7 @@ inline constexpr std::array kRows{
     SearchRange{force_sensor, "lag", "second_order_ratio", Scale::one, 0.0, 1.0},
     SearchRange{force_sensor, "saturation", "limit_n", Scale::force_n, 0.3, 1.1},
     SearchRange{force_sensor, "quantization", "step_n", Scale::force_n, 1e-4, 0.3},
-    SearchRange{force_sensor, "time_skew", "skew_s", Scale::time_s, 0.0, 0.05},
+    SearchRange{force_sensor, "time_skew", "skew_s", Scale::time_s, 0.0, 1.0},
     SearchRange{numerical_substructure, "mass_error", "mass_error_ratio", Scale::one, -0.5, 0.5},
     SearchRange{numerical_substructure, "stiffness_error", "stiffness_error_ratio", Scale::one, -0.5, 0.5},
     SearchRange{numerical_substructure, "damping_error", "damping_error_ratio", Scale::one, -1.0, 4.0},

@@ -6,6 +6,7 @@
 
 #include "core/parameters/unit_of.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
@@ -116,8 +117,9 @@ std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, cons
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     const EffectSetting& effect = selection.chosen.effects[i];
     const ModelNumber number = effect.type->traits.number;
-    const bool is_number = number != ModelNumber::none || place_of(problem.model, *effect.type) != nullptr;
-    if (!is_number || number == ModelNumber::offset || number == ModelNumber::damping) continue;
+    const bool is_in_model = holds(problem.model.effects, effect.type);
+    const bool is_number = is_in_model || (number != ModelNumber::none && number != ModelNumber::damping);
+    if (!is_number || number == ModelNumber::offset) continue;
     // An output follows a gain, a stiffness or a strength in proportion. A delay and a bandwidth that are as much off
     // change it by less.
     const bool is_timing = number == ModelNumber::delay || number == ModelNumber::bandwidth;

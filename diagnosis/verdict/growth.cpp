@@ -410,6 +410,19 @@ bool is_lost(const IdentificationProblem& problem, const FitOutcome& by_numbers,
   });
 }
 
+/// How many are no numbers of the model.
+std::ptrdiff_t count_of_others(const IdentificationProblem& problem, const FitOutcome& fit) {
+  return std::ranges::count_if(fit.effects,
+                               [&](const EffectSetting& effect) { return !is_number(problem, *effect.type); });
+}
+
+/// Whether numbers of the model gave way to effects that are none, without these being decidedly better.
+bool numbers_gave_way(const IdentificationProblem& problem, const FitOutcome& left, const FitOutcome& before) {
+  const std::ptrdiff_t more = count_of_others(problem, left) - count_of_others(problem, before);
+  const double gain = score_of(problem, left) - score_of(problem, before);
+  return more > 0 && gain < static_cast<double>(more) * decisive_gain(problem);
+}
+
 }  // namespace
 
 bool settle(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
@@ -423,11 +436,15 @@ bool settle(const IdentificationProblem& problem, const IdentificationProblem& c
   merge(coarse, growth);
   prune(coarse, refit_effects(coarse, selection.by_numbers.effects, false), growth.fit);
   growth.fit = refit_effects(problem, growth.fit.effects, false);
-  if (is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
+  // What came in the place of a number may have been better only at the lower rate, or with what was dropped then.
+  const bool gave_way = numbers_gave_way(problem, growth.fit, before.fit);
+  if (gave_way || is_lost(problem, selection.by_numbers, growth.fit, before.fit)) {
     Growth at_full_rate = before;
     prune(problem, selection.by_numbers, at_full_rate.fit);
     // One effect at a time may go astray there, too.
-    if (score_of(problem, at_full_rate.fit) > score_of(problem, growth.fit)) growth = std::move(at_full_rate);
+    const bool is_better = gave_way ? numbers_gave_way(problem, growth.fit, at_full_rate.fit)
+                                    : score_of(problem, at_full_rate.fit) > score_of(problem, growth.fit);
+    if (is_better) growth = std::move(at_full_rate);
   }
   return growth.fit.effects.size() < count;
 }

@@ -290,8 +290,8 @@ std::vector<PossibleRival> of_about_the_same_signature(const IdentificationProbl
   return found;
 }
 
-/// Positions of the chosen effects that may be a cause of the verdict, largest share first. Not among them: a number of
-/// the specimen's law beside another cause, which is the user's and free beside every candidate.
+/// Positions of the chosen effects that may be a cause of the verdict, largest share first. Not among them: the
+/// stiffness of the user's spring beside another cause, which is free beside every candidate.
 std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, const Selection& selection,
                                          const Judgement& judgement) {
   const std::vector<EffectSetting>& effects = selection.chosen.effects;
@@ -304,7 +304,7 @@ std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, c
   std::erase_if(causes, [&](std::size_t i) {
     const EffectType& type = *effects[i].type;
     const bool is_of_law = type.interface == EffectInterface::specimen && is_model_number(problem, type);
-    return type.replacement != nullptr || (is_of_law && told > 1);
+    return type.replacement != nullptr || (problem.law_is_spring && is_of_law && told > 1);
   });
   std::ranges::stable_sort(causes, std::greater{}, [&](std::size_t i) { return selection.shares[i]; });
   return causes;

@@ -82,6 +82,31 @@ TEST(Corrections, NumbersFurtherOffAreCauses) {
   EXPECT_THAT(names_in(diagnosis.report.corrections, false), UnorderedElementsAre("transfer_system gain"));
 }
 
+/// A spring and a damper, of which the model has this share, and an actuator with a wrong gain.
+Diagnosis diagnosis_of_damper(double known) {
+  constexpr double kDamping_n_s_per_m = 0.1 * kMadeStiffness_n_per_m;
+  SiteModel model = made_model();
+  const EffectType* const damping = find_effect(EffectInterface::specimen, "viscous_damping");
+  add_effect(model, {.type = damping, .values = {known * kDamping_n_s_per_m}});
+  const auto moved_m = [](double t) { return 1.02 * made_motion_m(t); };
+  return diagnosis_with(model, made_recording(moved_m, [&](double t) {
+                          return kMadeStiffness_n_per_m * moved_m(t) +
+                                 kDamping_n_s_per_m * 1.02 * made_velocity_m_per_s(t);
+                        }));
+}
+
+TEST(Corrections, DampingOfTheModelSlightlyOffIsNone) {
+  const Diagnosis diagnosis = diagnosis_of_damper(0.97);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
+  EXPECT_THAT(names_in(diagnosis.report.corrections, false),
+              UnorderedElementsAre("transfer_system gain", "specimen viscous_damping"));
+}
+
+TEST(Corrections, DampingOfTheModelFarOffIsACause) {  // control
+  const Diagnosis diagnosis = diagnosis_of_damper(0.8);
+  EXPECT_THAT(names_in(diagnosis.report.ranking, true), testing::Contains("specimen viscous_damping"));
+}
+
 TEST(Corrections, ChannelBringsNoNumberOfTheNextOne) {
   // The specimen pinches, which no stiffness mends. The sensor's gain, which the force shows too, must not bring one
   // along while the displacement is judged.

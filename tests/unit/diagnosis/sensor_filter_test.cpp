@@ -71,6 +71,16 @@ TEST(SlowLoadCellFilter, IsALagToo) {
   EXPECT_NEAR(find_parameter(lag, "second_order_ratio")->value, 0.25, 0.002);
 }
 
+TEST(LateForce, IsASkewHoweverLate) {
+  constexpr double kSkew_s = 0.11;  // a quarter of the period of the faster part of the motion
+  const auto read_n = [](double t) { return t < kSkew_s ? 0.0 : kMadeStiffness_n_per_m * made_motion_m(t - kSkew_s); };
+  const Diagnosis diagnosis = diagnosis_of(made_model(), made_recording(made_motion_m, read_n));
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("time_skew"));
+  // 20 N of noise beside a force that changes by 400 kN/s: 1 us of 6000 readings.
+  EXPECT_NEAR(find_parameter(diagnosis.report.ranking.front(), "skew_s")->value, kSkew_s, 1e-5);
+}
+
 TEST(BesselFilter, IsASetWithATimeSkew) {
   // Its delay is the same at all frequencies up to its bandwidth: that is what it is made for.
   const Diagnosis diagnosis = diagnosis_behind(1.0 / 3.0);
