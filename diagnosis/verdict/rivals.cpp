@@ -7,6 +7,7 @@
 
 #include "core/config_error.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
@@ -83,13 +84,11 @@ Place place_in(const IdentificationProblem& problem, const FitOutcome& chosen, s
               .alone = {},
               .by_others = {},
               .by_corrections = {}};
-  std::vector<EffectSetting> rest = chosen.effects;
-  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(position));
   for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
     if (i != position && !judgement.is_correction(i)) place.others.push_back(chosen.effects[i]);
   }
   place.all = changes_of(problem, chosen);
-  place.alone = place.all - changes_by(problem, rest);
+  place.alone = place.all - changes_by(problem, without(chosen.effects, position));
   place.by_others = changes_by(problem, place.others);
   std::vector<EffectSetting> causes = place.others;
   causes.push_back(chosen.effects[position]);

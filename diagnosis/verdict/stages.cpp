@@ -9,6 +9,7 @@
 
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 
@@ -116,14 +117,12 @@ void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> hel
     FitOutcome best;
     std::vector<report::Shrink> least;
     for (std::size_t i = 0; i < all.effects.size(); ++i) {
-      std::vector<EffectSetting> rest = all.effects;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      chosen = refit_effects(stage.problem, rest, false);
-      std::vector<report::Shrink> without = left_by_all(model, held_out, seed, stages, stage);
-      if (!least.empty() && share_left(without) >= share_left(least)) continue;
+      chosen = refit_effects(stage.problem, without(all.effects, i), false);
+      std::vector<report::Shrink> by_rest = left_by_all(model, held_out, seed, stages, stage);
+      if (!least.empty() && share_left(by_rest) >= share_left(least)) continue;
       worst = i;
       best = chosen;
-      least = std::move(without);
+      least = std::move(by_rest);
     }
     chosen = all;
     if (share_left(least) >= share_left(shrinks)) return;

@@ -130,8 +130,7 @@ TEST(OpenedCase, BiasIsToldFromWhatLeavesMore) {
 /// and damping.
 TEST(OpenedCase, NumbersSlightlyOffAreNoMissingPole) { EXPECT_THAT(causes_of_case(4105755390, 35), IsEmpty()); }
 
-/// A limit that the fitted recording hardly reaches was told, and made the held-out one nine times as far from the
-/// model.
+/// A limit that is not there was told, and made the held-out recording twice as far from the model.
 TEST(OpenedCase, StrokeLimitThatMakesTheHeldOutGapLargerIsLeftOut) {
   EXPECT_THAT(causes_of_case(4105755390, 201),
               AllOf(Contains("transfer_system.stiction"), Contains("force_sensor.saturation"),
