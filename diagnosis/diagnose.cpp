@@ -178,6 +178,9 @@ std::string next_experiment(std::span<const Stage> stages, const std::vector<rep
     }
     return experiment_that_splits(members);
   }
+  std::vector<const EffectType*> causes;
+  std::ranges::transform(causes_of(stages, {}), std::back_inserter(causes), &EffectSetting::type);
+  if (std::string within_range = experiment_within_range(causes); !within_range.empty()) return within_range;
   const auto is_open = [](const Stage& stage) {
     return stage.judgement.verdict == Verdict::unknown || stage.judgement.verdict == Verdict::partial;
   };

@@ -36,18 +36,41 @@ std::string in_words(const RankedCause& cause) {
   return plain(cause.effect) + law_in_words(cause) + input_in_words(cause) + corrected_in_words(cause);
 }
 
-std::vector<std::string> causes(const DiagnosisReport& report) {
-  std::vector<std::string> names;
+using Causes = std::vector<const RankedCause*>;
+
+Causes causes(const DiagnosisReport& report) {
+  Causes found;
   for (const RankedCause& cause : report.ranking) {
-    if (cause.is_cause) names.push_back(in_words(cause));
+    if (cause.is_cause) found.push_back(&cause);
   }
-  return names;
+  return found;
+}
+
+/// Whether all of them are at the interface with the largest gap, or no gap has a place.
+bool are_at_main_fault(const DiagnosisReport& report, const Causes& list) {
+  const InterfaceGap* fault = main_fault(report);
+  return fault == nullptr ||
+         std::ranges::all_of(list, [&](const RankedCause* cause) { return cause->interface == fault->interface; });
+}
+
+std::string in_words_with_place(const RankedCause& cause) {
+  return fmt::format("{} of the {}", in_words(cause), plain(cause.interface));
+}
+
+/// Each with its interface, unless the sentence has said already where they all are.
+std::string placed(const DiagnosisReport& report, const Causes& list) {
+  const bool is_said = are_at_main_fault(report, list);
+  std::vector<std::string> names;
+  for (const RankedCause* const cause : list) names.push_back(is_said ? in_words(*cause) : in_words_with_place(*cause));
+  return joined(names);
 }
 
 std::string where_it_lies(const DiagnosisReport& report) {
   const InterfaceGap* fault = main_fault(report);
   if (fault == nullptr) return "The model does not agree with the recordings";
-  return fmt::format("The gap is at the {} ({} of the whole gap)", plain(fault->interface), percent(fault->share));
+  return fmt::format("The gap is {} the {} ({} of the whole gap)",
+                     are_at_main_fault(report, causes(report)) ? "at" : "largest at", plain(fault->interface),
+                     percent(fault->share));
 }
 
 /// Continues a sentence that names causes.
@@ -60,7 +83,7 @@ std::string removal(const DiagnosisReport& report) {
     return fmt::format(": the gap was {:.3g} times the output, and {} of the output's energy is left above the noise.",
                        shrink.nrmse_before, percent(left));
   }
-  return fmt::format(": {} of the energy of this gap is explained, {} is left above the noise.",
+  return fmt::format(": {} of the energy of the gap is explained, {} is left above the noise.",
                      percent(shrink.variance_removed), percent(shrink.unknown_share));
 }
 
@@ -83,10 +106,15 @@ std::string in_doubt(const DiagnosisReport& report) {
 }
 
 std::string named_sentence(const DiagnosisReport& report) {
-  const std::vector<std::string> names = causes(report);
-  std::string text =
-      where_it_lies(report) + (names.size() > 1 ? "; its causes are " : "; its cause is ") + joined(names);
-  if (names.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
+  const Causes list = causes(report);
+  std::string text = where_it_lies(report);
+  if (list.size() == 1) {
+    text += "; its cause is ";
+  } else {
+    text += are_at_main_fault(report, list) ? "; its causes are " : "; the causes are ";
+  }
+  text += placed(report, list);
+  if (list.size() == 1) text += fmt::format(" (probability {})", percent(report.ranking.front().probability));
   return text + removal(report) + in_doubt(report);
 }
 
@@ -113,13 +141,13 @@ std::string partial_sentence(const DiagnosisReport& report) {
 }
 
 std::string set_sentence(const DiagnosisReport& report) {
-  const std::vector<const RankedCause*> alike = indistinguishable(report);
-  std::vector<std::string> others;
-  for (const RankedCause& cause : report.ranking) {
-    if (cause.is_cause && std::ranges::find(alike, &cause) == alike.end()) others.push_back(in_words(cause));
+  const Causes alike = indistinguishable(report);
+  Causes others = causes(report);
+  std::erase_if(others, [&](const RankedCause* cause) { return std::ranges::find(alike, cause) != alike.end(); });
+  std::string text = where_it_lies(report) + "; these recordings cannot distinguish " + placed(report, alike);
+  if (!others.empty()) {
+    text += (others.size() > 1 ? "; further causes are " : "; a further cause is ") + placed(report, others);
   }
-  std::string text = where_it_lies(report) + "; these recordings cannot distinguish " + joined(in_words(alike));
-  if (!others.empty()) text += (others.size() > 1 ? "; further causes are " : "; a further cause is ") + joined(others);
   return text + removal(report);
 }
 
@@ -140,8 +168,7 @@ std::vector<std::string> in_words(std::span<const RankedCause* const> members) {
       members, [&](const RankedCause* member) { return member->interface == members.front()->interface; });
   std::vector<std::string> names;
   for (const RankedCause* const member : members) {
-    names.push_back(at_one_interface ? in_words(*member)
-                                     : fmt::format("{} of the {}", in_words(*member), plain(member->interface)));
+    names.push_back(at_one_interface ? in_words(*member) : in_words_with_place(*member));
   }
   return names;
 }

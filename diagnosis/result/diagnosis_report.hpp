@@ -180,10 +180,10 @@ struct DiagnosisReport {
   std::vector<RankedCause> corrections{};
   std::vector<SensorFacts> sensors{};
   std::vector<Finding> findings{};
-  std::optional<Shrink> interface_shrink;  // at the interface of the first cause; none without a cause
+  std::optional<Shrink> interface_shrink;  // at the interfaces where the causes act; none without a cause
   std::optional<ResponseShrink> response_shrink;
   std::string why_no_response;          // where there is none
-  std::string next_experiment;          // empty if the cause is clear
+  std::string next_experiment;          // empty if the cause is clear and all of the force was read
   std::vector<std::string> notes;       // for the reader: parameters at their limits, missing channels
   std::vector<InterfaceSeries> series;  // at least of the interface at fault; its first one is drawn large
 };

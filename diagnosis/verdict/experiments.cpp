@@ -170,6 +170,12 @@ std::string experiment_that_splits(const std::vector<const EffectType*>& effects
   return "Amplitude sweep: slow cycles of growing and then of shrinking amplitude, with a reversal at every level.";
 }
 
+std::string experiment_within_range(const std::vector<const EffectType*>& causes) {
+  if (std::ranges::find(causes, find_effect(force_sensor, "saturation")) == causes.end()) return {};
+  return "Use a load cell with a wider range, or repeat with less motion: forces beyond the limit are not in these "
+         "recordings.";
+}
+
 std::string experiment_for_unknown(EffectInterface interface) {
   switch (interface) {
     case specimen:

@@ -41,6 +41,9 @@ void leave_out_unexcited(const std::vector<Excitation>& excitations, std::vector
 /// The test that can distinguish these effects; empty for fewer than two.
 [[nodiscard]] std::string experiment_that_splits(const std::vector<const EffectType*>& effects);
 
+/// What to change where the load cell is at its limit; empty where these causes are others.
+[[nodiscard]] std::string experiment_within_range(const std::vector<const EffectType*>& causes);
+
 /// The test to run where a gap is repeatable and no effect of the library explains it.
 [[nodiscard]] std::string experiment_for_unknown(EffectInterface interface);
 

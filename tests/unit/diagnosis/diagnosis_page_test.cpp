@@ -272,8 +272,26 @@ TEST(DiagnosisPage, CauseBesideASetIsNoMemberOfIt) {
   further.is_cause = true;
   report.ranking.push_back(further);
   EXPECT_THAT(verdict_sentence(report),
-              HasSubstr("cannot distinguish coulomb friction and stribeck friction; a further cause is delay"));
+              HasSubstr("cannot distinguish coulomb friction and stribeck friction; a further cause is delay of the "
+                        "transfer system"));
   EXPECT_THAT(diagnosis_page(report), HasSubstr("cannot distinguish coulomb friction and stribeck friction."));
+}
+
+TEST(DiagnosisPage, CausesAtSeveralInterfacesSayWhichOneEach) {
+  DiagnosisReport report = example();
+  RankedCause further;
+  further.interface = "force_sensor";
+  further.effect = "saturation";
+  further.is_cause = true;
+  report.ranking.insert(report.ranking.begin() + 1, further);
+  EXPECT_THAT(verdict_sentence(report),
+              HasSubstr("The gap is largest at the specimen (93.0\u00a0% of the whole gap); the causes are coulomb "
+                        "friction of the specimen and saturation of the force sensor"));
+  report.ranking.erase(report.ranking.begin());
+  EXPECT_THAT(verdict_sentence(report),
+              HasSubstr("The gap is largest at the specimen (93.0\u00a0% of the whole gap); its cause is saturation "
+                        "of the force sensor"))
+      << "the only cause is at another interface";
 }
 
 TEST(DiagnosisPage, MembersOfASetAtTwoInterfacesSayWhichOneEach) {

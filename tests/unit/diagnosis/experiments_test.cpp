@@ -178,6 +178,12 @@ TEST(NextExperiment, AmplitudeAsksForASweep) {
   EXPECT_THAT(splitting({{specimen, "cubic_stiffness"}, {specimen, "stiffness_error"}}), StartsWith("Amplitude sweep"));
 }
 
+TEST(NextExperiment, LoadCellAtItsLimitAsksForAWiderRange) {
+  EXPECT_THAT(experiment_within_range({find_effect(specimen, "gap"), find_effect(force_sensor, "saturation")}),
+              HasSubstr("load cell with a wider range"));
+  EXPECT_EQ(experiment_within_range({find_effect(specimen, "gap"), find_effect(force_sensor, "gain")}), "");
+}
+
 TEST(NextExperiment, UnknownGapAtTheSpecimenAsksForSlowCycles) {
   EXPECT_THAT(experiment_for_unknown(specimen), StartsWith("Slow cycles"));
   EXPECT_NE(experiment_for_unknown(specimen), experiment_for_unknown(transfer_system));
