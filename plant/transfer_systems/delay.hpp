@@ -7,7 +7,8 @@
 
 namespace hybridtest {
 
-/// The actuator is where the command was `delay` ago; at zero before the first command.
+/// The actuator is where the command was `delay` ago; at zero before the first command. Between samples the command is
+/// taken as smooth, see DelayLine::delayed_smoothly().
 class Delay final : public TransferSystem {
  public:
   struct Parameters {

@@ -46,6 +46,12 @@ double DelayLine::delayed() const noexcept {
 
 double DelayLine::delayed_smoothly() const noexcept {
   const double f = fraction_;
+  if (whole_intervals_ > 0) {
+    const double inside =
+        0.5 * (1.0 - f) * (2.0 - f) * ago(whole_intervals_) + 0.5 * f * (2.0 - f) * ago(whole_intervals_ + 1);
+    const double outside = (2.0 - f) * ago(whole_intervals_ - 1) + (1.0 + f) * ago(whole_intervals_ + 2);
+    return (1.0 + f) * inside - f * (1.0 - f) / 6.0 * outside;
+  }
   return 0.5 * (1.0 - f) * (2.0 - f) * ago(whole_intervals_) + f * (2.0 - f) * ago(whole_intervals_ + 1) -
          0.5 * f * (1.0 - f) * ago(whole_intervals_ + 2);
 }

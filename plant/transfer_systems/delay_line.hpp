@@ -24,8 +24,9 @@ class DelayLine {
 
   /// The delayed signal at the newest sample.
   [[nodiscard]] double delayed() const noexcept;
-  /// The same by the parabola through one sample more: of smooth signals a straight line takes (2 pi f dt)^2 / 8 off
-  /// the middle between two samples.
+  /// The same by the cubic through one sample more on either side (Laakso et al., IEEE Signal Processing Magazine 13,
+  /// 1996); within the first interval, where there is no newer one, by the parabola through an older one. Of smooth
+  /// signals a straight line takes (2 pi f dt)^2 / 8 off the middle between two samples.
   [[nodiscard]] double delayed_smoothly() const noexcept;
   /// Between two pushes the delayed signal is two straight lines that meet in corner(),
   /// corner_fraction() of the interval after the older push.

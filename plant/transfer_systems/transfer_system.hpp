@@ -5,7 +5,7 @@ namespace hybridtest {
 /// From the command displacement of one actuator to the displacement it imposes.
 ///
 /// Stepped once per control sample; between samples the command is taken as a straight line,
-/// so that every transfer system tends to `ideal` as it gets faster. One that says so holds its command instead.
+/// so that every transfer system tends to `ideal` as it gets faster. One that says so takes it otherwise.
 class TransferSystem {
  public:
   virtual ~TransferSystem() = default;

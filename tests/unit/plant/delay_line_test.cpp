@@ -34,6 +34,23 @@ TEST(DelayLine, InterpolatesLinearly) {
   EXPECT_DOUBLE_EQ(line.corner(), 8.0);
 }
 
+TEST(DelayLine, PassesACubicThroughFourSamples) {
+  const auto cubic = [](double t) { return 1.0 + t * (2.0 + t * (-3.0 + 0.5 * t)); };
+  const auto parabola = [](double t) { return 1.0 + t * (2.0 - 3.0 * t); };
+  DelayLine line{2250us, 1ms};
+  DelayLine within_first{250us, 1ms};
+  for (int i = 0; i < 10; ++i) {
+    line.push(cubic(i));
+    within_first.push(parabola(i));
+    if (i < 4) continue;
+    EXPECT_NEAR(line.delayed_smoothly(), cubic(i - 2.25), 1e-12);
+    EXPECT_NEAR(within_first.delayed_smoothly(), parabola(i - 0.25), 1e-12);
+  }
+  DelayLine whole{3ms, 1ms};
+  for (int i = 0; i < 9; ++i) whole.push(0.1 * i);
+  EXPECT_EQ(whole.delayed_smoothly(), 0.1 * 5) << "to the last bit";
+}
+
 TEST(DelayLine, ZeroDelayPassesAtOnce) {
   DelayLine line{0ms, 1ms};
   line.push(2.5);
