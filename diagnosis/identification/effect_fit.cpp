@@ -140,6 +140,11 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
               const MovedFit& fit_of_all, const Eigen::VectorXd& residual, FitOutcome& outcome) {
   const Eigen::MatrixXd columns = linear.columns(Eigen::all, linear.held_out_with);
   const Eigen::MatrixXd normal = columns.transpose() * columns + knowledge_of_ranges(projection, linear, residual);
+  // A search ends beside the optimum. The way there is no matter of the block, and a parameter that the block alone
+  // tells has no gradient in the others: it stays when the block is left out.
+  const Eigen::VectorXd gradient = columns.transpose() * residual;
+  const Eigen::VectorXd to_optimum =
+      columns.cols() > 0 ? Eigen::VectorXd{regularised(normal).ldlt().solve(gradient)} : gradient;
   for (std::size_t t = 0; t < projection.touched().size(); ++t) {
     const std::size_t position = projection.touched()[t];
     const FitSegment& fit = problem.segments[position];
@@ -154,7 +159,7 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
       if (columns.cols() > 0) {
         const Eigen::MatrixXd inside = columns.middleRows(first, size);
         const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
-        const Eigen::VectorXd step = -rest.ldlt().solve(inside.transpose() * block);
+        const Eigen::VectorXd step = rest.ldlt().solve(gradient - inside.transpose() * block) - to_optimum;
         block = left_out(fit_of_all, residual, inside, step, first);
       }
       result.held_out_squares[b] = unweighted * block.squaredNorm();

@@ -142,5 +142,10 @@ TEST(OpenedCase, MissingPoleIsNoSlightDelay) {
   EXPECT_THAT(causes_of_case(148278244, 197), Contains("transfer_system.delay"));
 }
 
+/// One block alone reaches the limit. When it was left out, the rest moved the limit away.
+TEST(OpenedCase, SaturationThatOneBlockAloneTellsIsFound) {
+  EXPECT_THAT(causes_of_case(1393686318, 17), ElementsAre("force_sensor.saturation"));
+}
+
 }  // namespace
 }  // namespace hybridtest
