@@ -104,7 +104,16 @@ double free_parameters(const IdentificationProblem& problem, const FitOutcome& f
   return free;
 }
 
+double parameter_cost(const IdentificationProblem& problem) {
+  double samples = 0.0;
+  for (const FitSegment& fit : problem.segments) {
+    if (fit.is_suspect) samples += fit.predicted_samples();
+  }
+  return std::min(tuning::kParameterPrior, 0.5 * std::log(std::max(1.0, samples)));
+}
+
 double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
+  const double cost = parameter_cost(problem);
   double sum = 0.0;
   double numbers = 0.0;  // of the specimen's own law, of which each is an effect by name
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
@@ -114,9 +123,9 @@ double prior(const IdentificationProblem& problem, const FitOutcome& fit) {
       numbers += free;
       continue;
     }
-    sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + tuning::kParameterPrior * std::max(0.0, free - 1.0);
+    sum -= (is_of_sensor(effect) ? tuning::kSensorPrior : 0.0) + cost * std::max(0.0, free - 1.0);
   }
-  return sum - tuning::kParameterPrior * std::max(0.0, numbers - 1.0);
+  return sum - cost * std::max(0.0, numbers - 1.0);
 }
 
 namespace {
@@ -336,8 +345,15 @@ double decisive_gain(const IdentificationProblem& problem) {
 
 namespace {
 
-/// Fits the laws that refine a simpler one, from the simpler one's result, while the best candidate leaves something
-/// to explain.
+/// A law that refines a simpler one, from the simpler one's result.
+EffectSetting start_from(const LawCandidate& law, const EffectSetting& simpler) {
+  EffectSetting start{.type = &law.type, .values = simpler.values};
+  start.values.resize(law.type.parameters.size() - law.start.size());
+  start.values.insert(start.values.end(), law.start.begin(), law.start.end());
+  return start;
+}
+
+/// Fits the laws that refine a simpler one while the best candidate leaves something to explain.
 void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& candidates) {
   const FitOutcome baseline = fit_nothing(coarse, false);
   if (candidates.front().score < held_out_score(coarse, baseline) + decisive_gain(coarse)) return;
@@ -348,9 +364,8 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
     // The form of the law is in question only where a law leads.
     if (candidates.front().type->replacement == nullptr) return;
     if (!gap_energy(coarse, candidates.front().fit).is_clear()) return;
-    EffectSetting start{.type = &law.type, .values = simpler->fit.effects.front().values};
-    start.values.insert(start.values.end(), law.start.begin(), law.start.end());
-    std::optional<Candidate> found = fit_together(coarse, &law.type, {start}, refit_effects);
+    std::optional<Candidate> found =
+        fit_together(coarse, &law.type, {start_from(law, simpler->fit.effects.front())}, refit_effects);
     if (!found) continue;
     // The same law with more of its parameters is no further candidate.
     if (law.type.replacement->law != law.refines->replacement->law) {
@@ -423,6 +438,62 @@ bool is_half_told(const Candidate& law) {
 }
 
 }  // namespace
+
+namespace {
+
+/// What a fit leaves of the blocks that it was fitted to, in weighted squares.
+double fitted_energy(const IdentificationProblem& problem, const FitOutcome& outcome) {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    energy += fit.weight * fit.weight * static_cast<double>(fit.measured.size()) * outcome.segments[i].mean_square;
+  }
+  return energy;
+}
+
+/// Searched over its whole range, from what is known of the simpler law that it refines.
+std::optional<Candidate> search_law(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                    const LawCandidate& law, const std::vector<Candidate>& library) {
+  std::vector<std::vector<EffectSetting>> starts;
+  for (const Candidate& candidate : library) {
+    // Where a detailed law did better, it stands in the place of the simpler one.
+    const bool is_known = candidate.type == &law.type || (law.refines != nullptr && candidate.type == law.refines);
+    if (is_known) starts.push_back({start_from(law, candidate.fit.effects.front())});
+  }
+  if (law.refines != nullptr) {
+    starts.push_back({start_from(law, fit_effects(coarse, {law.refines}, false).effects.front())});
+  }
+  std::optional<Candidate> best;
+  for (const std::vector<EffectSetting>& start : starts) {
+    std::optional<Candidate> found =
+        fit_together(coarse, &law.type, start, law.refines == nullptr ? refit_effects : search_effects);
+    if (found && (!best || fitted_energy(coarse, found->fit) < fitted_energy(coarse, best->fit)))
+      best = std::move(found);
+  }
+  if (!best) return best;
+  return fit_together(problem, &law.type, best->fit.effects, refit_effects);
+}
+
+}  // namespace
+
+std::vector<Candidate> fit_all_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                    const std::vector<Candidate>& library) {
+  std::vector<const LawCandidate*> laws;
+  for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
+    if (!law.is_special && touches_a_gap(problem, law.type)) laws.push_back(&law);
+  }
+  std::vector<std::optional<Candidate>> fitted(laws.size());
+  coarse.workers.for_each(laws.size(), [&](std::size_t i) {
+    try {
+      fitted[i] = search_law(problem, coarse, *laws[i], library);
+    } catch (const ConfigError&) {
+      fitted[i].reset();
+    }
+  });
+  std::vector<Candidate> candidates = best_first(std::move(fitted));
+  drop_refuted(problem, candidates);
+  return candidates;
+}
 
 std::vector<Candidate> fit_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                         const PartProgress& progress) {

@@ -24,6 +24,10 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] double free_parameters(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
+/// What a parameter beyond the first costs [nats]: half the logarithm of the samples that count, as in Schwarz's
+/// criterion (Annals of Statistics 6, 1978), where they are few; at most kParameterPrior.
+[[nodiscard]] double parameter_cost(const IdentificationProblem& problem);
+
 /// Order of two fits that a recording cannot distinguish: without a sensor effect first, then with fewer
 /// parameters, the wrong numbers of the specimen's own law being those of one effect [nats].
 [[nodiscard]] double prior(const IdentificationProblem& problem, const FitOutcome& outcome);
@@ -85,6 +89,13 @@ void fit_each(const Workers& workers, std::size_t count, const std::function<voi
 ///                 that come near the best are fitted again to `problem` from there.
 [[nodiscard]] std::vector<Candidate> fit_library(const IdentificationProblem& problem,
                                                  const IdentificationProblem& coarse, const PartProgress& progress);
+
+/// Every law of the specimen in place of its own but those of special devices, each by itself, best first: the detailed
+/// ones searched over their whole ranges from what the library holds of the simpler law that they refine. Refuted ones
+/// are omitted.
+[[nodiscard]] std::vector<Candidate> fit_all_laws(const IdentificationProblem& problem,
+                                                  const IdentificationProblem& coarse,
+                                                  const std::vector<Candidate>& library);
 
 /// The laws of special devices (LawCandidate::is_special), each by itself, best first. Omitted are refuted ones, and
 /// those of which a parameter that cannot be absent is at the limit of its range: a rubber without Mullins effect is

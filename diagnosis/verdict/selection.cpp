@@ -75,6 +75,16 @@ bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcom
   return false;
 }
 
+/// A law in the place of all that was found.
+void put_in_place(Candidate law, double probability, Selection& selection, Growth& growth) {
+  growth = {.fit = law.fit, .accepted = {{law.type, probability}}};
+  std::erase_if(selection.library, [&](const Candidate& candidate) { return candidate.type == law.type; });
+  for (Candidate& other : selection.library) other.probability *= 1.0 - probability;
+  law.probability = probability;
+  selection.library.insert(selection.library.begin(), std::move(law));
+  selection.alike.clear();
+}
+
 /// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
 /// itself. Nothing is looked for beside it: what it leaves is told as left.
 void try_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
@@ -86,12 +96,27 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   std::vector<double> scores = scores_of(laws);
   scores.push_back(before);
   const double probability = softmax(scores).front();
-  Candidate& law = laws.front();
-  growth = {.fit = law.fit, .accepted = {{law.type, probability}}};
-  for (Candidate& other : selection.library) other.probability *= 1.0 - probability;
-  law.probability = probability;
-  selection.library.insert(selection.library.begin(), std::move(law));
-  selection.alike.clear();
+  put_in_place(std::move(laws.front()), probability, selection, growth);
+}
+
+/// Where what was found leaves more than a part allows: the best law of those that leave a part at most, and predict
+/// better than what was found. Under a large gap that no simple law explains, few samples count as independent of each
+/// other, and the numbers of a detailed law cost more than it can gain: what it leaves of blocks that were left out
+/// tells more. Nothing is looked for beside it.
+void try_all_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                  const VerdictPolicy& policy, Selection& selection, Growth& growth) {
+  const GapEnergy left = gap_energy(problem, growth.fit);
+  const double part = policy.partial_leaves * gap_energy(problem, selection.by_numbers).excess();
+  if (!left.is_clear() || left.excess() <= part) return;
+  std::vector<Candidate> laws = fit_all_laws(problem, coarse, selection.library);
+  const double before = std::max(held_out_score(problem, growth.fit),
+                                 held_out_score(problem, selection.baseline) + decisive_gain(problem));
+  std::erase_if(laws, [&](const Candidate& law) {
+    return law.held_out <= before || gap_energy(problem, law.fit).excess() > part;
+  });
+  if (laws.empty()) return;
+  const double probability = softmax(scores_of(laws)).front();
+  put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
 /// Effects that leave more of what the numbers of the model leave than a part allows, and more than the floor, are
@@ -163,6 +188,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   }
   look_again(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_special_laws(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
+  try_all_laws(problem, coarse, policy, selection, growth);
   keep_what_tells(problem, policy, selection, growth);
   if (growth.fit.effects.empty()) return selection;
   // Of what was chosen at the lower rate, the full rate may leave nothing.

@@ -72,6 +72,19 @@ TEST(HeldOutScore, EachBlockThatIsLeftOutCountsForOneSample) {
               0.5 * 100.0 * std::log(allowed(nothing) / allowed(found)), 1e-6);
 }
 
+/// As few as there are blocks of 12 s, or of white noise all: half their logarithm, at most what thirty seconds cost.
+TEST(HeldOutScore, ParameterCostsHalfTheLogarithmOfTheSamples) {
+  IdentificationProblem problem = problem_of(made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); }));
+  for (FitSegment& fit : problem.segments) fit.is_suspect = fit.segment.to == Channel::measured_force;
+  FitSegment& force = problem.segments.back();
+  force.independent = 1.0;
+  EXPECT_DOUBLE_EQ(parameter_cost(problem), 0.5 * std::log(11.0)) << "each block counts for one";
+  force.independent = 60.0;
+  EXPECT_DOUBLE_EQ(parameter_cost(problem), 0.5 * std::log(60.0));
+  force.independent = 1e4;
+  EXPECT_DOUBLE_EQ(parameter_cost(problem), tuning::kParameterPrior);
+}
+
 TEST(FitEffects, RemovesAtMostTheExistingAmount) {
   const EffectType* const damping = find_effect(specimen, "viscous_damping");
   const auto found = [&](double real_n_s_per_m, double known_n_s_per_m) {
