@@ -209,11 +209,13 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   return predicted;
 }
 
-Segment with_noise_again(const Segment& segment, double times) {
+Segment with_noise(const Segment& segment, const std::vector<Motion>& noise, double times) {
   Segment noisy = segment;
-  noisy.input = sum(segment.input, segment.noise, times);
+  noisy.input = sum(segment.input, noise, times);
   // What a prediction does not read.
-  for (std::vector<Motion>* unread : {&noisy.noise, &noisy.narrow_input, &noisy.narrow_noise}) *unread = {};
+  for (std::vector<Motion>* unread : {&noisy.noise, &noisy.told_noise, &noisy.narrow_input, &noisy.narrow_noise}) {
+    *unread = {};
+  }
   noisy.smoothing_errors = {};
   return noisy;
 }
@@ -231,7 +233,7 @@ InputErrors input_errors(const SiteModel& model, const Segment& segment) {
   };
   const std::vector<double> wide = predict(model, segment);
   InputErrors errors;
-  errors.of_noise = change(predict(model, with_noise_again(segment)), wide);
+  errors.of_noise = change(predict(model, with_noise(segment, segment.noise, 1.0)), wide);
   if (segment.narrow_input.empty()) return errors;
   const std::vector<double> narrow = predicted(segment.narrow_input);
   errors.of_window = change(narrow, wide);

@@ -392,8 +392,12 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   }
   // What a coarse converter has wrong follows from the motion, and has no other sign.
   if (!errors.of_noise.empty() && !(fit.segment.input_step > 0.0)) {
+    // A draw is another noise than that in the recording; what is told is that itself, and is taken off.
+    const std::vector<Motion>& told = fit.segment.told_noise;
     fit.noisy = std::make_shared<const NoisySegments>(
-        NoisySegments{with_noise_again(fit.segment), with_noise_again(fit.segment, -1.0)});
+        told.empty() ? NoisySegments{with_noise(fit.segment, fit.segment.noise, 0.5),
+                                     with_noise(fit.segment, fit.segment.noise, -0.5)}
+                     : NoisySegments{fit.segment, with_noise(fit.segment, told, -1.0)});
     fit.noise_of_input = noise_of_input(problem, fit, {});
   }
   fit.block_begins = blocks_of(fit);
@@ -570,8 +574,8 @@ double noise_of_input(const IdentificationProblem& problem, const FitSegment& se
                       std::span<const EffectSetting> added) {
   if (segment.noisy == nullptr) return 0.0;
   problem.progress.alive();
-  const Eigen::VectorXd noise = 0.5 * (segment.average(predict(problem.model, segment.noisy->with, added)) -
-                                       segment.average(predict(problem.model, segment.noisy->against, added)));
+  const Eigen::VectorXd noise = segment.average(predict(problem.model, segment.noisy->with, added)) -
+                                segment.average(predict(problem.model, segment.noisy->without, added));
   return noise.squaredNorm() / static_cast<double>(noise.size());
 }
 

@@ -54,10 +54,10 @@ struct FreeNumbers {
   double resolved = 1.0;       // over that, what noise leaves of doubt in it
 };
 
-/// A segment with a draw of the noise of its input once more in it, and taken off.
+/// A segment whose inputs differ by the noise of the recorded one.
 struct NoisySegments {
   Segment with;
-  Segment against;
+  Segment without;
 };
 
 /// A segment for fits: averaged over `averaged` neighbouring samples, which keeps the frequencies that a
@@ -159,9 +159,9 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                                       std::span<const EffectSetting> added);
 
-/// What noise of the input does to that prediction, to first order [mean square]. A damping makes much of it, and a lag
-/// takes it away: neither says anything about them. What noise does alike whatever its sign is none: a loop that it
-/// narrows.
+/// What noise of the input does to that prediction [mean square]: that which another channel tells, or a draw of white
+/// noise, to first order. A damping makes much of it, and a lag takes it away: neither says anything about them. What
+/// drawn noise does alike whatever its sign is none: a loop that it narrows.
 [[nodiscard]] double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,
                                     std::span<const EffectSetting> added);
 

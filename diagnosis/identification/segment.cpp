@@ -57,6 +57,7 @@ std::vector<double> input_of(const Segment& segment, const DofRecording& dof) {
 
 /// Smooths the measured displacement, and also over half the window: the difference shows what smoothing removes.
 void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
+  segment.half_width = half_width;
   const LocalPolynomial polynomial{half_width, segment.period_s};
   segment.input = polynomial.motion(displacement_m);
   const std::vector<double> error = drawn_error(segment.input, segment.input_noise, segment.input_step);
@@ -190,13 +191,19 @@ bool Segment::is_reference_of(const EffectType& effect) const noexcept {
   return can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
 
+std::vector<Motion> motion_of_error(const Segment& segment, std::span<const double> error) {
+  return smooth_motion(FlatSmoother{segment.smoothed_by},
+                       LocalPolynomial{segment.half_width, segment.period_s}.motion(error));
+}
+
 Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation) {
   const FlatSmoother smoother{deviation};
   const LocalPolynomial narrowest{LocalPolynomial::kHalfWidthMin, segment.period_s};
   Segment result = segment;
+  result.half_width = LocalPolynomial::kHalfWidthMin;
+  result.smoothed_by = deviation;
   result.input = smooth_motion(smoother, narrowest.motion(input_of(segment, dof)));
-  const std::vector<double> error = drawn_error(result.input, segment.input_noise, segment.input_step);
-  result.noise = smooth_motion(smoother, narrowest.motion(error));
+  result.noise = motion_of_error(result, drawn_error(result.input, segment.input_noise, segment.input_step));
   result.narrow_input.clear();
   result.narrow_noise.clear();
   result.inputs = smooth_inputs(smoother, segment.inputs);
@@ -224,6 +231,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
   result.input = every(segment.input);
   result.load_n = every(segment.load_n);
   result.noise = every(segment.noise);
+  result.told_noise = every(segment.told_noise);
   result.narrow_input = every(segment.narrow_input);
   result.narrow_noise = every(segment.narrow_noise);
   result.inputs.values.clear();

@@ -51,7 +51,13 @@ struct Segment {
   std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
   double input_step = 0.0;       // of the converter of the sensor [m]; 0: none found
-  std::vector<Motion> noise;     // a draw of the noise that `input` still has; empty: commands have none
+  std::vector<Motion> noise;     // a draw of the white noise that `input` still has; empty: commands have none
+  // The noise that `input` still has as another channel tells it, coloured noise and hum with it; empty: none does.
+  std::vector<Motion> told_noise;
+  // How `input` was derived from readings: the window of the polynomial and the weights behind it, see
+  // smoothed_alike(); 0: none.
+  std::size_t half_width = 0;
+  double smoothed_by = 0.0;
   // The same smoothed over half the window; empty where there is no narrower one.
   std::vector<Motion> narrow_input;
   std::vector<Motion> narrow_noise;
@@ -120,9 +126,12 @@ struct InputErrors {
 };
 [[nodiscard]] InputErrors input_errors(const SiteModel& model, const Segment& segment);
 
-/// The segment with Segment::noise, a draw of the noise that its input has, once more in it.
+/// The segment with a noise of its motion added to its input.
 /// @param times   as large.
-[[nodiscard]] Segment with_noise_again(const Segment& segment, double times = 1.0);
+[[nodiscard]] Segment with_noise(const Segment& segment, const std::vector<Motion>& noise, double times);
+
+/// The motion that readings of this error would add to the input of the segment.
+[[nodiscard]] std::vector<Motion> motion_of_error(const Segment& segment, std::span<const double> error);
 
 /// What the prediction of a force changes by where the motion alone is smoothed, just as far as it helps: until it is
 /// about as near to the recorded force as it gets, beside a spring and a damper that the model may lack. So much the

@@ -28,7 +28,7 @@ struct Stage {
 /// judged: what a channel names of the displacement sensor also changes the force, and a further effect earns nothing
 /// by what is explained already.
 /// @param whole      the problem of all segments.
-[[nodiscard]] std::vector<Stage> judge_stages(const SiteModel& model, const std::vector<Segment>& segments,
+[[nodiscard]] std::vector<Stage> judge_stages(const SiteModel& model, std::vector<Segment> segments,
                                               const IdentificationProblem& whole, const VerdictPolicy& policy,
                                               const PartProgress& progress);
 

@@ -153,5 +153,12 @@ TEST(OpenedCase, SaturationThatOneBlockAloneTellsIsFound) {
   EXPECT_THAT(causes_of_case(1393686318, 17), ElementsAre("force_sensor.saturation"));
 }
 
+/// The transducer's noise is coloured, and a damping makes several times as much of it as of white noise: a relaxation
+/// and a fractional damping left less.
+TEST(OpenedCase, DamperIsNamedBesideColouredNoiseOfTheMotion) {
+  EXPECT_THAT(causes_of_case(4105755390, 273), ElementsAre("specimen.viscous_damping"));
+  EXPECT_THAT(causes_of_case(4105755390, 218), ElementsAre("specimen.viscous_damping"));
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/problem.hpp"
+#include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// The noise of a measured displacement goes through everything that a candidate makes of the motion: a damping makes
@@ -92,6 +94,48 @@ TEST(NoiseOfInput, IsTakenOffWhatIsLeft) {
   EXPECT_DOUBLE_EQ(left_with(4.0), 1.0);
   EXPECT_DOUBLE_EQ(left_with(9.0),
                    0.5);  // 5 are left where the noise would be 10: half of it, and the model's own stays
+}
+
+TEST(NoiseOfInput, ColouredNoiseIsTakenOffWhereItIsTold) {
+  const std::vector<double> noise = made_noise({0.95, 0.0}, 6000, 1e-4, kSitePeriod_s, 1);
+  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
+  constexpr double kDamping_n_s_per_m = 5.0e4;
+  const Recording recording =
+      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
+                     [](double t) {
+                       return kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t);
+                     },
+                     kForceNoise_n);
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
+  const auto left_of_noise = [&] {
+    const auto problem = make_problem(made_model(), segments);
+    const FitSegment fit = of_force(problem);
+    const double of_spring = std::pow(kMadeStiffness_n_per_m, 2) * fit.average(noise).squaredNorm() /
+                             static_cast<double>(fit.measured.size());
+    return fit_effects(problem, {damping}, true).segments.back().left(fit) / of_spring;
+  };
+  EXPECT_GT(left_of_noise(), 4.0);  // control: of white noise of that level
+  segments.back().told_noise = motion_of_error(segments.back(), noise);
+  // The damping is fitted to a motion with noise, and comes out a little too small.
+  EXPECT_NEAR(left_of_noise(), 1.0, 0.1);
+}
+
+TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {
+  const Recording recording =
+      with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const DofRecording& dof = recording.dofs[0];
+  const std::vector<double>& readings = dof.of(Channel::measured_displacement);
+  const Segment plain = segments_of(recording, 0, 0).back();
+  for (const Segment& segment : {plain, smoothed_alike(plain, dof, 5.0)}) {
+    const std::vector<Motion> motion = motion_of_error(segment, readings);
+    ASSERT_EQ(motion.size(), segment.input.size());
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      ASSERT_EQ(motion[i].displacement_m, segment.input[i].displacement_m);
+      ASSERT_EQ(motion[i].velocity_m_per_s, segment.input[i].velocity_m_per_s);
+      ASSERT_EQ(motion[i].acceleration_m_per_s2, segment.input[i].acceleration_m_per_s2);
+    }
+  }
 }
 
 }  // namespace
