@@ -366,8 +366,6 @@ inline constexpr double kHardlyLeft = 0.01;
 /// Share of the output [rms over rms] by which a number of the model is off [standard deviation]: load cells,
 /// displacement transducers and measured stiffnesses are rarely known to better than a hundredth or two.
 inline constexpr double kNumbersWithin = 0.025;
-/// Share of the gap [variance] on recordings not fitted that a cause has to be able to remove.
-inline constexpr double kCarriesOver = 0.5;
 /// A cause that changes a held-out prediction by less than this share of the floor does not act there. Example: a limit
 /// that is not reached.
 inline constexpr double kCauseActs = 0.1;

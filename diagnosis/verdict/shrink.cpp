@@ -131,13 +131,13 @@ bool is_worse(const Shrink& held_out) {
 
 namespace {
 
-/// Whether the causes act, but certainly leave most of the gap, or more of its explainable part than is accepted; or
-/// make it larger, however uncertain the gap is.
+/// Whether the causes act, but certainly leave more of what can be explained of the gap than is accepted; or make it
+/// larger, however uncertain the gap is.
 bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
   if (is_worse(held_out)) return true;
   if (!held_out.ci95 || !(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return false;
   const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);
-  return held_out.ci95->high < std::max(tuning::kCarriesOver, (1.0 - policy.partial_leaves) * explainable);
+  return held_out.ci95->high < (1.0 - policy.partial_leaves) * explainable;
 }
 
 /// What was named leaves, on recordings that were not fitted, more than a name allows.

@@ -31,6 +31,8 @@ TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
     EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.72})), verdict) << "it may well carry over";
     EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65})), Verdict::unknown) << "of a gap ten times its floor";
     EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65}, 0.018)), verdict) << "no more can be explained";
+    EXPECT_EQ(carried_over(verdict, removing({0.29, 0.43}, 0.0135)), verdict) << "nor here, less than a half";
+    EXPECT_EQ(carried_over(verdict, removing({0.05, 0.25}, 0.0135)), Verdict::none) << "of 45 % that can";
     EXPECT_EQ(carried_over(verdict, removing({0.97, 0.99})), verdict);
     EXPECT_EQ(carried_over(verdict, removing({-0.01, 0.01}, 0.1, 0.0005)), verdict)
         << "a stroke limit that is not reached there";
