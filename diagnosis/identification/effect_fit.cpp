@@ -515,16 +515,41 @@ std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effect
 
 enum class Look { from_start, everywhere };
 
+/// Of effects that are known, in the search.
+Eigen::VectorXd places_of(const SearchPlan& plan, const std::vector<EffectSetting>& effects) {
+  Eigen::VectorXd places(static_cast<Eigen::Index>(plan.searched.size()));
+  for (Eigen::Index i = 0; i < places.size(); ++i) {
+    const SearchedParameter& searched = plan.searched[static_cast<std::size_t>(i)];
+    places[i] = searched.place_of(effects[searched.effect].values[searched.parameter]);
+  }
+  return places;
+}
+
+/// Where a search of all parameters begins: at the best of those alone that a scenario has to give, where there are
+/// others. A narrow valley of one parameter is found by few points along it, and by hardly any in a plane. Empty where
+/// nothing is gained.
+Eigen::VectorXd simplest_first(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                               const SearchPlan& plan, bool with_nuisance) {
+  const VariableProjection projection{
+      problem, plan_search(problem, effects, std::vector<Freedom>(effects.size(), Freedom::required)), with_nuisance};
+  const std::size_t count = projection.plan().searched.size();
+  if (count == 0 || count == plan.searched.size()) return {};
+  const Eigen::VectorXd places = search_best(projection, {}, starts_for(static_cast<Eigen::Index>(count)));
+  const std::vector<EffectSetting> found = projection.settings(places, projection.solve(places).coefficients);
+  return places_of(plan, found);
+}
+
 /// @param start   first point of the search; empty: none.
 FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance,
                     const std::vector<Freedom>& freedoms) {
   const VariableProjection projection{problem, plan_search(problem, effects, freedoms), with_nuisance};
   const SearchPlan& plan = projection.plan();
-  Eigen::VectorXd first(start.empty() ? 0 : static_cast<Eigen::Index>(plan.searched.size()));
-  for (Eigen::Index i = 0; i < first.size(); ++i) {
-    const SearchedParameter& searched = plan.searched[static_cast<std::size_t>(i)];
-    first[i] = searched.place_of(start[searched.effect].values[searched.parameter]);
+  Eigen::VectorXd first;
+  if (!start.empty()) {
+    first = places_of(plan, start);
+  } else if (look == Look::everywhere && freedoms.empty()) {
+    first = simplest_first(problem, effects, plan, with_nuisance);
   }
   const int starts = look == Look::everywhere ? starts_for(static_cast<Eigen::Index>(plan.searched.size())) : 0;
   const Eigen::VectorXd places = search_best(projection, first, starts);
