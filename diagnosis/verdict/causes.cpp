@@ -342,6 +342,10 @@ void settle_set(report::DiagnosisReport& report) {
     if (cause.is_indistinguishable && cause.share == 0.0) cause.is_cause = false;
   }
   put_causes_first(report.ranking);
+  // What is certain comes before what is chosen of several.
+  const auto alternatives = std::ranges::find_if_not(report.ranking, &report::RankedCause::is_cause);
+  std::stable_partition(report.ranking.begin(), alternatives,
+                        [](const report::RankedCause& cause) { return !cause.is_indistinguishable; });
 }
 
 Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapParts& parts) {

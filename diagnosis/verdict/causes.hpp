@@ -59,7 +59,7 @@ void settle_corrections(std::span<Judgement* const> judgements);
 void put_causes_first(std::vector<report::RankedCause>& ranking);
 
 /// A set is the verdict on the whole only where it is in doubt which effect has the largest share. Beside a cause that
-/// is certain, the effects that cannot be told from a smaller one are alternatives.
+/// is certain, the effects that cannot be told from a smaller one are alternatives, and that one comes last.
 void settle_set(report::DiagnosisReport& report);
 
 /// Multiplies the share of every interface by this factor.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
@@ -85,6 +87,17 @@ TEST(SettleSet, CertainCauseWithTheLargestShareIsNamed) {
   EXPECT_TRUE(report.ranking[1].is_cause) << "it was chosen";
   EXPECT_FALSE(report.ranking[2].is_cause);
   EXPECT_TRUE(report.ranking[2].is_indistinguishable) << "still told as an alternative";
+}
+
+TEST(SettleSet, CertainCausesComeBeforeOneChosenOfSeveral) {
+  report::DiagnosisReport report;
+  report.verdict = Verdict::set;
+  report.ranking = {cause_with("friction", 0.7, false), cause_with("gain", 0.2, true), cause_with("gap", 0.1, false),
+                    cause_with("compliance", 0.0, true)};
+  settle_set(report);
+  std::vector<std::string> effects;
+  for (const report::RankedCause& cause : report.ranking) effects.push_back(cause.effect);
+  EXPECT_THAT(effects, testing::ElementsAre("friction", "gap", "gain", "compliance"));
 }
 
 TEST(SettleSet, DoubtAboutTheLargestShareStaysASet) {  // control
