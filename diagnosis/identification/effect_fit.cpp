@@ -526,10 +526,11 @@ Eigen::VectorXd places_of(const SearchPlan& plan, const std::vector<EffectSettin
 }
 
 /// Where a search of all parameters begins: at the best of those alone that a scenario has to give, where there are
-/// others. A narrow valley of one parameter is found by few points along it, and by hardly any in a plane. Empty where
-/// nothing is gained.
+/// others. The size of an effect that is not solved for lies in a narrow valley, which a few points along it meet, and
+/// hardly any in a plane. Empty where nothing is gained.
 Eigen::VectorXd simplest_first(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                                const SearchPlan& plan, bool with_nuisance) {
+  if (!plan.linear.empty()) return {};
   const VariableProjection projection{
       problem, plan_search(problem, effects, std::vector<Freedom>(effects.size(), Freedom::required)), with_nuisance};
   const std::size_t count = projection.plan().searched.size();

@@ -61,8 +61,8 @@ struct FitOutcome {
 
 /// Fits `effects` together to every segment they change, in free simulation. Linear parameters are solved by
 /// least squares (variable projection; Golub and Pereyra, 1973), the others by a bounded
-/// trust-region search (Ceres) from the best of several starts, one of them the best of the parameters alone that a
-/// scenario has to give. Deterministic.
+/// trust-region search (Ceres) from the best of several starts, where the size is searched one of them the best of the
+/// parameters alone that a scenario has to give. Deterministic.
 ///
 /// Held-out blocks: the residual of each block when it is not fitted, the fit moved by one Gauss-Newton step of the
 /// other blocks and the block predicted again in free simulation. This is the fit itself where parameters are linear.
