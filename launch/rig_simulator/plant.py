@@ -1,6 +1,7 @@
 """The plant of the scenario's `type: simulated`: a transfer system and a law for each actuator, one step per
-control period. The sections have the keys of docs/scenario.md. Commands are linear between steps, and every
-transfer system is integrated exactly for such commands, so the two programs have no discretisation error."""
+control period. The sections have the keys of docs/scenario.md. Commands are linear between steps, and a transfer system
+that moves is integrated exactly for such commands; a mere delay takes them as smooth, by the same cubic as the site. So
+the two programs have no discretisation error."""
 
 import cmath
 import math
@@ -14,7 +15,7 @@ class DelayLine:
         delay_ns, period_ns = round(delay_s * 1e9), round(period_s * 1e9)
         self._whole = delay_ns // period_ns
         self.fraction = (delay_ns % period_ns) / period_ns
-        self._samples = [0.0] * (self._whole + 2)  # newest first
+        self._samples = [0.0] * (self._whole + 3)  # newest first
 
     def push(self, value):
         self._samples.insert(0, value)
@@ -22,6 +23,16 @@ class DelayLine:
 
     def value(self):
         return (1.0 - self.fraction) * self._samples[self._whole] + self.fraction * self.corner()
+
+    def smooth_value(self):
+        """By the cubic through two samples on either side; within the first period, the parabola through older ones."""
+        f, at = self.fraction, self._whole
+        a, b, older = self._samples[at : at + 3]
+        if at == 0:
+            return 0.5 * (1.0 - f) * (2.0 - f) * a + f * (2.0 - f) * b - 0.5 * f * (1.0 - f) * older
+        newer = self._samples[at - 1]
+        inside = 0.5 * (1.0 - f) * (2.0 - f) * a + 0.5 * f * (2.0 - f) * b
+        return (1.0 + f) * inside - f * (1.0 - f) / 6.0 * ((2.0 - f) * newer + (1.0 + f) * older)
 
     def corner(self):
         """The corner of the command between the last two results of value()."""
@@ -34,7 +45,7 @@ class Delay:
 
     def step(self, command_m):
         self._line.push(command_m)
-        return self._line.value()
+        return self._line.smooth_value()
 
 
 class SecondOrder:

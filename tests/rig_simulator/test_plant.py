@@ -54,9 +54,26 @@ class TransferSystems(unittest.TestCase):
                     for sample, x in zip(samples, expected):
                         self.assertAlmostEqual(axis.step(sample), x, delta=1e-11)
 
-    def test_a_delay_of_a_broken_number_of_periods_lies_between(self):
-        axis = Delay(0.0025, self.PERIOD_S)
-        self.assertEqual([axis.step(m) for m in (1.0, 2.0, 4.0, 8.0, 8.0)], [0.0, 0.0, 0.5, 1.5, 3.0])
+    def test_a_delay_of_a_broken_number_of_periods_follows_a_cubic(self):
+        def cubic(t):
+            return 1.0 + t * (2.0 + t * (-3.0 + 0.5 * t))
+
+        axis = Delay(0.00225, self.PERIOD_S)
+        for i in range(10):
+            measured = axis.step(cubic(i))
+            if i > 3:
+                self.assertAlmostEqual(measured, cubic(i - 2.25), delta=1e-12)
+
+    def test_a_delay_within_a_period_follows_a_parabola(self):
+        axis = Delay(0.00025, self.PERIOD_S)
+        for i in range(10):
+            measured = axis.step(1.0 + 2.0 * i - 3.0 * i * i)
+            if i > 1:
+                self.assertAlmostEqual(measured, 1.0 + 2.0 * (i - 0.25) - 3.0 * (i - 0.25) ** 2, delta=1e-12)
+
+    def test_a_delay_of_whole_periods_is_exact(self):
+        axis = Delay(0.002, self.PERIOD_S)
+        self.assertEqual([axis.step(m) for m in (1.0, 2.0, 4.0, 8.0)], [0.0, 0.0, 1.0, 2.0])
 
 
 class Laws(unittest.TestCase):
