@@ -49,12 +49,13 @@ TEST(FitEffects, NarrowValleyIsFoundBesideAnOptionalParameter) {
   for (const double clearance_m : {1.7e-4, 2.5e-4, 3.7e-4, 5.3e-4, 8.1e-4}) {
     SiteModel model = made_model();
     model.make_law = [] {
-      return std::make_unique<BoucWen>(
-          BoucWen::Parameters{.stiffness_n_per_m = 1e4, .alpha = 0.25, .n = 1.0, .gamma_per_m = 60.0, .beta_per_m = 170.0});
+      return std::make_unique<BoucWen>(BoucWen::Parameters{
+          .stiffness_n_per_m = 1e4, .alpha = 0.25, .n = 1.0, .gamma_per_m = 60.0, .beta_per_m = 170.0});
     };
     SiteModel real = model;
     real.effects.push_back({find_effect(specimen, "backlash"), {clearance_m, 1.0}});
-    Recording recording = made_recording(made_motion_m, [](double) { return 0.0; }, 0.01);
+    Recording recording = made_recording(
+        made_motion_m, [](double) { return 0.0; }, 0.01);
     recording.dofs[0].of(Channel::measured_force) = predict(real, segments_of(recording, 0, 0).back());
     const auto problem = make_problem(model, segments_of(recording, 0, 0));
     const FitOutcome fit = fit_effects(problem, {find_effect(specimen, "backlash")}, false);
