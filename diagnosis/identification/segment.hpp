@@ -51,7 +51,8 @@ struct Segment {
   std::vector<double> measured;  // `to` as recorded, or smoothed
   double input_noise = 0.0;      // white noise that was smoothed [m]
   double input_step = 0.0;       // of the converter of the sensor [m]; 0: none found
-  std::vector<Motion> noise;     // a draw of the white noise that `input` still has; empty: commands have none
+  // A draw of the noise that `input` still has, white or of coarse steps; empty: commands have none.
+  std::vector<Motion> noise;
   // The noise that `input` still has as another channel tells it, coloured noise and hum with it; empty: none does.
   std::vector<Motion> told_noise;
   // How `input` was derived from readings: the window of the polynomial and the weights behind it, see

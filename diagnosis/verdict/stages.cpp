@@ -12,6 +12,7 @@
 #include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/shrink.hpp"
+#include "diagnosis/verdict/told_noise.hpp"
 
 namespace hybridtest {
 
@@ -209,36 +210,6 @@ void find_lag_of_transducer(const IdentificationProblem& whole, const VerdictPol
 
 }  // namespace
 
-namespace {
-
-/// What an actuator leaves of a measured displacement, where that is no more than noise, is the noise of the readings
-/// that the specimen's prediction starts from: coloured noise and hum with it. Less what the force answers, which is
-/// motion.
-/// @param completed   the model with what was found there.
-/// @return whether any segment was told.
-bool tell_noise(const Stage& stage, const SiteModel& completed, std::vector<Segment>& segments) {
-  bool is_told = false;
-  if (gap_energy(stage.problem, stage.selection.chosen).is_clear()) return is_told;
-  for (const FitSegment& fit : stage.problem.segments) {
-    if (fit.segment.to != Channel::measured_displacement || fit.segment.is_quasi_static) continue;
-    const auto of_specimen = std::ranges::find_if(segments, [&](const Segment& segment) {
-      return segment.from == Channel::measured_displacement && segment.recording == fit.segment.recording &&
-             segment.input.size() == fit.segment.measured.size() && !(segment.input_step > 0.0);
-    });
-    if (of_specimen == segments.end()) continue;
-    std::vector<double> error = predict(completed, fit.segment);
-    for (std::size_t i = 0; i < error.size(); ++i) error[i] = fit.segment.measured[i] - error[i];
-    const double left = std::sqrt(fit.average(error).squaredNorm() / static_cast<double>(fit.measured.size()));
-    if (!(left > 0.0)) continue;
-    for (double& value : error) value *= std::min(1.0, fit.floor / left);
-    of_specimen->told_noise = motion_of_error(*of_specimen, error);
-    is_told = true;
-  }
-  return is_told;
-}
-
-}  // namespace
-
 std::vector<Stage> judge_stages(const SiteModel& model, std::vector<Segment> segments,
                                 const IdentificationProblem& whole, const VerdictPolicy& policy,
                                 const PartProgress& progress) {
@@ -276,7 +247,7 @@ std::vector<Stage> judge_stages(const SiteModel& model, std::vector<Segment> seg
           found.push_back({chosen.effects[j], chosen.covariances[j]});
         }
       }
-      const bool is_noise_told = tell_noise(stage, corrected, segments);
+      const bool is_noise_told = tell_noise(stage.problem, chosen, corrected, segments);
       if (stage.changes_model() || is_noise_told) {
         fine = make_problem(corrected, segments, found, whole.workers);
         coarse = at_lower_rate(corrected, found);

@@ -7,6 +7,7 @@
 
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/problem.hpp"
+#include "diagnosis/verdict/told_noise.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -136,6 +137,34 @@ TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {
       ASSERT_EQ(motion[i].acceleration_m_per_s2, segment.input[i].acceleration_m_per_s2);
     }
   }
+}
+
+TEST(ToldNoise, IsWhatAnExplainedActuatorLeavesAndNothingElse) {
+  const std::vector<double> noise = made_noise({0.95, 0.0}, 6000, 1e-4, kSitePeriod_s, 1);
+  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
+  const Recording recording =
+      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
+                     [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); }, kForceNoise_n);
+  SiteModel model = made_model();
+  const auto told_by = [&](Channel channel) {
+    std::vector<Segment> segments = segments_of(recording, 0, 0);
+    IdentificationProblem problem = judged_at(make_problem(model, segments), channel);
+    settle_noise(problem, fit_nothing(problem, false));
+    const bool is_told = tell_noise(problem, fit_nothing(problem, false), model, segments);
+    EXPECT_EQ(is_told, !segments.back().told_noise.empty());
+    return segments.back();
+  };
+  const auto size_m = [](const std::vector<Motion>& motion) {
+    double squares = 0.0;
+    for (const Motion& one : motion) squares += one.displacement_m * one.displacement_m;
+    return std::sqrt(squares / static_cast<double>(motion.size()));
+  };
+  const Segment told = told_by(Channel::measured_displacement);
+  // The floor, which it is brought to, is that of the noise within a tenth.
+  EXPECT_NEAR(size_m(told.told_noise), size_m(motion_of_error(told, noise)), 0.1 * size_m(told.told_noise));
+  EXPECT_TRUE(told_by(Channel::measured_force).told_noise.empty()) << "the actuator was not asked about there";
+  model.effects.push_back({find_effect(EffectInterface::transfer_system, "gain"), {0.1}});
+  EXPECT_TRUE(told_by(Channel::measured_displacement).told_noise.empty()) << "what is left is no noise";
 }
 
 }  // namespace
