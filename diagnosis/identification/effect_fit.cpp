@@ -580,24 +580,6 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
   return outcome;
 }
 
-/// Sums of the weighted squares of the touched segments.
-struct Squares {
-  double fitted = 0.0;
-  double held_out = 0.0;
-};
-
-Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outcome) {
-  Squares sum;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    if (!outcome.segments[i].touched) continue;
-    const FitSegment& fit = problem.segments[i];
-    const double weight = fit.weight * fit.weight * static_cast<double>(fit.measured.size());
-    sum.fitted += weight * outcome.segments[i].mean_square;
-    sum.held_out += weight * outcome.segments[i].held_out_mean_square(fit);
-  }
-  return sum;
-}
-
 /// Whether an effect that the model has may as well be of no size; then its shape means nothing.
 bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const EffectType& type = *fit.effects[position].type;
@@ -697,6 +679,18 @@ double SegmentResult::left(const FitSegment& segment) const {
   const double noise = segment.noise_of_input + more_noise;
   // With less left than that noise would be, there is less of it.
   return more_noise > 0.0 && all < noise ? all * segment.noise_of_input / noise : all - more_noise;
+}
+
+Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outcome) {
+  Squares sum;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    if (!outcome.segments[i].touched) continue;
+    const FitSegment& fit = problem.segments[i];
+    const double weight = fit.weight * fit.weight * static_cast<double>(fit.measured.size());
+    sum.fitted += weight * outcome.segments[i].mean_square;
+    sum.held_out += weight * outcome.segments[i].held_out_mean_square(fit);
+  }
+  return sum;
 }
 
 FitOutcome fit_effects(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,

@@ -56,6 +56,14 @@ struct FitOutcome {
   std::vector<SegmentResult> segments;  // as in the problem
 };
 
+/// What a fit leaves of the segments that its effects act on: sums of the weighted squares, of blocks that were fitted
+/// and of the same when each was left out.
+struct Squares {
+  double fitted = 0.0;
+  double held_out = 0.0;
+};
+[[nodiscard]] Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outcome);
+
 /// FitOutcome::predicting, widened for normal draws: the normal quantile times a deviation is half of a 95 % interval.
 [[nodiscard]] Eigen::MatrixXd covariance_for_draws(const FitOutcome& fit);
 

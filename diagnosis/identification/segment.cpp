@@ -191,19 +191,18 @@ bool Segment::is_reference_of(const EffectType& effect) const noexcept {
   return can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
 
-std::vector<Motion> motion_of_error(const Segment& segment, std::span<const double> error) {
+std::vector<Motion> motion_of_readings(const Segment& segment, std::span<const double> readings) {
   return smooth_motion(FlatSmoother{segment.smoothed_by},
-                       LocalPolynomial{segment.half_width, segment.period_s}.motion(error));
+                       LocalPolynomial{segment.half_width, segment.period_s}.motion(readings));
 }
 
 Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation) {
   const FlatSmoother smoother{deviation};
-  const LocalPolynomial narrowest{LocalPolynomial::kHalfWidthMin, segment.period_s};
   Segment result = segment;
   result.half_width = LocalPolynomial::kHalfWidthMin;
   result.smoothed_by = deviation;
-  result.input = smooth_motion(smoother, narrowest.motion(input_of(segment, dof)));
-  result.noise = motion_of_error(result, drawn_error(result.input, segment.input_noise, segment.input_step));
+  result.input = motion_of_readings(result, input_of(segment, dof));
+  result.noise = motion_of_readings(result, drawn_error(result.input, segment.input_noise, segment.input_step));
   result.narrow_input.clear();
   result.narrow_noise.clear();
   result.inputs = smooth_inputs(smoother, segment.inputs);

@@ -131,8 +131,8 @@ struct InputErrors {
 /// @param times   as large.
 [[nodiscard]] Segment with_noise(const Segment& segment, const std::vector<Motion>& noise, double times);
 
-/// The motion that readings of this error would add to the input of the segment.
-[[nodiscard]] std::vector<Motion> motion_of_error(const Segment& segment, std::span<const double> error);
+/// The motion that readings, or an error of them, give as an input of the segment: smoothed as its own is.
+[[nodiscard]] std::vector<Motion> motion_of_readings(const Segment& segment, std::span<const double> readings);
 
 /// What the prediction of a force changes by where the motion alone is smoothed, just as far as it helps: until it is
 /// about as near to the recorded force as it gets, beside a spring and a damper that the model may lack. So much the

@@ -441,16 +441,6 @@ bool is_half_told(const Candidate& law) {
 
 namespace {
 
-/// What a fit leaves of the blocks that it was fitted to, in weighted squares.
-double fitted_energy(const IdentificationProblem& problem, const FitOutcome& outcome) {
-  double energy = 0.0;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    const FitSegment& fit = problem.segments[i];
-    energy += fit.weight * fit.weight * static_cast<double>(fit.measured.size()) * outcome.segments[i].mean_square;
-  }
-  return energy;
-}
-
 /// Searched over its whole range, from what is known of the simpler law that it refines.
 std::optional<Candidate> search_law(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                     const LawCandidate& law, const std::vector<Candidate>& library) {
@@ -467,8 +457,8 @@ std::optional<Candidate> search_law(const IdentificationProblem& problem, const 
   for (const std::vector<EffectSetting>& start : starts) {
     std::optional<Candidate> found =
         fit_together(coarse, &law.type, start, law.refines == nullptr ? refit_effects : search_effects);
-    if (found && (!best || fitted_energy(coarse, found->fit) < fitted_energy(coarse, best->fit)))
-      best = std::move(found);
+    if (!found) continue;
+    if (!best || squares_of(coarse, found->fit).fitted < squares_of(coarse, best->fit).fitted) best = std::move(found);
   }
   if (!best) return best;
   return fit_together(problem, &law.type, best->fit.effects, refit_effects);

@@ -28,7 +28,7 @@ bool tell_noise(const IdentificationProblem& problem, const FitOutcome& chosen, 
     const double left = std::sqrt(fit.average(error).squaredNorm() / static_cast<double>(fit.measured.size()));
     if (!(left > 0.0)) continue;
     for (double& value : error) value *= std::min(1.0, fit.floor / left);
-    of_specimen->told_noise = motion_of_error(*of_specimen, error);
+    of_specimen->told_noise = motion_of_readings(*of_specimen, error);
     is_told = true;
   }
   return is_told;

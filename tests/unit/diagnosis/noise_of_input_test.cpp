@@ -117,7 +117,7 @@ TEST(NoiseOfInput, ColouredNoiseIsTakenOffWhereItIsTold) {
     return fit_effects(problem, {damping}, true).segments.back().left(fit) / of_spring;
   };
   EXPECT_GT(left_of_noise(), 4.0);  // control: of white noise of that level
-  segments.back().told_noise = motion_of_error(segments.back(), noise);
+  segments.back().told_noise = motion_of_readings(segments.back(), noise);
   // The damping is fitted to a motion with noise, and comes out a little too small.
   EXPECT_NEAR(left_of_noise(), 1.0, 0.1);
 }
@@ -129,7 +129,7 @@ TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {
   const std::vector<double>& readings = dof.of(Channel::measured_displacement);
   const Segment plain = segments_of(recording, 0, 0).back();
   for (const Segment& segment : {plain, smoothed_alike(plain, dof, 5.0)}) {
-    const std::vector<Motion> motion = motion_of_error(segment, readings);
+    const std::vector<Motion> motion = motion_of_readings(segment, readings);
     ASSERT_EQ(motion.size(), segment.input.size());
     for (std::size_t i = 0; i < motion.size(); ++i) {
       ASSERT_EQ(motion[i].displacement_m, segment.input[i].displacement_m);
@@ -161,7 +161,7 @@ TEST(ToldNoise, IsWhatAnExplainedActuatorLeavesAndNothingElse) {
   };
   const Segment told = told_by(Channel::measured_displacement);
   // The floor, which it is brought to, is that of the noise within a tenth.
-  EXPECT_NEAR(size_m(told.told_noise), size_m(motion_of_error(told, noise)), 0.1 * size_m(told.told_noise));
+  EXPECT_NEAR(size_m(told.told_noise), size_m(motion_of_readings(told, noise)), 0.1 * size_m(told.told_noise));
   EXPECT_TRUE(told_by(Channel::measured_force).told_noise.empty()) << "the actuator was not asked about there";
   model.effects.push_back({find_effect(EffectInterface::transfer_system, "gain"), {0.1}});
   EXPECT_TRUE(told_by(Channel::measured_displacement).told_noise.empty()) << "what is left is no noise";
