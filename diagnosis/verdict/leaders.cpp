@@ -77,6 +77,17 @@ std::optional<Leader> leader_of_numbers(const IdentificationProblem& problem, co
   return Leader{position, {gap_energy(problem, *needed).is_clear() ? all : *needed, {{first->type, 1.0}}}};
 }
 
+/// The best candidate of the library with the numbers that it needs, if it is no number itself and scores higher.
+/// Beside a candidate in the library numbers are free to first order only, and each recording has its own.
+std::optional<Leader> decidedly_better(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                       const Selection& selection, double score) {
+  const Candidate& best = selection.library.front();
+  if (is_number(problem, *best.type) || !best.fit.with_nuisance) return {};
+  Leader leader{0, with_its_numbers(problem, coarse, selection, 0)};
+  if (score_of(problem, leader.growth.fit) <= score) return {};
+  return leader;
+}
+
 /// Candidates from which further effects are grown. The numbers of the model come first: they are expected to be off.
 /// Where nothing is left beside them, an effect that explains the same has to be decidedly better.
 std::vector<Leader> leaders_of(const IdentificationProblem& problem, const IdentificationProblem& coarse,
@@ -84,9 +95,14 @@ std::vector<Leader> leaders_of(const IdentificationProblem& problem, const Ident
   std::vector<Leader> leaders;
   const auto is_enough = [&](const Leader& leader) { return !gap_energy(problem, leader.growth.fit).is_clear(); };
   if (std::optional<Leader> numbers = leader_of_numbers(problem, selection)) {
-    const bool is_first = score_of(problem, numbers->growth.fit) + decisive_gain(problem) > selection.library[0].score;
+    const double enough = score_of(problem, numbers->growth.fit) + decisive_gain(problem);
     leaders.push_back(std::move(*numbers));
-    if (is_first && is_enough(leaders.front())) return leaders;
+    if (enough > selection.library[0].score && is_enough(leaders.front())) {
+      if (std::optional<Leader> better = decidedly_better(problem, coarse, selection, enough)) {
+        leaders = {*std::move(better)};
+      }
+      return leaders;
+    }
   }
   const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < count; ++i) {

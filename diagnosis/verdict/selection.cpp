@@ -119,7 +119,17 @@ void try_all_laws(const IdentificationProblem& problem, const IdentificationProb
   put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
-/// Effects that leave more of what the numbers of the model leave than a part allows, and more than the floor, are
+/// What is left by the numbers of the model that stand beside the effects. Where an effect is in the place of a number,
+/// as a stiffness that falls in the place of one that is wrong, the score has chosen between the two.
+GapEnergy left_by_numbers(const IdentificationProblem& problem, const Selection& selection, const FitOutcome& found) {
+  const FitOutcome& all = selection.by_numbers;
+  std::vector<EffectSetting> beside = all.effects;
+  std::erase_if(beside, [&](const EffectSetting& number) { return !holds(found.effects, number.type); });
+  if (beside.size() == all.effects.size()) return gap_energy(problem, all);
+  return gap_energy(problem, beside.empty() ? selection.baseline : refit_effects(problem, beside, false));
+}
+
+/// Effects that leave more of what the numbers beside them leave than a part allows, and more than the floor, are
 /// dropped: that the numbers are far off is no reason to believe what stands beside them. An effect of the displacement
 /// sensor is chosen by what it explains of the force, too, and stays.
 void keep_what_tells(const IdentificationProblem& problem, const VerdictPolicy& policy, const Selection& selection,
@@ -132,7 +142,7 @@ void keep_what_tells(const IdentificationProblem& problem, const VerdictPolicy& 
   const GapEnergy left = gap_energy(problem, growth.fit);
   if (!left.is_clear() || std::ranges::none_of(effects, is_effect)) return;
   if (std::ranges::any_of(effects, shows_in_the_force)) return;
-  if (left.excess() <= policy.partial_leaves * gap_energy(problem, selection.by_numbers).excess()) return;
+  if (left.excess() <= policy.partial_leaves * left_by_numbers(problem, selection, growth.fit).excess()) return;
   if (std::optional<FitOutcome> numbers = needed_numbers(problem, selection)) growth.fit = std::move(*numbers);
 }
 
