@@ -63,6 +63,14 @@ double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetti
   return most;
 }
 
+/// Whether a chosen effect has rivals. The numbers of the specimen's law go together: with a rival in the place of one
+/// the other has another value, see find_rivals().
+bool is_in_doubt(const std::vector<EffectSetting>& chosen, const Judgement& judgement, std::size_t position) {
+  if (!judgement.rivals) return false;
+  const std::size_t with_rivals = judgement.rivals->chosen;
+  return position == with_rivals || (is_of_law(*chosen[position].type) && is_of_law(*chosen[with_rivals].type));
+}
+
 /// The causes of the verdict first, then the other candidates.
 /// @param part   of the whole explained gap, that this stage explains.
 std::vector<RankedCause> rank(const Stage& stage, double part) {
@@ -85,7 +93,7 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
-      if (judgement.rivals && judgement.rivals->chosen == i) {
+      if (is_in_doubt(selection.chosen.effects, judgement, i)) {
         cause.probability = tuning::kAnswerRight * judgement.rivals->probability;
         cause.is_indistinguishable = true;
       }

@@ -60,7 +60,7 @@ bool may_be_slight(const Eigen::VectorXd& difference, const Eigen::VectorXd& cha
 struct Place {
   const FitOutcome* chosen = nullptr;
   std::size_t position = 0;           // of the effect in it
-  std::vector<EffectSetting> others;  // but for numbers that are slightly off: a rival may need other ones
+  std::vector<EffectSetting> others;  // but for numbers of which a rival may need other values
   Eigen::VectorXd all;                // changes by everything that was chosen
   Eigen::VectorXd alone;              // of them what goes without the effect
   Eigen::VectorXd by_others;
@@ -84,8 +84,14 @@ Place place_in(const IdentificationProblem& problem, const FitOutcome& chosen, s
               .alone = {},
               .by_others = {},
               .by_corrections = {}};
+  const bool is_law = is_of_law(*chosen.effects[position].type);
+  // Numbers that are slightly off; and beside one number of the specimen's law the other one: a load cell's gain in the
+  // place of the strength leaves another stiffness.
+  const auto may_differ = [&](std::size_t i) {
+    return judgement.is_correction(i) || (is_law && is_of_law(*chosen.effects[i].type));
+  };
   for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
-    if (i != position && !judgement.is_correction(i)) place.others.push_back(chosen.effects[i]);
+    if (i != position && !may_differ(i)) place.others.push_back(chosen.effects[i]);
   }
   place.all = changes_of(problem, chosen);
   place.alone = place.all - changes_by(problem, without(chosen.effects, position));
@@ -153,7 +159,7 @@ Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, cons
 }
 
 /// The numbers of the model beside a rival and the other causes are slightly off only, or as they are beside the
-/// effect, and change less than the rival does.
+/// effect, and change less than the rival does, or than those beside the effect.
 bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
   const std::span causes = std::span{fit.effects}.first(1 + place.others.size());
   if (!fit.with_nuisance && causes.size() == fit.effects.size()) return true;
@@ -164,7 +170,7 @@ bool are_slight(const IdentificationProblem& problem, const Place& place, const 
   const Eigen::VectorXd own = by_effects - changes_by(problem, causes.subspan(1));
   const bool is_slight =
       by_numbers.norm() <= within * measured.norm() || is_small(by_numbers - place.by_corrections, place.alone);
-  return is_slight && by_numbers.norm() <= own.norm();
+  return is_slight && by_numbers.norm() <= std::max(own.norm(), place.by_corrections.norm());
 }
 
 /// The difference of two replays is no more than what no model is expected to reproduce.

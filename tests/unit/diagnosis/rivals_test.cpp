@@ -129,15 +129,10 @@ std::vector<Site> drawn_sites() {
   return sites;
 }
 
-/// Of a specimen that is stiffer than its model by what the load cell reads too little, the stiffness seems right and
-/// the strength off; and less stiff by as much beside a strength that is less off by as much, the load cell.
-class GainOrStrength : public testing::TestWithParam<unsigned> {};
-
-TEST_P(GainOrStrength, IsASetWhereTheStiffnessMayBeOffToo) {
-  constexpr double kGain = 0.93;
-  constexpr double kStiffer = 1.0 / 0.965;
-  Random random{GetParam()};
-  Bilinear law{Bilinear::Parameters{kStiffer * kMadeStiffness_n_per_m, kStrength_n, 0.05}};
+/// A specimen whose stiffness and strength are these multiples of the model's, behind a load cell with a gain.
+Recording behind_gain(double gain, double stiffness, double strength, unsigned draw) {
+  Random random{draw};
+  Bilinear law{Bilinear::Parameters{stiffness * kMadeStiffness_n_per_m, strength * kStrength_n, 0.05}};
   Recording recording;
   recording.file = "made.csv";
   recording.sample_period_s = kSitePeriod_s;
@@ -148,11 +143,34 @@ TEST_P(GainOrStrength, IsASetWhereTheStiffnessMayBeOffToo) {
     const double force_n = law.trial(place_m, 0.0);
     law.commit();
     recording.dofs[0].of(Channel::measured_displacement).push_back(place_m + 1e-5 * random.normal());
-    recording.dofs[0].of(Channel::measured_force).push_back(kGain * force_n + 200.0 * random.normal());
+    recording.dofs[0].of(Channel::measured_force).push_back(gain * force_n + 200.0 * random.normal());
   }
-  const report::DiagnosisReport answer = answer_to(recording, that_yields);
+  return recording;
+}
+
+class GainOrStrength : public testing::TestWithParam<unsigned> {};
+
+/// The cell reads too little by what the specimen is stiffer: the stiffness seems right and the strength off; and less
+/// stiff by as much beside a strength that is less off by as much, the load cell.
+TEST_P(GainOrStrength, IsASetWhereTheStiffnessMayBeOffToo) {
+  const report::DiagnosisReport answer = answer_to(behind_gain(0.93, 1.0 / 0.965, 1.0, GetParam()), that_yields);
   EXPECT_EQ(answer.verdict, Verdict::set);
   EXPECT_THAT(members_in(answer), IsSupersetOf({"gain", "strength_error"}));
+}
+
+/// The cell reads too much, and the specimen is a little stiffer besides: both numbers of the law are off by more than
+/// a slight error, or the load cell's gain is, beside a stiffness that is slightly off.
+TEST_P(GainOrStrength, IsASetWhereBothNumbersOfTheLawSeemWrong) {
+  const report::DiagnosisReport answer = answer_to(behind_gain(1.08, 1.03, 1.0, GetParam()), that_yields);
+  EXPECT_EQ(answer.verdict, Verdict::set);
+  EXPECT_THAT(members_in(answer), IsSupersetOf({"gain", "strength_error", "stiffness_error"}));
+}
+
+/// Control: with a gain for the strength the stiffness would have to be off by a fifth.
+TEST_P(GainOrStrength, IsToldWhereTheStiffnessIsOffTheOtherWay) {
+  const report::DiagnosisReport answer = answer_to(behind_gain(1.0, 0.88, 1.1, GetParam()), that_yields);
+  EXPECT_EQ(answer.verdict, Verdict::named);
+  EXPECT_THAT(causes_in(answer), testing::UnorderedElementsAre("stiffness_error", "strength_error"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Drawn, GainOrStrength, testing::Range(1U, 11U));
