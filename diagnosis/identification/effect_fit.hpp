@@ -72,8 +72,7 @@ struct Squares {
 /// trust-region search (Ceres) from the best of several starts, where the size is searched one of them the best of the
 /// parameters alone that a scenario has to give. Deterministic.
 ///
-/// Held-out blocks: the residual of each block when it is not fitted, the fit moved by one Gauss-Newton step of the
-/// other blocks and the block predicted again in free simulation. This is the fit itself where parameters are linear.
+/// What each block leaves when it is not fitted: see hold_out().
 /// @param with_nuisance   leave the segments' slightly wrong model parameters free as well.
 [[nodiscard]] FitOutcome fit_effects(const IdentificationProblem& problem,
                                      const std::vector<const EffectType*>& effects, bool with_nuisance);

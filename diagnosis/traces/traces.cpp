@@ -183,16 +183,19 @@ struct Readings {
     for (const double part : ways) squares += part * part;
     return way * way / squares;
   }
-  [[nodiscard]] double coherence(double steps_in_span) const {
-    std::complex<double> sum;
-    for (std::size_t i = 0; i < values.size(); ++i) sum += std::polar(ways[i], phase(i, steps_in_span));
-    return std::abs(sum) / way;
-  }
+  [[nodiscard]] double coherence(double steps_in_span) const { return coherence_of(ways, way, steps_in_span); }
   /// Each reading counts the same.
   [[nodiscard]] double coherence_of_readings(double steps_in_span) const {
+    const std::vector<double> alike(values.size(), 1.0);
+    return coherence_of(alike, static_cast<double>(values.size()), steps_in_span);
+  }
+
+ private:
+  [[nodiscard]] double coherence_of(const std::vector<double>& weights, double sum_of_weights,
+                                    double steps_in_span) const {
     std::complex<double> sum;
-    for (std::size_t i = 0; i < values.size(); ++i) sum += std::polar(1.0, phase(i, steps_in_span));
-    return std::abs(sum) / static_cast<double>(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) sum += std::polar(weights[i], phase(i, steps_in_span));
+    return std::abs(sum) / sum_of_weights;
   }
   [[nodiscard]] double phase(std::size_t reading, double steps_in_span) const {
     return 2.0 * std::numbers::pi * steps_in_span * (values[reading] - first) / span;

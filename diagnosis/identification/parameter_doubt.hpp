@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/linearisation.hpp"
+#include "diagnosis/identification/search.hpp"
+
+namespace hybridtest {
+
+/// Fills in the parameters of an outcome whose effects are known, and what is not known of them.
+/// @param places, solution, linear   of the fit to all blocks.
+void estimate(const VariableProjection& projection, const IdentificationProblem& problem, const Eigen::VectorXd& places,
+              const Projected& solution, const Linearisation& linear, FitOutcome& outcome);
+
+}  // namespace hybridtest
