@@ -153,8 +153,10 @@ bool Judgement::is_correction(std::size_t chosen) const {
 Judgement judge(const IdentificationProblem& problem, const Selection& selection, const VerdictPolicy& policy) {
   Judgement judgement;
   if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return judgement;
+  // A gap that hardly stands above its floor may be none: it is one only where something explains it.
+  const bool is_clear = stands_above_floor(problem, selection.baseline, tuning::kNearFloor);
   if (selection.chosen.effects.empty()) {
-    if (!stands_above_floor(problem, selection.baseline, tuning::kNearFloor)) return judgement;
+    if (!is_clear) return judgement;
     judgement.verdict = Verdict::unknown;
     judgement.gap_left = 1.0;
     return judgement;
@@ -166,7 +168,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   if (judgement.verdict == Verdict::partial && is_patchwork(problem, selection, total, judgement.gap_left, policy)) {
     judgement.verdict = Verdict::unknown;
   }
-  if (judgement.verdict == Verdict::unknown) return judgement;
+  if (judgement.verdict == Verdict::unknown) return is_clear ? judgement : Judgement{};
   // A set says less than a name, and may leave what hardly matters.
   judgement.may_be_set = judgement.verdict == Verdict::named || judgement.gap_left <= tuning::kHardlyLeft;
   // Where a search ran into its limit, something else may be meant.

@@ -328,5 +328,27 @@ TEST(Refutation, DropsWhatIsRefutedAndKeepsTheOrder) {
   EXPECT_EQ(candidates[1].score, 1.0);
 }
 
+/// The verdict on a gap that is so many floors high, of which an effect was chosen that leaves nearly all.
+report::Verdict verdict_on_gap(double floors) {
+  const auto unrelated_n = [](double t) { return spring_n(t) + 500.0 * std::sin(3.0 * t); };
+  IdentificationProblem problem = problem_of(made_recording(made_motion_m, unrelated_n));
+  Selection selection;
+  for (FitSegment& fit : problem.segments) {
+    if (!fit.is_suspect) continue;
+    const double gap_n = (fit.measured - fit.baseline).norm() / std::sqrt(static_cast<double>(fit.measured.size()));
+    fit.floor = fit.sample_floor = gap_n / floors;
+    fit.weight = 1.0 / fit.floor;
+  }
+  selection.baseline = fit_nothing(problem, false);
+  selection.chosen = fit_effects(problem, {find_effect(specimen, "cubic_stiffness")}, false);
+  selection.library.push_back({.type = selection.chosen.effects.front().type, .fit = selection.chosen});
+  return judge(problem, selection).verdict;
+}
+
+TEST(Judge, GapOfLessThanTwoFloorsThatNothingExplainsIsNone) {
+  EXPECT_EQ(verdict_on_gap(1.5), report::Verdict::none);
+  EXPECT_EQ(verdict_on_gap(4.0), report::Verdict::unknown);
+}
+
 }  // namespace
 }  // namespace hybridtest
