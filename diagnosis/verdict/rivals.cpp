@@ -158,8 +158,8 @@ Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, cons
   return loss;
 }
 
-/// The numbers of the model beside a rival and the other causes are slightly off only, or as they are beside the
-/// effect, and change less than the rival does, or than those beside the effect.
+/// The numbers of the model beside a rival and the other causes are slightly off only, or no more or just as they are
+/// beside the effect, and change less than the rival does, or than those beside the effect.
 bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
   const std::span causes = std::span{fit.effects}.first(1 + place.others.size());
   if (!fit.with_nuisance && causes.size() == fit.effects.size()) return true;
@@ -168,8 +168,8 @@ bool are_slight(const IdentificationProblem& problem, const Place& place, const 
   const Eigen::VectorXd measured =
       stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd { return problem.segments[i].measured; });
   const Eigen::VectorXd own = by_effects - changes_by(problem, causes.subspan(1));
-  const bool is_slight =
-      by_numbers.norm() <= within * measured.norm() || is_small(by_numbers - place.by_corrections, place.alone);
+  const bool is_slight = by_numbers.norm() <= std::max(within * measured.norm(), place.by_corrections.norm()) ||
+                         is_small(by_numbers - place.by_corrections, place.alone);
   return is_slight && by_numbers.norm() <= std::max(own.norm(), place.by_corrections.norm());
 }
 

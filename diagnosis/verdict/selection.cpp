@@ -119,17 +119,19 @@ void try_all_laws(const IdentificationProblem& problem, const IdentificationProb
   put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
-/// What is left by the numbers of the model that stand beside the effects. Where an effect is in the place of a number,
-/// as a stiffness that falls in the place of one that is wrong, the score has chosen between the two.
+/// What the numbers of the model leave. Damping that the model lacks is one of them, but not where it was not taken
+/// beside the effects: then one of them stands in its place, by its score, and damping alone is the worse answer.
 GapEnergy left_by_numbers(const IdentificationProblem& problem, const Selection& selection, const FitOutcome& found) {
   const FitOutcome& all = selection.by_numbers;
-  std::vector<EffectSetting> beside = all.effects;
-  std::erase_if(beside, [&](const EffectSetting& number) { return !holds(found.effects, number.type); });
-  if (beside.size() == all.effects.size()) return gap_energy(problem, all);
-  return gap_energy(problem, beside.empty() ? selection.baseline : refit_effects(problem, beside, false));
+  std::vector<EffectSetting> numbers = all.effects;
+  std::erase_if(numbers, [&](const EffectSetting& number) {
+    return number.type->traits.number == ModelNumber::damping && !holds(found.effects, number.type);
+  });
+  if (numbers.size() == all.effects.size()) return gap_energy(problem, all);
+  return gap_energy(problem, numbers.empty() ? selection.baseline : refit_effects(problem, numbers, false));
 }
 
-/// Effects that leave more of what the numbers beside them leave than a part allows, and more than the floor, are
+/// Effects that leave more of what the numbers of the model leave than a part allows, and more than the floor, are
 /// dropped: that the numbers are far off is no reason to believe what stands beside them. An effect of the displacement
 /// sensor is chosen by what it explains of the force, too, and stays.
 void keep_what_tells(const IdentificationProblem& problem, const VerdictPolicy& policy, const Selection& selection,
