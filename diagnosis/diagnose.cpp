@@ -17,6 +17,7 @@
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/experiments.hpp"
+#include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/stages.hpp"
 #include "diagnosis/verdict/stiffness_loss.hpp"
@@ -63,12 +64,11 @@ double stiffness_lost_in(const IdentificationProblem& problem, const EffectSetti
   return most;
 }
 
-/// Whether a chosen effect has rivals. The numbers of the specimen's law go together: with a rival in the place of one
-/// the other has another value, see find_rivals().
+/// Whether a chosen effect has rivals, or goes with one that has.
 bool is_in_doubt(const std::vector<EffectSetting>& chosen, const Judgement& judgement, std::size_t position) {
   if (!judgement.rivals) return false;
   const std::size_t with_rivals = judgement.rivals->chosen;
-  return position == with_rivals || (is_of_law(*chosen[position].type) && is_of_law(*chosen[with_rivals].type));
+  return position == with_rivals || go_together(*chosen[position].type, *chosen[with_rivals].type);
 }
 
 /// The causes of the verdict first, then the other candidates.

@@ -113,7 +113,7 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
     result.more_noise = more_noise_of(problem, fit, outcome.effects, numbers);
     if (with_nuisance) numbers = numbers.subspan(static_cast<std::size_t>(fit.nuisance.cols()));
   }
-  estimate(projection, problem, places, solution, linear, outcome);
+  estimate_parameters(projection, problem, linear, places, solution, outcome);
   return outcome;
 }
 

@@ -65,14 +65,8 @@ class MovedFit {
     const auto simulated = at.places.size() + std::ssize(projection_.plan().linear);
     for (Eigen::Index i = 0; i < columns.cols(); ++i) {
       const Eigen::Index position = position_of(i);
-      if (position >= simulated) continue;  // a nuisance: the same everywhere
-      const bool is_searched = position < at.places.size();
-      Standing there = at;
-      double& value = is_searched ? there.places[position] : there.coefficients[position - at.places.size()];
-      const double size = is_searched ? tuning::kResolution : tuning::kCoefficientStep;
-      const double step = value < (is_searched ? 0.5 : 0.0) ? size : -size;
-      value += step;
-      columns.col(i) = (projection_.predicted(there.places, there.coefficients) - here) / step;
+      // A nuisance changes the same everywhere.
+      if (position < simulated) columns.col(i) = projection_.slope(at.places, at.coefficients, position, here);
     }
     return columns;
   }
@@ -97,14 +91,13 @@ struct Block {
   [[nodiscard]] double squares_of_the_rest(const Eigen::VectorXd& residual) const {
     return residual.squaredNorm() - residual.segment(first, size).squaredNorm();
   }
-  /// Of the normal equations of the rest.
-  [[nodiscard]] Eigen::MatrixXd normal_of_the_rest(const Eigen::MatrixXd& columns) const {
-    const auto inside = columns.middleRows(first, size);
-    return columns.transpose() * columns - inside.transpose() * inside;
-  }
-  [[nodiscard]] Eigen::VectorXd gradient_of_the_rest(const Eigen::MatrixXd& columns,
-                                                     const Eigen::VectorXd& residual) const {
-    return columns.transpose() * residual - columns.middleRows(first, size).transpose() * residual.segment(first, size);
+  /// The Gauss-Newton step of the fit to the rest. @param normal, gradient   of the fit to all.
+  [[nodiscard]] Eigen::VectorXd step_of_the_rest(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient,
+                                                 const Eigen::MatrixXd& columns,
+                                                 const Eigen::VectorXd& residual) const {
+    const Eigen::MatrixXd inside = columns.middleRows(first, size);
+    const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
+    return rest.ldlt().solve(gradient - inside.transpose() * residual.segment(first, size));
   }
 };
 
@@ -151,9 +144,8 @@ Eigen::VectorXd left_out(const MovedFit& fit, const Block& block, const Eigen::V
     } catch (const ConfigError&) {
       break;
     }
-    step = regularised(block.normal_of_the_rest(columns) + knowledge)
-               .ldlt()
-               .solve(block.gradient_of_the_rest(columns, residual));
+    step = block.step_of_the_rest(columns.transpose() * columns + knowledge, columns.transpose() * residual, columns,
+                                  residual);
   }
   return residual.segment(block.first, block.size);
 }
@@ -186,10 +178,7 @@ void hold_out(const VariableProjection& projection, const IdentificationProblem&
         result.held_out_squares[b] = unweighted * residual.segment(block.first, block.size).squaredNorm();
         return;
       }
-      const Eigen::MatrixXd inside = columns.middleRows(block.first, block.size);
-      const Eigen::MatrixXd rest = regularised(normal - inside.transpose() * inside);
-      const Eigen::VectorXd step =
-          rest.ldlt().solve(gradient - inside.transpose() * residual.segment(block.first, block.size)) - to_optimum;
+      const Eigen::VectorXd step = block.step_of_the_rest(normal, gradient, columns, residual) - to_optimum;
       result.held_out_squares[b] =
           unweighted * left_out(fit_of_all, block, residual, columns, knowledge, step).squaredNorm();
     });

@@ -15,10 +15,7 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
   const Eigen::VectorXd here = searched > 0 ? projection.predicted(places, coefficients) : Eigen::VectorXd{};
   projection.workers().for_each(static_cast<std::size_t>(searched), [&](std::size_t parameter) {
     const auto i = static_cast<Eigen::Index>(parameter);
-    Eigen::VectorXd moved = places;
-    const double step = places[i] < 0.5 ? tuning::kResolution : -tuning::kResolution;
-    moved[i] += step;
-    result.columns.col(i) = (projection.predicted(moved, coefficients) - here) / step;
+    result.columns.col(i) = projection.slope(places, coefficients, i, here);
   });
   for (Eigen::Index i = 0; i < searched; ++i) {
     const bool at_bound = places[i] < tuning::kResolution || places[i] > 1.0 - tuning::kResolution;

@@ -269,8 +269,9 @@ std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen:
 
 }  // namespace
 
-void estimate(const VariableProjection& projection, const IdentificationProblem& problem, const Eigen::VectorXd& places,
-              const Projected& solution, const Linearisation& linear, FitOutcome& outcome) {
+void estimate_parameters(const VariableProjection& projection, const IdentificationProblem& problem,
+                         const Linearisation& linear, const Eigen::VectorXd& places, const Projected& solution,
+                         FitOutcome& outcome) {
   std::vector<std::vector<ParameterEstimate>>& result = outcome.parameters;
   std::vector<Eigen::Index> begins{0};  // of each effect's parameters among all
   for (const EffectSetting& effect : outcome.effects) {

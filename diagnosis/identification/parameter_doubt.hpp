@@ -9,8 +9,9 @@
 namespace hybridtest {
 
 /// Fills in the parameters of an outcome whose effects are known, and what is not known of them.
-/// @param places, solution, linear   of the fit to all blocks.
-void estimate(const VariableProjection& projection, const IdentificationProblem& problem, const Eigen::VectorXd& places,
-              const Projected& solution, const Linearisation& linear, FitOutcome& outcome);
+/// @param linear, places, solution   of the fit to all blocks.
+void estimate_parameters(const VariableProjection& projection, const IdentificationProblem& problem,
+                         const Linearisation& linear, const Eigen::VectorXd& places, const Projected& solution,
+                         FitOutcome& outcome);
 
 }  // namespace hybridtest

@@ -316,10 +316,7 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
   for (int pass = 0; pass < tuning::kRelinearisations; ++pass) {
     problem_.workers.for_each(plan_.linear.size(), [&](std::size_t parameter) {
       const auto i = static_cast<Eigen::Index>(parameter);
-      Eigen::VectorXd moved = solution.coefficients;
-      const double step = moved[i] > 0.0 ? -tuning::kCoefficientStep : tuning::kCoefficientStep;
-      moved[i] += step;
-      solution.columns.col(i) = (predicted(places, moved) - here) / step;
+      solution.columns.col(i) = slope(places, solution.coefficients, places.size() + i, here);
     });
     solution.coefficients = bounded_least_squares(
         solution.columns, solution.residual + solution.columns * solution.coefficients, bounds, solution.held);
@@ -336,6 +333,22 @@ Projected VariableProjection::relinearised(const Eigen::VectorXd& places, Projec
 Eigen::VectorXd VariableProjection::predicted(const Eigen::VectorXd& places,
                                               const Eigen::VectorXd& coefficients) const {
   return stacked(settings(places, coefficients)) + nuisance_ * coefficients.tail(nuisance_.cols());
+}
+
+Eigen::VectorXd VariableProjection::slope(const Eigen::VectorXd& places, const Eigen::VectorXd& coefficients,
+                                          Eigen::Index parameter, const Eigen::VectorXd& here) const {
+  Eigen::VectorXd moved_places = places;
+  Eigen::VectorXd moved_coefficients = coefficients;
+  if (parameter < places.size()) {
+    const double step = places[parameter] < 0.5 ? tuning::kResolution : -tuning::kResolution;
+    moved_places[parameter] += step;
+    return (predicted(moved_places, moved_coefficients) - here) / step;
+  }
+  // One that is absent may be at its lower limit.
+  const Eigen::Index linear = parameter - places.size();
+  const double step = coefficients[linear] > 0.0 ? -tuning::kCoefficientStep : tuning::kCoefficientStep;
+  moved_coefficients[linear] += step;
+  return (predicted(moved_places, moved_coefficients) - here) / step;
 }
 
 std::vector<EffectSetting> VariableProjection::settings(const Eigen::VectorXd& places,

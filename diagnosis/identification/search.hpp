@@ -91,6 +91,10 @@ class VariableProjection {
   /// The weighted prediction with the linear parameters fixed.
   /// @param coefficients   as of a solution.
   [[nodiscard]] Eigen::VectorXd predicted(const Eigen::VectorXd& places, const Eigen::VectorXd& coefficients) const;
+  /// What a small change of one parameter changes in it, per unit of that. Searched parameters come first, then the
+  /// linear ones. @param here   predicted() there.
+  [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& places, const Eigen::VectorXd& coefficients,
+                                      Eigen::Index parameter, const Eigen::VectorXd& here) const;
   /// The effects at a solution, in their own units.
   [[nodiscard]] std::vector<EffectSetting> settings(const Eigen::VectorXd& places,
                                                     const Eigen::VectorXd& coefficients) const;

@@ -84,11 +84,9 @@ Place place_in(const IdentificationProblem& problem, const FitOutcome& chosen, s
               .alone = {},
               .by_others = {},
               .by_corrections = {}};
-  const bool is_law = is_of_law(*chosen.effects[position].type);
-  // Numbers that are slightly off; and beside one number of the specimen's law the other one: a load cell's gain in the
-  // place of the strength leaves another stiffness.
+  // Numbers that are slightly off, and what goes with the effect.
   const auto may_differ = [&](std::size_t i) {
-    return judgement.is_correction(i) || (is_law && is_of_law(*chosen.effects[i].type));
+    return judgement.is_correction(i) || go_together(*chosen.effects[i].type, *chosen.effects[position].type);
   };
   for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
     if (i != position && !may_differ(i)) place.others.push_back(chosen.effects[i]);
@@ -158,8 +156,8 @@ Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, cons
   return loss;
 }
 
-/// The numbers of the model beside a rival and the other causes are slightly off only, or no more or just as they are
-/// beside the effect, and change less than the rival does, or than those beside the effect.
+/// The numbers of the model beside a rival and the other causes change no more than those beside the effect; or else
+/// they are slightly off only, or as they are beside the effect, and change less than the rival does.
 bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
   const std::span causes = std::span{fit.effects}.first(1 + place.others.size());
   if (!fit.with_nuisance && causes.size() == fit.effects.size()) return true;
@@ -168,9 +166,10 @@ bool are_slight(const IdentificationProblem& problem, const Place& place, const 
   const Eigen::VectorXd measured =
       stacked_changes(problem, [&](std::size_t i) -> Eigen::VectorXd { return problem.segments[i].measured; });
   const Eigen::VectorXd own = by_effects - changes_by(problem, causes.subspan(1));
-  const bool is_slight = by_numbers.norm() <= std::max(within * measured.norm(), place.by_corrections.norm()) ||
-                         is_small(by_numbers - place.by_corrections, place.alone);
-  return is_slight && by_numbers.norm() <= std::max(own.norm(), place.by_corrections.norm());
+  if (by_numbers.norm() <= place.by_corrections.norm()) return true;
+  const bool is_slight =
+      by_numbers.norm() <= within * measured.norm() || is_small(by_numbers - place.by_corrections, place.alone);
+  return is_slight && by_numbers.norm() <= own.norm();
 }
 
 /// The difference of two replays is no more than what no model is expected to reproduce.
@@ -337,6 +336,8 @@ bool is_damping(const EffectType& type) {
 }
 
 }  // namespace
+
+bool go_together(const EffectType& one, const EffectType& other) noexcept { return is_of_law(one) && is_of_law(other); }
 
 std::optional<Candidate> lag_of_transducer(IdentificationProblem whole, const std::vector<EffectSetting>& found,
                                            const VerdictPolicy& policy) try {

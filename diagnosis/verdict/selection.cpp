@@ -119,8 +119,8 @@ void try_all_laws(const IdentificationProblem& problem, const IdentificationProb
   put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
-/// What the numbers of the model leave. Damping that the model lacks is one of them, but not where it was not taken
-/// beside the effects: then one of them stands in its place, by its score, and damping alone is the worse answer.
+/// What the numbers of the model leave. Damping counts only where it was found beside the effects: elsewhere an effect
+/// stands in its place, by its score, and damping alone is the worse answer.
 GapEnergy left_by_numbers(const IdentificationProblem& problem, const Selection& selection, const FitOutcome& found) {
   const FitOutcome& all = selection.by_numbers;
   std::vector<EffectSetting> numbers = all.effects;
