@@ -101,11 +101,10 @@ std::string row(const RankedCause& cause) {
 
 /// The causes and the effects that cannot be distinguished from them; empty when there is no such effect.
 std::string alike_text(const DiagnosisReport& report) {
-  const std::vector<std::string> alike = in_words(indistinguishable(report));
   const bool is_open =
       report.verdict == Verdict::set || std::ranges::any_of(report.ranking, &RankedCause::is_indistinguishable);
-  if (!is_open || alike.size() < 2) return "";
-  return fmt::format("<p>These recordings cannot distinguish {}.</p>\n", escaped(joined(alike)));
+  if (!is_open || indistinguishable(report).size() < 2) return "";
+  return fmt::format("<p>These recordings cannot distinguish {}.</p>\n", escaped(alternatives_in_words(report)));
 }
 
 }  // namespace

@@ -58,11 +58,36 @@ std::string in_words_with_place(const RankedCause& cause) {
 }
 
 /// Each with its interface, unless the sentence has said already where they all are.
-std::string placed(const DiagnosisReport& report, const Causes& list) {
+std::vector<std::string> placed_names(const DiagnosisReport& report, const Causes& list) {
   const bool is_said = are_at_main_fault(report, list);
   std::vector<std::string> names;
   for (const RankedCause* const cause : list) names.push_back(is_said ? in_words(*cause) : in_words_with_place(*cause));
-  return joined(names);
+  return names;
+}
+
+std::string placed(const DiagnosisReport& report, const Causes& list) { return joined(placed_names(report, list)); }
+
+/// Each with its interface where they are not all at one.
+std::vector<std::string> in_words(const Causes& members) {
+  const bool at_one_interface = std::ranges::all_of(
+      members, [&](const RankedCause* member) { return member->interface == members.front()->interface; });
+  std::vector<std::string> names;
+  for (const RankedCause* const member : members) {
+    names.push_back(at_one_interface ? in_words(*member) : in_words_with_place(*member));
+  }
+  return names;
+}
+
+/// Members of a set by their names. What was found together, as the two numbers of a law, is one of them.
+std::string as_alternatives(const Causes& members, const std::vector<std::string>& names) {
+  std::vector<std::string> together;
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const bool was_found = members[i]->is_indistinguishable && members[i]->share > 0.0;
+    (was_found ? together : others).push_back(names[i]);
+  }
+  if (together.size() < 2 || others.empty()) return joined(names);
+  return fmt::format("{} together from {}", joined(together), joined(others));
 }
 
 std::string where_it_lies(const DiagnosisReport& report) {
@@ -102,7 +127,7 @@ std::string in_doubt(const DiagnosisReport& report) {
     if (cause.is_indistinguishable) alike.push_back(&cause);
   }
   if (report.verdict != Verdict::named || alike.size() < 2) return {};
-  return fmt::format(" These recordings cannot distinguish {}.", joined(in_words(alike)));
+  return fmt::format(" These recordings cannot distinguish {}.", as_alternatives(alike, in_words(alike)));
 }
 
 std::string named_sentence(const DiagnosisReport& report) {
@@ -144,7 +169,8 @@ std::string set_sentence(const DiagnosisReport& report) {
   const Causes alike = indistinguishable(report);
   Causes others = causes(report);
   std::erase_if(others, [&](const RankedCause* cause) { return std::ranges::find(alike, cause) != alike.end(); });
-  std::string text = where_it_lies(report) + "; these recordings cannot distinguish " + placed(report, alike);
+  std::string text = where_it_lies(report) + "; these recordings cannot distinguish " +
+                     as_alternatives(alike, placed_names(report, alike));
   if (!others.empty()) {
     text += (others.size() > 1 ? "; further causes are " : "; a further cause is ") + placed(report, others);
   }
@@ -163,14 +189,9 @@ std::vector<const RankedCause*> indistinguishable(const DiagnosisReport& report)
   return members;
 }
 
-std::vector<std::string> in_words(std::span<const RankedCause* const> members) {
-  const bool at_one_interface = std::ranges::all_of(
-      members, [&](const RankedCause* member) { return member->interface == members.front()->interface; });
-  std::vector<std::string> names;
-  for (const RankedCause* const member : members) {
-    names.push_back(at_one_interface ? in_words(*member) : in_words_with_place(*member));
-  }
-  return names;
+std::string alternatives_in_words(const DiagnosisReport& report) {
+  const Causes members = indistinguishable(report);
+  return as_alternatives(members, in_words(members));
 }
 
 std::string plain(std::string_view name) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +29,9 @@ namespace hybridtest::report {
 [[nodiscard]] const InterfaceGap* main_fault(const DiagnosisReport& report);
 /// The members of a set; without one the causes, and what cannot be distinguished from them.
 [[nodiscard]] std::vector<const RankedCause*> indistinguishable(const DiagnosisReport& report);
-/// Their names, with the interface of each where they are not all at one.
-[[nodiscard]] std::vector<std::string> in_words(std::span<const RankedCause* const> members);
+/// Their names after "cannot distinguish", with the interface of each where they are not all at one: `a, b and c`, or
+/// `a and b together from c` where two were found together.
+[[nodiscard]] std::string alternatives_in_words(const DiagnosisReport& report);
 /// ` (takeda: the specimen …)` for a law in place of the specimen's own; empty for an effect.
 [[nodiscard]] std::string law_in_words(const RankedCause& cause);
 /// ` (the friction force grows by 500 N per unit of current_a)` for an effect that follows a recorded input; empty for

@@ -277,6 +277,28 @@ TEST(DiagnosisPage, CauseBesideASetIsNoMemberOfIt) {
   EXPECT_THAT(diagnosis_page(report), HasSubstr("cannot distinguish coulomb friction and stribeck friction."));
 }
 
+TEST(DiagnosisPage, MembersOfASetThatWereFoundTogetherAreOneAlternative) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::set;
+  report.ranking.resize(1);
+  RankedCause& stiffness = report.ranking.front();
+  stiffness.effect = "stiffness_error";
+  stiffness.share = 0.6;
+  stiffness.is_cause = stiffness.is_indistinguishable = true;
+  RankedCause strength = stiffness;
+  strength.effect = "strength_error";
+  RankedCause gain = stiffness;
+  gain.interface = "force_sensor";
+  gain.effect = "gain";
+  gain.share = 0.0;
+  report.ranking.insert(report.ranking.end(), {strength, gain});
+  constexpr const char* kMembers =
+      "cannot distinguish stiffness error of the specimen and strength error of the specimen together from gain of the "
+      "force sensor";
+  EXPECT_THAT(verdict_sentence(report), HasSubstr(kMembers));
+  EXPECT_THAT(diagnosis_page(report), HasSubstr(kMembers));
+}
+
 TEST(DiagnosisPage, CausesAtSeveralInterfacesSayWhichOneEach) {
   DiagnosisReport report = example();
   RankedCause further;
