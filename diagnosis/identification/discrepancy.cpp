@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "diagnosis/identification/coloured_noise.hpp"
 #include "diagnosis/identification/problem.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -166,31 +167,6 @@ std::vector<Eigen::Index> pieces_of(const Column& displacement, std::size_t most
   return begins;
 }
 
-/// Autocovariances times the number of samples, up to where their sum no longer counts (independent_samples()).
-std::vector<double> autocovariance(const Eigen::VectorXd& values) {
-  const Eigen::Index n = values.size();
-  std::vector<double> sums{values.squaredNorm()};
-  double time = 1.0;
-  for (Eigen::Index lag = 1; lag < n && static_cast<double>(lag) <= tuning::kCorrelationTimes * time; ++lag) {
-    sums.push_back(values.head(n - lag).dot(values.tail(n - lag)));
-    if (sums.front() > 0.0) time += 2.0 * sums.back() / sums.front();
-  }
-  return sums;
-}
-
-/// Variance of the product of a direction with noise of this autocovariance, with Bartlett's weights, which keep it
-/// positive (Newey and West, Econometrica 55, 1987).
-double variance_along(const Eigen::VectorXd& direction, const std::vector<double>& covariance) {
-  const Eigen::Index n = direction.size();
-  double sum = covariance.front() * direction.squaredNorm();
-  for (std::size_t k = 1; k < covariance.size(); ++k) {
-    const auto lag = static_cast<Eigen::Index>(k);
-    const double weight = 1.0 - static_cast<double>(k) / static_cast<double>(covariance.size());
-    sum += 2.0 * weight * covariance[k] * direction.head(n - lag).dot(direction.tail(n - lag));
-  }
-  return std::max(0.0, sum) / static_cast<double>(n);
-}
-
 }  // namespace
 
 Discrepancy::Discrepancy(const FitSegment& fit) {
@@ -271,12 +247,14 @@ ResidualParts Discrepancy::best_of(const Eigen::VectorXd& residual, std::vector<
   ResidualParts best{.remainder = residual, .total = total / samples};
   const Eigen::VectorXd least =
       *std::ranges::min_element(remainders, {}, [](const Eigen::VectorXd& values) { return values.squaredNorm(); });
-  const std::vector<double> covariance = autocovariance(least.squaredNorm() < total ? least : residual);
+  const ColouredNoise noise{least.squaredNorm() < total ? least : residual};
+  // Of those that gain most first: what gains less than the highest so far, without its error, is not asked for it.
+  std::ranges::sort(remainders, {}, [](const Eigen::VectorXd& values) { return values.squaredNorm(); });
   double highest = 0.0;
   for (Eigen::VectorXd& remainder : remainders) {
     const double gain = total - remainder.squaredNorm();
-    if (gain <= highest) continue;
-    const double error = 2.0 * std::sqrt(variance_along(residual - remainder, covariance));
+    if (gain <= highest) break;
+    const double error = 2.0 * std::sqrt(noise.variances_along(residual - remainder)[0]);
     if (gain - tuning::kTwoSided99 * error <= highest) continue;
     highest = gain - tuning::kTwoSided99 * error;
     best.repeatable = gain / samples;
@@ -305,23 +283,8 @@ Eigen::MatrixXd Discrepancy::pull(double energy, const Eigen::MatrixXd& weights)
   return std::sqrt(of_each) * (features_.transpose() * weights);
 }
 
-Eigen::VectorXd variances_of_sums(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
-  const std::vector<double> covariance = autocovariance(residual);
-  Eigen::VectorXd variances(weights.cols());
-  for (Eigen::Index i = 0; i < weights.cols(); ++i) variances[i] = variance_along(weights.col(i), covariance);
-  return variances;
-}
-
 double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual) {
   return fit.discrepancy->parts(residual).share();
-}
-
-double independent_samples(const Eigen::VectorXd& values) {
-  const auto n = static_cast<double>(std::max<Eigen::Index>(1, values.size()));
-  const std::vector<double> sums = autocovariance(values);
-  if (!(sums.front() > 0.0)) return n;
-  const double time = 2.0 * std::accumulate(sums.begin(), sums.end(), 0.0) / sums.front() - 1.0;
-  return std::clamp(n / std::max(time, 1.0), 1.0, n);
 }
 
 }  // namespace hybridtest

@@ -64,13 +64,4 @@ class Discrepancy {
 /// @param residual   in the averaged samples of the segment, unweighted: `fit.measured` minus a prediction.
 [[nodiscard]] double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual);
 
-/// Variances of weighted sums of a residual that is the same noise throughout: its autocovariance with Bartlett's
-/// weights, which keep them positive (Newey and West, Econometrica 55, 1987).
-/// @param weights   one column per sum, one row per sample.
-[[nodiscard]] Eigen::VectorXd variances_of_sums(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights);
-
-/// Samples over the integrated autocorrelation time 1 + 2 sum r(k), summed up to the first lag beyond five of these
-/// times (Sokal, Monte Carlo Methods in Statistical Mechanics, 1997). At least 1, at most all.
-[[nodiscard]] double independent_samples(const Eigen::VectorXd& values);
-
 }  // namespace hybridtest

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/identification/coloured_noise.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -217,8 +218,9 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
       wrong.add_block(residual, begin + fit.block_begins[b], rows);
     }
     const Eigen::Index rows = fit.measured.size();
-    by_noise += variances_of_sums(residual.segment(begin, rows), wrong.weights(begin, rows).leftCols(count));
-    by_noise_alone += variances_of_sums(residual.segment(begin, rows), right.weights(begin, rows));
+    const ColouredNoise disturbance{residual.segment(begin, rows)};
+    by_noise += disturbance.variances_along(wrong.weights(begin, rows).leftCols(count));
+    by_noise_alone += disturbance.variances_along(right.weights(begin, rows));
   }
   wrong.widen_to(by_noise);
   predicting.widen_to(by_noise_alone);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/config_error.hpp"
+#include "diagnosis/identification/coloured_noise.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/noise_spectrum.hpp"

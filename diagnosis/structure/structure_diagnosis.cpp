@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
-#include "diagnosis/identification/discrepancy.hpp"
+#include "diagnosis/identification/coloured_noise.hpp"
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"

@@ -121,27 +121,5 @@ TEST(Discrepancy, DisturbanceApartFromTheMotionIsNotRepeatable) {
   EXPECT_GT(repeatable_share(again, residual_of(again)), 0.6);
 }
 
-TEST(IndependentSamples, FollowTheAutocorrelation) {
-  for (const double correlation : {0.0, 0.9, 0.99}) {
-    constexpr std::size_t kCount = 40'000;
-    const std::vector<double> noise = made_noise({.correlation = correlation}, kCount, 1.0, 0.001, 3);
-    const double exact = kCount * (1.0 - correlation) / (1.0 + correlation);
-    // The sum over five times of N samples is known to sqrt(2 (2 * 5 + 1) time / N): 33 % at 200 samples (Sokal).
-    EXPECT_NEAR(independent_samples(Eigen::Map<const Eigen::VectorXd>(noise.data(), kCount)), exact, 0.33 * exact);
-  }
-}
-
-TEST(VariancesOfSums, CountNeighboursThatGoTogether) {
-  constexpr std::size_t kCount = 40'000;
-  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(kCount, 1);
-  for (const double correlation : {0.0, 0.9}) {
-    const std::vector<double> noise = made_noise({.correlation = correlation}, kCount, 1.0, 0.001, 3);
-    const Eigen::Map<const Eigen::VectorXd> values{noise.data(), kCount};
-    const double exact = kCount * (1.0 + correlation) / (1.0 - correlation);
-    // As of independent samples: here 6 %, and Bartlett's weights take off a tenth.
-    EXPECT_NEAR(variances_of_sums(values, ones)[0], exact, 0.25 * exact) << correlation;
-  }
-}
-
 }  // namespace
 }  // namespace hybridtest
