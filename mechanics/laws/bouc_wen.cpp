@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter_checker.hpp"
+#include "mechanics/laws/power.hpp"
 
 namespace hybridtest {
 namespace {
@@ -23,6 +24,8 @@ BoucWen::BoucWen(const Parameters& parameters, double substeps_per_length)
   const double sum = parameters.gamma_per_m + parameters.beta_per_m;
   ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
+  unloading_root_ = std::pow(std::abs(unloading_), 0.2);
+  short_anywhere_ = 1.0 / (substeps_per_length * parameters.n * std::max(1.0, std::abs(unloading_)));
   // 2^-20 where there are 64.
   first_substep_ = std::exp2(-std::log2(substeps_per_length) * kFirstSubstepPower);
   is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
@@ -47,7 +50,7 @@ double BoucWen::trial(double displacement_m, double /*velocity_m_per_s*/) noexce
 // equation loses all but two of its parameters: dw/ds = 1 - c |w|^n, where c is 1 while
 // loading (w > 0) and (gamma - beta) / (gamma + beta) while unloading.
 double BoucWen::slope(double w) const noexcept {
-  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(w), parameters_.n);
+  return 1.0 - (w < 0.0 ? unloading_ : 1.0) * power_of(std::abs(w), parameters_.n);
 }
 
 double BoucWen::carried_along(double w, double path) const noexcept {
@@ -69,7 +72,7 @@ double BoucWen::carried_exactly(double w, double path) const noexcept {
 double BoucWen::carried_by_substeps(double w, double path) const noexcept {
   double left = path;
   for (int i = 0; i < kSubstepsMax && left > 0.0; ++i) {
-    double step = std::min(left, substep(w));
+    double step = substep(w, left);
     double next = runge_kutta_step(w, step);
     if (next == w) break;         // at its limit: the rest of the way changes nothing
     if (w < 0.0 && next > 0.0) {  // the slope has a kink at zero: stop there
@@ -82,14 +85,17 @@ double BoucWen::carried_by_substeps(double w, double path) const noexcept {
   return w;
 }
 
-double BoucWen::substep(double w) const noexcept {
-  const double n = parameters_.n;
-  const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
-  const double share = (w < 0.0 ? std::abs(unloading_) : 1.0) * std::pow(largest, n - 1.0);
-  // n * share is the derivative of the slope; its own derivatives grow n times each, so that a
-  // small share still counts with the fifth root.
-  const double change = n * (share > 1.0 ? share : std::pow(share, 0.2));
-  const double step = 1.0 / (substeps_per_length_ * std::max(1.0, change));
+double BoucWen::substep(double w, double left) const noexcept {
+  double step = left;
+  if (left > short_anywhere_) {
+    const double n = parameters_.n;
+    const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
+    // n * share is the derivative of the slope; its own derivatives grow n times each, so that a
+    // small share still counts with the fifth root.
+    const double root = (w < 0.0 ? unloading_root_ : 1.0) * power_of(largest, 0.2 * (n - 1.0));
+    const double change = n * (root > 1.0 ? root * root * root * root * root : root);
+    step = std::min(left, 1.0 / (substeps_per_length_ * std::max(1.0, change)));
+  }
   return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), first_substep_)) : step;
 }
 

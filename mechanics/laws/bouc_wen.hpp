@@ -61,7 +61,8 @@ class BoucWen final : public Law {
   /// With n = 1: dw/ds = 1 + c w on the way back to zero, 1 - w from there.
   [[nodiscard]] double carried_exactly(double w, double path) const noexcept;
   [[nodiscard]] double carried_by_substeps(double w, double path) const noexcept;
-  [[nodiscard]] double substep(double w) const noexcept;
+  /// The next substep, at most what is left of the path.
+  [[nodiscard]] double substep(double w, double left) const noexcept;
   [[nodiscard]] double runge_kutta_step(double w, double path) const noexcept;
   [[nodiscard]] double path_to_zero(double w) const noexcept;
 
@@ -70,6 +71,8 @@ class BoucWen final : public Law {
   double first_substep_;
   double ultimate_m_;
   double unloading_;          // (gamma - beta) / (gamma + beta)
+  double unloading_root_;     // fifth root of its size
+  double short_anywhere_;     // a substep that is short enough wherever z is within its limit
   bool is_singular_at_zero_;  // high derivatives of |z|^n
   State committed_;
   State trial_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter_checker.hpp"
+#include "mechanics/laws/power.hpp"
 
 namespace hybridtest {
 namespace {
@@ -49,7 +50,7 @@ BoucWenBaberNoori::Degraded BoucWenBaberNoori::at_energy(double energy_j) const 
   Degraded degraded;
   degraded.strength = 1.0 + p.strength_degradation_per_j * energy_j;
   degraded.softness = 1.0 + p.stiffness_degradation_per_j * energy_j;
-  degraded.ultimate_m = std::pow(p.ao / (degraded.strength * (p.gamma_per_m + p.beta_per_m)), 1.0 / p.n);
+  degraded.ultimate_m = power_of(p.ao / (degraded.strength * (p.gamma_per_m + p.beta_per_m)), 1.0 / p.n);
   if (p.pinching == 0.0) return degraded;
   degraded.pinching = p.pinching * -std::expm1(-p.pinching_rate_per_j * energy_j);
   degraded.width_m = (p.pinching_width_m + p.width_rate_m_per_j * energy_j) * (p.width_share + degraded.pinching);
@@ -64,7 +65,7 @@ double BoucWenBaberNoori::length_m(const Degraded& degraded) const noexcept {
 double BoucWenBaberNoori::slope(double hysteretic_m, double direction, const Degraded& degraded) const noexcept {
   const Parameters& p = parameters_;
   const double loading = hysteretic_m * direction >= 0.0 ? p.gamma_per_m + p.beta_per_m : p.gamma_per_m - p.beta_per_m;
-  const double slope = (p.ao - degraded.strength * loading * std::pow(std::abs(hysteretic_m), p.n)) / degraded.softness;
+  const double slope = (p.ao - degraded.strength * loading * power_of(std::abs(hysteretic_m), p.n)) / degraded.softness;
   if (p.pinching == 0.0) return slope;
   const double from_slip = (hysteretic_m * direction - p.pinching_level * degraded.ultimate_m) / degraded.width_m;
   return slope * (1.0 - degraded.pinching * std::exp(-from_slip * from_slip));

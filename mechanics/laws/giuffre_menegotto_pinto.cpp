@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter_checker.hpp"
+#include "mechanics/laws/power.hpp"
 
 namespace hybridtest {
 namespace {
@@ -69,8 +70,8 @@ double GiuffreMenegottoPinto::force_n(const State& state, double displacement_m)
   const double ratio = std::abs(from_reversal_m / (state.corner_displacement_m - state.reversal_displacement_m));
   // (1 + r^R)^(1/R), which must not overflow where r^R does.
   const double curvature = state.curvature;
-  const double rounding = ratio <= 1.0 ? std::pow(1.0 + std::pow(ratio, curvature), 1.0 / curvature)
-                                       : ratio * std::pow(1.0 + std::pow(ratio, -curvature), 1.0 / curvature);
+  const double rounding = ratio <= 1.0 ? power_of(1.0 + power_of(ratio, curvature), 1.0 / curvature)
+                                       : ratio * power_of(1.0 + power_of(ratio, -curvature), 1.0 / curvature);
   const double hardening_ratio = parameters_.hardening_ratio;
   return state.reversal_force_n +
          parameters_.stiffness_n_per_m * from_reversal_m * (hardening_ratio + (1.0 - hardening_ratio) / rounding);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter_checker.hpp"
+#include "mechanics/laws/power.hpp"
 
 namespace hybridtest {
 namespace {
@@ -57,9 +58,9 @@ double RambergOsgood::first_loading_n(double displacement_m) const noexcept {
   const double n = parameters_.exponent;
   const double way = std::abs(displacement_m) / yield_displacement_m_;
   double force = way;
-  if (a > 0.0) force = std::min(way, std::pow(way / a, 1.0 / n));
+  if (a > 0.0) force = std::min(way, power_of(way / a, 1.0 / n));
   for (int i = 0; i < kNewtonStepsMax && force > 0.0; ++i) {
-    const double power = std::pow(force, n - 1.0);
+    const double power = power_of(force, n - 1.0);
     const double next = force - (force * (1.0 + a * power) - way) / (1.0 + n * a * power);
     if (!(next < force)) break;
     force = next;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "mechanics/laws/power.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/parameter_limits.hpp"
 #include "plant/effects/specimen/hysteretic_path.hpp"
@@ -50,7 +51,7 @@ class BoucWenHysteresis final : public Effect {
     const double way = (motion.displacement_m - displacement_m_) / yield_displacement_m_;
     displacement_m_ = motion.displacement_m;
     z_ = exponent_ == 1.0 ? exponential(way) : carried_along(z_, way, kSubstep, [this](double z, double direction) {
-      return 1.0 - (z * direction < 0.0 ? unloading_ : 1.0) * std::pow(std::abs(z), exponent_);
+      return 1.0 - (z * direction < 0.0 ? unloading_ : 1.0) * power_of(std::abs(z), exponent_);
     });
     force_n += yield_force_n_ * z_;
   }
