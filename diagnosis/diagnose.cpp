@@ -12,6 +12,7 @@
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"
+#include "diagnosis/sanity/mains_hum.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -319,8 +320,8 @@ void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
 
 Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, const DiagnoseSettings& settings) {
   const std::vector<ChannelFinding> findings = check_channels(model, given, settings.dof);
-  std::vector<Recording> without_unusable;
-  const std::span<const Recording> recordings = usable_part(given, settings.dof, findings, without_unusable);
+  std::vector<Recording> altered;
+  std::span<const Recording> recordings = usable_part(given, settings.dof, findings, altered);
   Diagnosis diagnosis;
   report::DiagnosisReport& report = diagnosis.report;
   report.site = settings.site;
@@ -339,6 +340,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const PartProgress& progress = settings.progress;
   progress.report("recordings examined", 0, 1);
   const std::vector<Trace> traces = find_traces(model, recordings, settings.dof);
+  recordings = without_mains_hum(recordings, settings.dof, altered, report.notes);
   const Workers workers{settings.threads};
   std::vector<Segment> segments =
       segments_in_role(model, recordings, RecordingRole::fit, settings.dof, workers,

@@ -174,5 +174,11 @@ TEST(OpenedCase, FractionalDampingIsNotTheDampingInItsPlace) {
   EXPECT_THAT(causes_of_case(954709659, 139), Contains("specimen.fractional_damping"));
 }
 
+/// The transducer of the motion hums with the mains. A lag of it whose second order cancels 50 Hz was named with
+/// certainty. Of this planned motion lag and damping look alike.
+TEST(OpenedCase, LagThatCancelsTheHumOfTheMainsIsNotNamedForADamper) {
+  EXPECT_THAT(causes_of_case(2092165261, 130), Contains("specimen.viscous_damping"));
+}
+
 }  // namespace
 }  // namespace hybridtest
