@@ -297,7 +297,8 @@ inline constexpr std::size_t kRefittedPairs = 5;
 /// Shortest relaxation, over peak displacement over peak velocity: of a shorter one all but a twentieth of the force is
 /// that of a dashpot, and the rest would only smooth the noise of the motion.
 inline constexpr double kRelaxationOfSwing = 0.3;
-/// Share of a limit that readings pass it by, or stay below it by, without refuting it: a real one gives way a little.
+/// Share of a limit over which a real one gives way. Readings may stay below a limit by as much, and pass one that was
+/// fitted anywhere within it, without refuting it.
 inline constexpr double kBeyondLimit = 0.05;
 /// Height of a column over its largest drift, at least: with a drift of a tenth of its height, a column has collapsed.
 inline constexpr double kHeightOverStroke = 10.0;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string_view>
 
 #include "diagnosis/identification/search.hpp"
@@ -113,7 +114,7 @@ std::string limit_refuted(const Suspect& suspect, std::string_view name, std::st
   for (const FitSegment& fit : suspect.problem.segments) {
     if (!suspect.ends_at(fit)) continue;
     for (const Bounded& bound : bounded(fit)) {
-      const double highest = (1.0 + tuning::kBeyondLimit) * limit.value + unsure + bound.noise;
+      const double highest = limit.value / (1.0 - tuning::kBeyondLimit) + unsure + bound.noise;
       const auto beyond =
           std::ranges::count_if(bound.readings, [&](double value) { return std::abs(value) > highest; });
       if (static_cast<std::size_t>(beyond) >= tuning::kClippedRun) {
@@ -381,6 +382,23 @@ std::string absence_not_excluded(const Suspect& suspect) {
   return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), absent->name);
 }
 
+/// Whether the others take back all but a tenth of what an effect changes, as a damping does of a lag: of such two the
+/// recordings show the difference, and neither.
+bool is_cancelled(const Suspect& suspect) {
+  if (suspect.outcome.effects.size() < 2) return false;
+  double alone = 0.0;
+  double together = 0.0;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!fit.is_suspect || !fit.segment.touched_by(*suspect.effect.type)) continue;
+    const auto change_by = [&](std::span<const EffectSetting> effects) {
+      return fit.weight * fit.weight * (predict(suspect.problem, fit, effects) - fit.baseline).squaredNorm();
+    };
+    alone += change_by({&suspect.effect, 1});
+    together += change_by(suspect.outcome.effects);
+  }
+  return together < tuning::kHardlyLeft * alone;
+}
+
 }  // namespace
 
 bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
@@ -458,6 +476,9 @@ std::string refutation(const IdentificationProblem& problem, const Candidate& ca
     // A single effect may be larger than the library expects; one beside others may then be anything.
     if (why.empty() && candidate.fit.effects.size() > 1 && is_cut_off(problem, candidate.fit, i)) {
       why = suspect.name() + ": a parameter is at the limit of its search range";
+    }
+    if (why.empty() && is_cancelled(suspect)) {
+      why = suspect.name() + ": alone it would change more than ten times what it does beside the others";
     }
     if (!why.empty()) return why;
   }

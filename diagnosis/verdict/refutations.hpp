@@ -40,6 +40,7 @@ namespace hybridtest {
 ///   which it is absent;
 /// - a column that is shorter than ten times its drift;
 /// - a further effect with a parameter at the end of its search range, see is_cut_off();
+/// - one of which the others beside it take back all but a tenth;
 /// - a fracture so early that the recordings do not show what the part carried before;
 /// - dry friction that sticks over more than half of the path: that is an elastoplastic spring.
 [[nodiscard]] std::string refutation(const IdentificationProblem& problem, const Candidate& candidate);

@@ -196,7 +196,7 @@ TEST(MagnetorheologicalDamper, LocatesCurrentEffectAtSpecimen) {
     if (cause.type == find_effect(EffectInterface::displacement_sensor, "bias")) {
       EXPECT_NEAR(cause.values[0], -6.2e-5, 1e-5);
     } else {
-      EXPECT_EQ(cause.type->interface, EffectInterface::specimen);
+      EXPECT_EQ(cause.type->interface, EffectInterface::specimen) << cause.type->name << " " << cause.values[0];
     }
   }
   // What it is: a damper, 1.06 kN and 6.0 kN s/m (a smooth hysteresis and a damping by themselves: 1.1 kN, 6.2 kN s/m).

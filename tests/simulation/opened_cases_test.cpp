@@ -180,5 +180,11 @@ TEST(OpenedCase, LagThatCancelsTheHumOfTheMainsIsNotNamedForADamper) {
   EXPECT_THAT(causes_of_case(2092165261, 130), Contains("specimen.viscous_damping"));
 }
 
+/// The stroke ends in a cushion, its last twentieth. A limit was fitted where the cushion begins, and refuted as
+/// readings went on to its end.
+TEST(OpenedCase, StrokeThatEndsInACushionIsALimit) {
+  EXPECT_THAT(causes_of_case(1672258536, 191), Contains("transfer_system.stroke_limit"));
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -221,6 +221,22 @@ TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {
   EXPECT_THAT(refutation(problem, pair), HasSubstr("mass_kg"));
 }
 
+TEST(Refutation, EffectThatTheOthersTakeBack) {
+  // A load cell that is 2 ms late, and a damper of nearly the stiffness times as much: the force of one is that of the
+  // other, with the other sign.
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  const auto beside_lag = [&](double share) {
+    Candidate pair = fit_of(force_sensor, "lag", {0.002, 0.0});
+    pair.fit.effects.push_back({find_effect(specimen, "viscous_damping"), {share * 0.002 * kMadeStiffness_n_per_m}});
+    pair.fit.parameters.push_back({{.value = 1.0, .standard_error = 1e-9}});
+    pair.fit.covariances.emplace_back(Eigen::MatrixXd::Constant(1, 1, 1e-18));
+    pair.type = find_effect(specimen, "viscous_damping");
+    return refutation(problem, pair);
+  };
+  EXPECT_THAT(beside_lag(0.95), HasSubstr("alone it would change more than ten times"));
+  EXPECT_THAT(beside_lag(0.8), IsEmpty());
+}
+
 TEST(Refutation, EarlierEffectThatRestContradictsIsNeedless) {
   // A bias that was needed before the damping was found: it does not speak against the damping, it goes.
   const IdentificationProblem problem =
