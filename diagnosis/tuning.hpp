@@ -109,6 +109,10 @@ inline constexpr double kFastShare = 0.1;
 inline constexpr double kSamplesPerCycle = 10.0;
 inline constexpr double kSamplesPerCycleMin = 4.0;
 
+/// Longest recording over which the hum of the mains is one sine: the frequency of a grid wanders by hundredths of a
+/// hertz within minutes.
+inline constexpr double kHumDurationMax_s = 120.0;
+
 // Where: tables and plots of one interface.
 
 /// A recording with fewer samples is too short to locate a gap in it.

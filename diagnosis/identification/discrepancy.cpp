@@ -245,11 +245,9 @@ ResidualParts Discrepancy::best_of(const Eigen::VectorXd& residual, std::vector<
   const auto samples = static_cast<double>(std::max<Eigen::Index>(1, residual.size()));
   const double total = residual.squaredNorm();
   ResidualParts best{.remainder = residual, .total = total / samples};
-  const Eigen::VectorXd least =
-      *std::ranges::min_element(remainders, {}, [](const Eigen::VectorXd& values) { return values.squaredNorm(); });
-  const ColouredNoise noise{least.squaredNorm() < total ? least : residual};
-  // Of those that gain most first: what gains less than the highest so far, without its error, is not asked for it.
+  // Those that gain most come first: what gains less than the highest so far, without its error, is not asked for it.
   std::ranges::sort(remainders, {}, [](const Eigen::VectorXd& values) { return values.squaredNorm(); });
+  const ColouredNoise noise{remainders.front().squaredNorm() < total ? remainders.front() : residual};
   double highest = 0.0;
   for (Eigen::VectorXd& remainder : remainders) {
     const double gain = total - remainder.squaredNorm();

@@ -62,12 +62,21 @@ std::optional<Hum> line_near(const Lines& lines, double mains_hz, double duratio
   const double resolution_hz = 1.0 / duration_s;
   Hum hum;
   const double reach_hz = 0.01 * mains_hz;
-  const auto steps = static_cast<int>(std::ceil(16.0 * reach_hz / resolution_hz));
-  for (int i = -steps; i <= steps; ++i) {
-    const double frequency_hz = mains_hz + reach_hz * i / steps;
+  const int per_resolution = 16;
+  const auto steps = static_cast<int>(std::ceil(per_resolution * reach_hz / resolution_hz));
+  int best = 0;
+  const auto look_at = [&](int step) {
+    const double frequency_hz = mains_hz + reach_hz * step / steps;
     const std::complex<double> amplitude = lines.at(frequency_hz);
-    if (std::norm(amplitude) > std::norm(hum.amplitude)) hum = {frequency_hz, amplitude};
-  }
+    if (std::norm(amplitude) <= std::norm(hum.amplitude)) return;
+    hum = {frequency_hz, amplitude};
+    best = step;
+  };
+  // A line is four resolutions wide: looked for at every half of one, and then around the largest.
+  const int coarse = per_resolution / 2;
+  for (int step = -steps; step <= steps; step += coarse) look_at(step);
+  const int largest = best;
+  for (int step = largest - coarse + 1; step < largest + coarse; ++step) look_at(step);
   double neighbours = 0.0;
   const auto each_side = static_cast<double>(tuning::kSpectrumAverages);
   for (double line = 0.0; line < each_side; line += 1.0) {
@@ -121,6 +130,7 @@ std::span<const Recording> without_mains_hum(std::span<const Recording> recordin
     const DofRecording& channels = recording.dofs[dof];
     const std::vector<double>& readings = channels.of(Channel::measured_displacement);
     if (readings.empty() || !channels.has(Channel::measured_force)) continue;
+    if (static_cast<double>(readings.size()) * recording.sample_period_s > tuning::kHumDurationMax_s) continue;
     if (steps_of_readings(readings).step > 0.0) continue;
     const auto hum = hum_of_reading(readings, channels.of(Channel::measured_force), recording.sample_period_s);
     if (hum) found.emplace_back(i, *hum);

@@ -16,7 +16,8 @@ namespace hybridtest {
 /// its line stands out of its neighbours by more than chance allows (F test of 2 and 32 degrees of freedom, at the rate
 /// of false alarms over the lines that are tried), and the force does not follow it where its own line is less than
 /// half of what a spring of the recording's secant stiffness would make of it. Not asked: quasi-static recordings,
-/// those without a force, and readings of a coarse converter, whose steps would be lost.
+/// those without a force or longer than two minutes, over which the mains are no one sine, and readings of a coarse
+/// converter, whose steps would be lost.
 /// @param copy    holds them.
 /// @param notes   what was taken off which recordings, in words.
 /// @return        `recordings` itself where there is no hum.

@@ -86,6 +86,25 @@ TEST(MainsHum, StepsOfACoarseConverterAreNotLost) {
   EXPECT_THAT(Cleaned{recording}.notes, IsEmpty());
 }
 
+TEST(MainsHum, IsNotAskedOfRecordingsOverWhichTheMainsWander) {
+  const auto notes_after = [](double duration_s) {
+    Recording recording = made_recording(&made_motion_m, [](double t) { return spring_n(made_motion_m(t)); });
+    recording.samples = static_cast<std::size_t>(std::lround(duration_s / kSitePeriod_s));
+    for (const Channel channel : {Channel::measured_displacement, Channel::measured_force}) {
+      std::vector<double>& samples = recording.dofs[0].of(channel);
+      samples.resize(recording.samples);
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double t = kSitePeriod_s * static_cast<double>(i);
+        const bool is_force = channel == Channel::measured_force;
+        samples[i] = is_force ? spring_n(made_motion_m(t)) : made_motion_m(t) + hum_m(t);
+      }
+    }
+    return Cleaned{recording}.notes.size();
+  };
+  EXPECT_EQ(notes_after(108.0), 1U);
+  EXPECT_EQ(notes_after(132.0), 0U);
+}
+
 TEST(MainsHum, IsNotAskedWithoutTimeOrForce) {
   Recording recording = made_recording([](double t) { return made_motion_m(t) + hum_m(t); },
                                        [](double t) { return spring_n(made_motion_m(t)); });
