@@ -131,8 +131,9 @@ void SimulatedRig::load_specimen(double time_s) noexcept {
     const auto dof = static_cast<Eigen::Index>(i);
     const StageSample sample{.motion = actuators_[i].motion, .time_s = time_s, .force_n = force_n_[dof]};
     actuators_[i].given = actuators_[i].specimen_effects.before(sample);
-    displacement_m_[dof] = actuators_[i].given.displacement_m;
-    velocity_m_per_s_[dof] = actuators_[i].given.velocity_m_per_s;
+    const Motion to_law = actuators_[i].specimen_effects.for_base(actuators_[i].given);
+    displacement_m_[dof] = to_law.displacement_m;
+    velocity_m_per_s_[dof] = to_law.velocity_m_per_s;
   }
   SiteVector before_n = force_n_;
   specimen_->impose(displacement_m_, velocity_m_per_s_, force_n_);

@@ -26,7 +26,8 @@ struct StageSample {
 ///
 /// The stages of a site are a base (a transfer system, a law, a perfect sensor) with a list of effects.
 /// In the order of the list each may change the motion that goes into the base, then, in the
-/// same order, what comes out. Stepped once per sample; allocates nothing after construction.
+/// same order, what comes out. A wrong number of the base stands next to it, wherever it is in the list: the
+/// others act beside the base as it really is. Stepped once per sample; allocates nothing after construction.
 /// Deterministic: a random one takes its seed as a parameter.
 class Effect {
  public:
@@ -36,8 +37,14 @@ class Effect {
   virtual void before(const StageSample& /*sample*/, Motion& /*motion*/) noexcept {}
   /// Changes what comes out: displacement [m] of a transfer system or displacement sensor, force
   /// [N], positive when it resists a positive displacement, of a specimen or force sensor.
-  /// The motion is the one that the base was given.
+  /// The motion is the one that the base was given, but for wrong numbers of it.
   virtual void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& /*output*/) noexcept {}
+  /// Whether it is a wrong number of the base, with the two functions below.
+  [[nodiscard]] virtual bool is_of_base() const noexcept { return false; }
+  /// After every before(), for the base alone.
+  virtual void before_base(Motion& /*motion*/) noexcept {}
+  /// Before every after(): the output of the base alone.
+  virtual void after_base(double& /*output*/) noexcept {}
   /// Told once, before the first sample, which of StageSample::inputs it follows. Without that, or without inputs, an
   /// effect that follows one takes its nominal value.
   virtual void follow_input(std::size_t /*position*/) noexcept {}

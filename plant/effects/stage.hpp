@@ -19,15 +19,22 @@ class StageEffects {
   template <class Base>
   [[nodiscard]] double step(const StageSample& sample, Base&& base) noexcept {
     const Motion motion = before(sample);
-    return after(sample, motion, base(motion));
+    return after(sample, motion, base(for_base(motion)));
   }
-  /// The two halves of step(), for a base that several stages share.
+  /// The parts of step(), for a base that several stages share: the motion as changed,
   [[nodiscard]] Motion before(const StageSample& sample) noexcept {
     Motion motion = sample.motion;
     for (const auto& effect : effects_) effect->before(sample, motion);
     return motion;
   }
+  /// the one that the base is given,
+  [[nodiscard]] Motion for_base(Motion motion) const noexcept {
+    for (Effect* const number : of_base_) number->before_base(motion);
+    return motion;
+  }
+  /// and what comes out. @param motion   of before(); @param output   of the base.
   [[nodiscard]] double after(const StageSample& sample, const Motion& motion, double output) noexcept {
+    for (Effect* const number : of_base_) number->after_base(output);
     for (const auto& effect : effects_) effect->after(sample, motion, output);
     return output;
   }
@@ -36,6 +43,7 @@ class StageEffects {
 
  private:
   std::vector<std::unique_ptr<Effect>> effects_;
+  std::vector<Effect*> of_base_;  // of these
 };
 
 }  // namespace hybridtest

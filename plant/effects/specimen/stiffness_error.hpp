@@ -11,7 +11,7 @@ namespace hybridtest {
 /// law that yields the elastic stiffness is off by the ratio e, and the strength is not.
 class StiffnessError final : public Effect {
  public:
-  static constexpr std::string_view kEquation = "y = (1 + e) x, F = F0(y) + dk y";
+  static constexpr std::string_view kEquation = "F = F0((1 + e) x) + dk x";
   static constexpr std::string_view kSource = "Hooke's law; a wrong number of the user's model";
   static constexpr EffectTraits kTraits{.family = EffectFamily::scale, .number = ModelNumber::stiffness};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_error_ratio",
@@ -30,7 +30,8 @@ class StiffnessError final : public Effect {
 
   StiffnessError(std::span<const double> values, double /*sample_period_s*/)
       : ratio_{1.0 + values[0]}, stiffness_n_per_m_{values[1]} {}
-  void before(const StageSample& /*sample*/, Motion& motion) noexcept override { motion.displacement_m *= ratio_; }
+  [[nodiscard]] bool is_of_base() const noexcept override { return true; }
+  void before_base(Motion& motion) noexcept override { motion.displacement_m *= ratio_; }
   void after(const StageSample& /*sample*/, const Motion& motion, double& force_n) noexcept override {
     force_n += stiffness_n_per_m_ * motion.displacement_m;
   }

@@ -22,13 +22,12 @@ class StrengthError final : public Effect {
                                                           .neutral = 0.0}};
 
   StrengthError(std::span<const double> values, double /*sample_period_s*/) : scale_{1.0 + values[0]} {}
-  void before(const StageSample& /*sample*/, Motion& motion) noexcept override {
+  [[nodiscard]] bool is_of_base() const noexcept override { return true; }
+  void before_base(Motion& motion) noexcept override {
     motion.displacement_m /= scale_;
     motion.velocity_m_per_s /= scale_;
   }
-  void after(const StageSample& /*sample*/, const Motion& /*motion*/, double& force_n) noexcept override {
-    force_n *= scale_;
-  }
+  void after_base(double& force_n) noexcept override { force_n *= scale_; }
   void reset() noexcept override {}
 
  private:

@@ -38,6 +38,15 @@ struct Driver {
           [=](double t) { return -amplitude * omega_rad_per_s * omega_rad_per_s * std::sin(omega_rad_per_s * t); }};
 }
 
+/// The base with a wrong number, where the effect is one.
+[[nodiscard]] inline double base_under(Effect& effect, Motion motion,
+                                       const std::function<double(const Motion&)>& base) {
+  effect.before_base(motion);
+  double output = base(motion);
+  effect.after_base(output);
+  return output;
+}
+
 /// What comes out of a base under one effect at each of `samples` samples.
 [[nodiscard]] inline std::vector<double> response(
     Effect& effect, const Driver& driver, int samples,
@@ -53,7 +62,7 @@ struct Driver {
                              .force_n = output};
     Motion motion = sample.motion;
     effect.before(sample, motion);
-    output = base(motion);
+    output = base_under(effect, motion, base);
     effect.after(sample, motion, output);
     outputs.push_back(output);
   }
@@ -69,7 +78,7 @@ struct Driver {
     const StageSample sample{.motion = {.displacement_m = path[i]}, .time_s = kBenchPeriod_s * static_cast<double>(i)};
     Motion motion = sample.motion;
     effect.before(sample, motion);
-    double output = base(motion);
+    double output = base_under(effect, motion, base);
     effect.after(sample, motion, output);
     outputs.push_back(output);
   }

@@ -58,7 +58,10 @@ std::vector<double> driven(Effect& effect) {
     const StageSample sample{.motion = motion, .time_s = t, .force_n = force};
     Motion given = motion;
     effect.before(sample, given);
-    double output = given.displacement_m;
+    Motion of_base = given;
+    effect.before_base(of_base);
+    double output = of_base.displacement_m;
+    effect.after_base(output);
     effect.after(sample, given, output);
     force = motion.displacement_m + 0.05 * motion.velocity_m_per_s;  // of a specimen that dissipates energy
     outputs.push_back(output);

@@ -236,6 +236,22 @@ TEST(StrengthError, ChangesStrengthButNotStiffness) {
   for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
 }
 
+/// A stop beside a law whose numbers are wrong stands where it stands, before and behind them in the list.
+TEST(StageEffects, WrongNumbersOfTheLawChangeNothingBesideIt) {
+  const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
+  for (const bool is_first : {true, false}) {
+    std::vector<std::unique_ptr<Effect>> effects;
+    effects.push_back(made(kSpecimen, "strength_error", {1.0}));
+    effects.push_back(made(kSpecimen, "stiffness_error", {0.5, 0.0}));
+    effects.insert(is_first ? effects.begin() : effects.end(), made(kSpecimen, "contact", {100.0, 0.3}));
+    StageEffects stage{std::move(effects)};
+    // 15 per metre up to 16; the stop adds 100 per metre from 0.3 m on.
+    for (const auto& [x, expected] : {std::pair{0.2, 3.0}, std::pair{0.5, 7.5 + 20.0}, std::pair{2.0, 16.0 + 170.0}}) {
+      EXPECT_NEAR(stage.step({.motion = {.displacement_m = x}}, plastic), expected, 1e-12) << x << is_first;
+    }
+  }
+}
+
 TEST(StrengthDegradation, ReducesStrengthButNotStiffness) {
   const double left = std::exp(-5.0 / 4.0);
   const auto of_strength = made(kSpecimen, "strength_degradation", {4.0});
