@@ -308,7 +308,7 @@ void add_notes(Diagnosis& diagnosis, std::span<const Segment> segments) {
   }
   for (const RankedCause& cause : diagnosis.report.ranking) {
     for (const report::ReportedParameter& parameter : cause.parameters) {
-      if (cause.is_cause && parameter.is_at_bound) {
+      if (cause.is_cause && parameter.is_at_bound && !parameter.is_at_least) {
         diagnosis.report.notes.push_back(cause.effect + ": " + parameter.name +
                                          " is at the limit of its search range.");
       }
@@ -370,11 +370,12 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   // Smoothed as the fitted ones are.
   const bool is_smoothed = std::ranges::any_of(segments, &Segment::is_smoothed);
   const SiteModel completed = is_smoothed ? with_effects(model, causes_of(stages, {})) : model;
-  const std::vector<Segment> held_out =
+  std::vector<Segment> held_out =
       segments_in_role(model, recordings, RecordingRole::held_out, settings.dof, workers,
                        [&](const Recording& recording, std::size_t position) {
                          return modelled_segments(model, recording, settings.dof, position, completed, progress);
                        });
+  tell_held_out_noise(model, stages, held_out);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {
     drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);

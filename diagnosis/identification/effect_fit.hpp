@@ -12,6 +12,7 @@ struct ParameterEstimate {
   double value = 0.0;
   double standard_error = 0.0;  // from the differences between blocks, and from what repeats of the residual
   bool at_bound = false;        // of its search range
+  bool at_least = false;        // at the upper one, where it does not show any more: as large or larger
   double freedom = std::numeric_limits<double>::infinity();  // degrees of freedom of the standard error: blocks - 1
   // The standard error when every number of the model may be slightly wrong beside; what an interval is made of.
   double beside_wrong_numbers = 0.0;

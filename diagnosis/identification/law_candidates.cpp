@@ -197,7 +197,10 @@ RambergOsgood::Parameters ramberg_osgood(Values v) {
 }
 
 SelfCentring::Parameters self_centring(Values v) {
-  return {.stiffness_n_per_m = v[0], .activation_force_n = v[0] * v[1], .hardening_ratio = v[2], .flag_ratio = v[3]};
+  return {.stiffness_n_per_m = v[0],
+          .activation_force_n = v[0] * v[1],
+          .hardening_ratio = v[2],
+          .flag_ratio = v.size() > 3 ? v[3] : 0.0};
 }
 
 Takeda::Parameters takeda(Values v) {
@@ -278,6 +281,8 @@ constexpr LawReplacement kRambergOsgood =
     replacement<RambergOsgood, ramberg_osgood>("ramberg_osgood", "softens smoothly without a plateau");
 constexpr LawReplacement kSelfCentring =
     replacement<SelfCentring, self_centring>("self_centring", "returns to zero with a flag-shaped loop");
+constexpr LawReplacement kNonlinearElastic =
+    replacement<SelfCentring, self_centring>("self_centring", "softens and comes back the same way, without a loop");
 constexpr LawReplacement kTakeda = replacement<Takeda, takeda>(
     "takeda", "reloads towards its largest displacement and unloads the softer, the further it went");
 constexpr LawReplacement kPeakOriented =
@@ -318,6 +323,8 @@ struct Table {
         {kStiffness, kYield, kRoundness});
     add(form, kSelfCentring, "flag of height beta Fa above Fa", "Christopoulos et al. (2002)",
         {kStiffness, kYield, kHardening, kFlag});
+    add(form, kNonlinearElastic, "elastic to Fa, then elastic with the stiffness b k", "Christopoulos et al. (2002)",
+        {kStiffness, kYield, kHardening});
     add(form, kTakeda, "unloads with k (xy / xmax)^alpha", "Takeda, Sozen and Nielsen (1970)",
         {kStiffness, kYield, kHardening, kUnloading});
     std::vector<Searched> oriented{kStiffness, kYield, kHardening};

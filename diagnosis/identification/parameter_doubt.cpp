@@ -11,6 +11,7 @@
 
 #include "diagnosis/identification/coloured_noise.hpp"
 #include "diagnosis/identification/discrepancy.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -269,6 +270,16 @@ std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen:
   return FreeParameter{parameter.effect, parameter.parameter, parameter.unit};
 }
 
+/// Whether the prediction stays the same up to the upper end of a parameter's range, as where a strength is not
+/// reached.
+bool shows_nothing_above(const VariableProjection& projection, const Eigen::VectorXd& places,
+                         const Eigen::VectorXd& coefficients, std::size_t parameter) {
+  Eigen::VectorXd at_end = places;
+  at_end[static_cast<Eigen::Index>(parameter)] = 1.0;
+  const Eigen::VectorXd here = projection.predicted(places, coefficients);
+  return (projection.predicted(at_end, coefficients) - here).norm() <= tuning::kModelAllowance * here.norm();
+}
+
 }  // namespace
 
 void estimate_parameters(const VariableProjection& projection, const IdentificationProblem& problem,
@@ -320,8 +331,17 @@ void estimate_parameters(const VariableProjection& projection, const Identificat
   }
   for (std::size_t i = 0; i < plan.searched.size(); ++i) {
     const double place = places[static_cast<Eigen::Index>(i)];
-    result[plan.searched[i].effect][plan.searched[i].parameter].at_bound =
-        place < tuning::kResolution || place > 1.0 - tuning::kResolution;
+    const SearchedParameter& searched = plan.searched[i];
+    ParameterEstimate& estimate = result[searched.effect][searched.parameter];
+    const EffectType& type = *outcome.effects[searched.effect].type;
+    const SearchRange* const range = range_of(type, type.parameters[searched.parameter]);
+    const bool is_high = place > 1.0 - tuning::kResolution;
+    estimate.at_bound = is_high || place < tuning::kResolution;
+    if (range == nullptr || !range->restriction.is_unseen_at_high) continue;
+    estimate.at_least = is_high || shows_nothing_above(projection, places, solution.coefficients, i);
+    if (!estimate.at_least) continue;
+    estimate.at_bound = true;
+    estimate.standard_error = estimate.beside_wrong_numbers = 0.0;  // no interval has an upper end
   }
   for (std::size_t i = 0; i < plan.linear.size(); ++i) {
     result[plan.linear[i].effect][plan.linear[i].parameter].at_bound = solution.held[i];

@@ -68,7 +68,7 @@ std::vector<Segment> quasi_static_segments(const Recording& recording, const Dof
   segment.inputs = inputs_of(recording);
   segment.measured = dof.of(Channel::measured_force);
   segment.measured_noise = noise_along_path(displacement_m, segment.measured);
-  segment.step_noise = steps_of_readings(segment.measured).step / std::sqrt(12.0);
+  segment.step_noise = steps_of_slow_readings(segment.measured).step / std::sqrt(12.0);
   return {std::move(segment)};
 }
 

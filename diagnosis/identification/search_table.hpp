@@ -138,8 +138,13 @@ inline constexpr std::array kRows{
                 -2.0,
                 2.0,
                 {.beside = LawUse::spring_or_none}},
-    SearchRange{
-        specimen, "strength_error", "strength_error_ratio", Scale::one, -0.9, 9.0, {.beside = LawUse::at_strength}},
+    SearchRange{specimen,
+                "strength_error",
+                "strength_error_ratio",
+                Scale::one,
+                -0.9,
+                9.0,
+                {.beside = LawUse::at_strength, .is_unseen_at_high = true}},
     SearchRange{
         specimen, "viscous_damping", "damping_n_s_per_m", Scale::damping_n_s_per_m, -2.0, 2.0, {.is_amount = true}},
     SearchRange{specimen,

@@ -56,6 +56,7 @@ Json cause_entry(const report::RankedCause& cause) {
     Json value{{"value", parameter.value}};
     if (parameter.ci95) value["ci95"] = interval(*parameter.ci95);
     if (parameter.is_at_bound) value["at_bound"] = true;
+    if (parameter.is_at_least) value["at_least"] = true;
     if (parameter.in_model) value["in_model"] = *parameter.in_model;
     entry["parameters"][parameter.name] = std::move(value);
   }

@@ -70,7 +70,11 @@ std::string parameter_text(const ReportedParameter& parameter) {
   if (is_corrected(parameter)) {
     text += fmt::format(" <small>instead of {}</small>", escaped(quantity(*parameter.in_model, parameter.unit)));
   }
-  if (parameter.is_at_bound) text += " <small class=\"warn\">at the limit of its search range</small>";
+  if (parameter.is_at_least) {
+    text += " <small>or more: these recordings do not show how much</small>";
+  } else if (parameter.is_at_bound) {
+    text += " <small class=\"warn\">at the limit of its search range</small>";
+  }
   return text + "</span>";
 }
 

@@ -88,6 +88,7 @@ struct ReportedParameter {
   double value = 0.0;
   std::optional<Interval> ci95{};
   bool is_at_bound = false;
+  bool is_at_least = false;          // at that bound it does not show any more: as large or larger
   std::optional<double> in_model{};  // of an effect that the model has: its value there
 };
 

@@ -83,7 +83,11 @@ std::string parameters_in_words(const report::RankedCause& cause) {
     text += fmt::format("      {:<32} {:.5g}", parameter.name, parameter.value);
     if (parameter.ci95) text += fmt::format("  [{:.5g}, {:.5g}]", parameter.ci95->low, parameter.ci95->high);
     if (report::is_corrected(parameter)) text += fmt::format("  instead of {:.5g}", *parameter.in_model);
-    if (parameter.is_at_bound) text += "  at the limit of its search range";
+    if (parameter.is_at_least) {
+      text += "  or more: these recordings do not show how much";
+    } else if (parameter.is_at_bound) {
+      text += "  at the limit of its search range";
+    }
     text += '\n';
   }
   return text;

@@ -285,6 +285,14 @@ ReadingSteps steps_of_readings(std::span<const double> values) {
   return least < tuning::kStepCoherenceMin ? ReadingSteps{} : result;
 }
 
+ReadingSteps steps_of_slow_readings(std::span<const double> values) {
+  const ReadingSteps steps = steps_of_readings(values);
+  std::vector<double> apart;
+  for (std::size_t i = 1; i < values.size(); ++i) apart.push_back(std::abs(values[i] - values[i - 1]));
+  const bool is_of_protocol = steps.step > 0.0 && upper_median(std::move(apart)) > 0.5 * steps.step;
+  return is_of_protocol ? ReadingSteps{} : steps;
+}
+
 namespace {
 
 bool has(const SiteModel& model, const EffectType* type) {
@@ -292,8 +300,9 @@ bool has(const SiteModel& model, const EffectType* type) {
 }
 
 /// Coarse steps of one sensor, unless they are too small to matter for a model.
-std::optional<Trace> trace_of_sensor(EffectInterface sensor, Channel channel, const std::vector<double>& values) {
-  const double step = steps_of_readings(values).step;
+std::optional<Trace> trace_of_sensor(EffectInterface sensor, const Recording& recording, Channel channel,
+                                     const std::vector<double>& values) {
+  const double step = (recording.is_quasi_static ? steps_of_slow_readings(values) : steps_of_readings(values)).step;
   const EffectType* const type = find_effect(sensor, DigitTrace::rounding);
   const double variance =
       step * step / 12.0;  // Widrow and Kollar (2008): of an even error between half a step each way
@@ -311,9 +320,10 @@ std::vector<Trace> traces_of(const Recording& recording, const DofRecording& dof
     traces = traces_of_network(dof.of(Channel::sent_displacement), dof.of(Channel::target_displacement),
                                recording.sample_period_s);
   }
-  add(trace_of_sensor(EffectInterface::displacement_sensor, Channel::measured_displacement,
+  add(trace_of_sensor(EffectInterface::displacement_sensor, recording, Channel::measured_displacement,
                       dof.of(Channel::measured_displacement)));
-  add(trace_of_sensor(EffectInterface::force_sensor, Channel::measured_force, dof.of(Channel::measured_force)));
+  add(trace_of_sensor(EffectInterface::force_sensor, recording, Channel::measured_force,
+                      dof.of(Channel::measured_force)));
   return traces;
 }
 

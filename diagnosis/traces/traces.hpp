@@ -73,4 +73,8 @@ struct ReadingSteps {
 /// @param values   finite.
 [[nodiscard]] ReadingSteps steps_of_readings(std::span<const double> values);
 
+/// The same of a test without time. It moves in equal steps by itself, and the force of a spring with it: they are the
+/// converter's only where most successive readings are less than half a step apart.
+[[nodiscard]] ReadingSteps steps_of_slow_readings(std::span<const double> values);
+
 }  // namespace hybridtest

@@ -209,6 +209,7 @@ namespace {
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
   report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
   parameter.is_at_bound = estimate.at_bound;
+  parameter.is_at_least = estimate.at_least;
   const double half = half_interval_95(estimate);
   if (half > 0.0) parameter.ci95 = report::Interval{estimate.value - half, estimate.value + half};
   return parameter;
@@ -358,7 +359,8 @@ Verdict verdict_with(std::span<const Trace> traces, Verdict verdict, const GapPa
     case Verdict::set:
       // The set is kept, unless the choice between its members changes hardly anything.
       return parts.traced < (1.0 - tuning::kHardlyLeft) * parts.all() ? Verdict::set : Verdict::named;
-    default: return parts.left <= tuning::kHardlyLeft * parts.all() ? Verdict::named : Verdict::partial;
+      // What the channels leave counts where it shows beside what the digits hold.
+    default: return parts.left <= tuning::kHardlyLeft * parts.traced ? Verdict::named : Verdict::partial;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <string_view>
@@ -420,6 +421,7 @@ bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome&
            traits.number == ModelNumber::none;
   });
   if (another_has_one) return false;
+  if (std::ranges::find(law.parameters, "flag_ratio", &EffectParameter::name) == law.parameters.end()) return true;
   const ParameterEstimate& flag =
       Suspect{problem, fit, fit.effects[position], fit.parameters[position]}.parameter("flag_ratio");
   // A bound is an end of 0 to 1.
@@ -449,9 +451,32 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
 
 namespace {
 
+/// A law of another form that stays elastic all the time is a spring, and says nothing of its form.
+std::string law_refuted(const Suspect& suspect) {
+  const std::unique_ptr<Law> law = suspect.effect.type->replacement->make(suspect.effect.values);
+  if (law == nullptr) return {};
+  double bent = 0.0;
+  double all = 0.0;
+  for (const FitSegment& fit : suspect.problem.segments) {
+    if (!suspect.ends_at(fit)) continue;
+    law->reset();
+    for (const Motion& motion : fit.segment.input) {
+      const double force_n = law->trial(motion.displacement_m, motion.velocity_m_per_s);
+      law->commit();
+      bent += std::pow(force_n - law->initial_stiffness_n_per_m() * motion.displacement_m, 2);
+      all += force_n * force_n;
+    }
+  }
+  if (bent > tuning::kModelAllowance * tuning::kModelAllowance * all) return {};
+  return suspect.name() + ": it would be a spring in these recordings";
+}
+
 /// What the recordings say against an effect by themselves.
 std::string contradiction(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
+  if (type.replacement != nullptr) {
+    if (std::string why = law_refuted(suspect); !why.empty()) return why;
+  }
   for (const Check& check : kChecks) {
     if (check.interface != type.interface || check.effect != type.name) continue;
     if (std::string why = check.refuted(suspect); !why.empty()) return why;

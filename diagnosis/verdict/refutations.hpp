@@ -19,8 +19,9 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
-/// Whether an effect is a self-centring law whose loop is closed (its interval of 95 % holds a flag of no height), and
-/// none of the others has a loop: what is left of it is a force that bends, as that of a load cell at its limit does.
+/// Whether an effect is a self-centring law whose loop is closed (it has no flag, or its interval of 95 % holds one of
+/// no height), and none of the others has a loop: what is left of it is a force that bends, as that of a load cell at
+/// its limit does.
 /// @param position   in the fit's effects.
 [[nodiscard]] bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit,
                                        std::size_t position);

@@ -30,9 +30,13 @@ FitOutcome fit_numbers(const IdentificationProblem& problem, const Identificatio
   return refit_effects(problem, search_effects(coarse, numbers_of(coarse), false).effects, false);
 }
 
-/// The effects that explain the gap, from the library as it stands.
+/// The effects that explain the gap, from the library as it stands; none where its best is not decidedly better.
 Growth find_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                     const PartProgress& progress) {
+  if (selection.library.empty() ||
+      selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
+    return {.fit = selection.baseline, .accepted = {}};
+  }
   Growth growth = best_start(problem, coarse, selection, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   // Beside a leader alone nothing was accepted.
@@ -62,17 +66,37 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   settle(problem, coarse, selection, growth);
 }
 
-/// Removes a law without a loop from the library, if one was found.
+/// Removes laws without a loop from the library, if one was found.
 bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcome& found, Selection& selection) {
-  for (std::size_t i = 0; i < found.effects.size(); ++i) {
-    if (!is_law_without_loop(problem, found, i)) continue;
-    std::erase_if(selection.library,
-                  [&](const Candidate& candidate) { return candidate.type == found.effects[i].type; });
-    selection.alike.clear();
-    weigh(selection.library, scores_of(selection.library));
-    return true;
-  }
-  return false;
+  const auto has_one = [&](const FitOutcome& fit) {
+    for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+      if (is_law_without_loop(problem, fit, i)) return true;
+    }
+    return false;
+  };
+  if (!has_one(found)) return false;
+  std::erase_if(selection.library, [&](const Candidate& candidate) {
+    return holds(found.effects, candidate.type) ? candidate.type->replacement != nullptr : has_one(candidate.fit);
+  });
+  selection.alike.clear();
+  weigh(selection.library, scores_of(selection.library));
+  return true;
+}
+
+/// Where a law without a loop was found, the search again without it: a load cell that gives way at its limit bends the
+/// force just so. The law stays where nothing else comes near what it explains.
+void doubt_law_without_loop(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                            Selection& selection, const PartProgress& progress, Growth& growth) {
+  Selection rest = selection;
+  if (!drop_law_without_loop(problem, growth.fit, rest)) return;
+  Growth other = find_effects(problem, coarse, rest, progress);
+  const double gap = gap_energy(problem, selection.by_numbers).excess();
+  const GapEnergy left_by_law = gap_energy(problem, growth.fit);
+  const GapEnergy left = gap_energy(problem, other.fit);
+  const bool law_explains = !left_by_law.is_clear() || left_by_law.excess() <= tuning::kHardlyLeft * gap;
+  if (law_explains && left.is_clear() && left.excess() > tuning::kAnotherEffectExplains * gap) return;
+  selection = std::move(rest);
+  growth = std::move(other);
 }
 
 /// A law in the place of all that was found.
@@ -188,16 +212,8 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
   weigh(selection.library, scores_of(selection.library));
-  const auto is_explained = [&] {
-    return !selection.library.empty() &&
-           selection.library.front().score >= held_out_score(problem, selection.baseline) + decisive_gain(problem);
-  };
-  Growth growth{.fit = selection.baseline, .accepted = {}};
-  if (is_explained()) growth = find_effects(problem, coarse, selection, progress);
-  if (drop_law_without_loop(problem, growth.fit, selection)) {
-    growth = {.fit = selection.baseline, .accepted = {}};
-    if (is_explained()) growth = find_effects(problem, coarse, selection, progress);
-  }
+  Growth growth = find_effects(problem, coarse, selection, progress);
+  doubt_law_without_loop(problem, coarse, selection, progress, growth);
   look_again(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_special_laws(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_all_laws(problem, coarse, policy, selection, growth);

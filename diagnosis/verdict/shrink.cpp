@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
 
@@ -49,9 +50,12 @@ std::vector<double> predicted_with(const SiteModel& model, std::span<const Effec
   return predicted;
 }
 
-/// Residual that a correct model leaves [standard deviation]. Coloured noise and hum show only in a residual, so that
-/// they are taken from the fitted segments.
-double floor_of(const SiteModel& model, const Segment& segment, std::span<const FitSegment> fitted) {
+/// Residual that a correct model leaves [standard deviation]. Coloured noise and hum of the force show only in a
+/// residual, so that they are taken from the fitted segments; those of the motion where the actuator's channel tells
+/// them.
+/// @param after   the prediction with the causes.
+double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,
+                std::span<const double> after, std::span<const FitSegment> fitted) {
   double energy = 0.0;
   double alike = 0.0;
   for (const FitSegment& fit : fitted) {
@@ -59,7 +63,12 @@ double floor_of(const SiteModel& model, const Segment& segment, std::span<const 
     energy += fit.sample_floor * fit.sample_floor;
     alike += 1.0;
   }
-  return std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
+  const double floor =
+      std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
+  if (segment.told_noise.empty()) return floor;
+  std::vector<double> without = predict(model, with_noise(segment, segment.told_noise, -1.0), causes);
+  for (std::size_t i = 0; i < without.size(); ++i) without[i] -= after[i];
+  return std::max(floor, std::hypot(segment.measured_noise, std::sqrt(mean_square(without))));
 }
 
 void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,
@@ -67,7 +76,7 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
   const std::vector<double> before = predict(model, segment);
   const std::vector<double> after = predicted_with(model, causes, segment);
   const std::size_t n = segment.measured.size();
-  const double floor = floor_of(model, segment, fitted);
+  const double floor = floor_of(model, causes, segment, after, fitted);
   double output = 0.0;
   for (const double value : segment.measured) output += value * value / static_cast<double>(n);
   if (output <= 0.0) return;
@@ -131,13 +140,23 @@ bool is_worse(const Shrink& held_out) {
 
 namespace {
 
+/// Of the gap, what the causes of a part have to remove at least; nothing where they do not act.
+double least_removed(const Shrink& held_out, const VerdictPolicy& policy) {
+  if (!(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return 0.0;
+  const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);
+  return (1.0 - policy.partial_leaves) * explainable;
+}
+
 /// Whether the causes act, but certainly leave more of what can be explained of the gap than is accepted; or make it
 /// larger, however uncertain the gap is.
 bool contradicts(const Shrink& held_out, const VerdictPolicy& policy) {
   if (is_worse(held_out)) return true;
-  if (!held_out.ci95 || !(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return false;
-  const double explainable = 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2);
-  return held_out.ci95->high < (1.0 - policy.partial_leaves) * explainable;
+  return held_out.ci95 && held_out.ci95->high < least_removed(held_out, policy);
+}
+
+/// What was found in part only has to remove as much as a part does, as far as is known.
+bool contradicts_a_part(const Shrink& held_out, const VerdictPolicy& policy) {
+  return is_worse(held_out) || held_out.variance_removed < least_removed(held_out, policy);
 }
 
 /// What was named leaves, on recordings that were not fitted, more than a name allows.
@@ -149,13 +168,13 @@ bool leaves_a_part(const Shrink& held_out, const VerdictPolicy& policy) {
 }  // namespace
 
 Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out, const VerdictPolicy& policy) {
-  const auto against = [&](const Shrink& one) { return contradicts(one, policy); };
   if (!report::names_a_cause(verdict) || held_out.empty()) return verdict;
-  if (!std::ranges::all_of(held_out, against)) {
-    const bool is_part = verdict == Verdict::named &&
-                         std::ranges::any_of(held_out, [&](const Shrink& one) { return leaves_a_part(one, policy); });
-    return is_part ? Verdict::partial : verdict;
-  }
+  const auto leaves = [&](const Shrink& one) { return leaves_a_part(one, policy); };
+  if (verdict == Verdict::named && std::ranges::any_of(held_out, leaves)) verdict = Verdict::partial;
+  const auto is_against = [&](const Shrink& one) {
+    return verdict == Verdict::partial ? contradicts_a_part(one, policy) : contradicts(one, policy);
+  };
+  if (!std::ranges::all_of(held_out, is_against)) return verdict;
   const bool is_clear = std::ranges::any_of(
       held_out, [](const Shrink& one) { return one.nrmse_before > tuning::kNearFloor * one.floor_nrmse; });
   return is_clear ? Verdict::unknown : Verdict::none;

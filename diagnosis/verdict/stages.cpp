@@ -51,6 +51,14 @@ std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span
   return kept;
 }
 
+void tell_held_out_noise(const SiteModel& model, const std::vector<Stage>& stages, std::vector<Segment>& held_out) {
+  SiteModel completed = model;
+  for (const EffectSetting& cause : causes_of(stages, {})) add_effect(completed, cause);
+  for (const Stage& stage : stages) {
+    tell_held_out_noise(stage.problem, stage.selection.chosen, completed, held_out);
+  }
+}
+
 std::span<const FitSegment> with_the_same_noise(const IdentificationProblem& settled,
                                                 std::span<const EffectSetting> causes) {
   const auto is_number = [](const EffectSetting& cause) { return cause.type->traits.number != ModelNumber::none; };

@@ -39,6 +39,9 @@ struct Stage {
 /// noise floor with and without the cause, does not show how much of the gap is removed.
 [[nodiscard]] std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments);
 
+/// Tells held-out segments of the specimen the noise of their motion, where a stage explains the actuator's channel.
+void tell_held_out_noise(const SiteModel& model, const std::vector<Stage>& stages, std::vector<Segment>& held_out);
+
 /// Whose settled noise held-out recordings have, too. Beside numbers of the model alone, whose form is right, what
 /// repeats in no function of the motion is noise. The form of an effect or of a law is never quite that of the
 /// specimen: beside one, what it misses would pass for noise, and only what the channels show counts.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "diagnosis/identification/effect_fit.hpp"
@@ -16,5 +17,10 @@ namespace hybridtest {
 /// @return whether any segment was told.
 bool tell_noise(const IdentificationProblem& problem, const FitOutcome& chosen, const SiteModel& completed,
                 std::vector<Segment>& segments);
+
+/// The same of recordings that were not fitted, as large as the fitted ones say: `problem` and `chosen` as above.
+/// @param completed   the model with all causes.
+void tell_held_out_noise(const IdentificationProblem& problem, const FitOutcome& chosen, const SiteModel& completed,
+                         std::span<Segment> held_out);
 
 }  // namespace hybridtest

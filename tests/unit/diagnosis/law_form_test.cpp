@@ -12,6 +12,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
+#include "mechanics/laws/self_centring.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -68,6 +69,46 @@ TEST(LawForm, LoadCellThatGivesWayAtItsLimitIsNoLaw) {
   const report::RankedCause& cause = diagnosis.report.ranking.front();
   EXPECT_EQ(cause.interface + "." + cause.effect, "force_sensor.saturation");
   EXPECT_NEAR(value_of(cause, "limit_n"), kLimit_n, 0.02 * kLimit_n);  // 2 to the power 1/12 is 6 % at the corner
+}
+
+/// A rocking wall softens and comes back the same way: no limit of a load cell bends a force like that.
+TEST(LawForm, SpecimenThatSoftensWithoutALoopIsALaw) {
+  const SelfCentring::Parameters rocking{kMadeStiffness_n_per_m, 16e3, 0.2, 0.0};
+  SiteModel bilinear = made_model();
+  bilinear.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{kMadeStiffness_n_per_m, kYield_n, kHardening});
+  };
+  for (const SiteModel& model : {elastic_model(kMadeStiffness_n_per_m), bilinear}) {
+    SelfCentring law{rocking};
+    const Diagnosis diagnosis = diagnosis_of(model, recording_of(law));
+    EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+    const report::RankedCause& cause = only_cause(diagnosis);
+    EXPECT_EQ(cause.law, "self_centring");
+    EXPECT_NEAR(value_of(cause, "stiffness_n_per_m"), kMadeStiffness_n_per_m, 1e-3 * kMadeStiffness_n_per_m);
+    EXPECT_NEAR(value_of(cause, "activation_force_n"), 16e3, 16.0);
+    EXPECT_NEAR(value_of(cause, "hardening_ratio"), 0.2, 1e-3);
+    EXPECT_EQ(value_of(cause, "flag_ratio"), 0.0);
+  }
+}
+
+/// However much stronger it is: the recordings tell that it does not yield, and nothing of its strength.
+TEST(LawForm, SpecimenThatDoesNotYieldIsAStrengthThatIsWrong) {
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{0.9 * kMadeStiffness_n_per_m, kYield_n, kHardening});
+  };
+  Elastic real{kMadeStiffness_n_per_m};
+  const Diagnosis diagnosis = diagnosis_of(model, recording_of(real));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  EXPECT_EQ(only_cause(diagnosis).effect, "strength_error");
+  const report::ReportedParameter* const strength = find_parameter(only_cause(diagnosis), "strength_error_ratio");
+  ASSERT_NE(strength, nullptr);
+  // The largest force, less what it passed the model's strength by.
+  EXPECT_GE(strength->value, kMadeStiffness_n_per_m * kLargest_m / kYield_n - 1.1);
+  EXPECT_TRUE(strength->is_at_least);
+  EXPECT_FALSE(strength->ci95);
+  ASSERT_EQ(diagnosis.report.corrections.size(), 1U);
+  EXPECT_NEAR(value_of(diagnosis.report.corrections.front(), "stiffness_error_ratio"), 1.0 / 0.9 - 1.0, 1e-3);
 }
 
 /// Whatever the user believes of the stiffness, from a tenth to ten times the real one.

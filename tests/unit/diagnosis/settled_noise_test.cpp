@@ -131,6 +131,36 @@ TEST(SettledNoise, RightModelIsNoneWithEveryLawAndSmoothing) {
   EXPECT_LE(wrong, 1);  // of 36; over 10 draws of each and an earthquake-like motion, 720, none was
 }
 
+/// What an actuator leaves of the measured motion is noise of the specimen's input, in a held-out recording too,
+/// whatever law was found.
+TEST(SettledNoise, ColouredNoiseOfTheMotionIsInTheFloorOfALaw) {
+  const NamedLaw& bilinear = kLaws[1];
+  constexpr double kNoise_m = 1e-4;
+  std::array<Recording, 2> recordings;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const std::unique_ptr<Law> real = bilinear.make();
+    recordings.at(i) = made_recording([](double t) { return made_motion_m(t); },
+                                      [&](double t) {
+                                        return force_n(*real, {0.0, 0.0}, t, 1.0);
+                                      },
+                                      10.0, i + 1);
+    std::vector<double>& read_m = recordings.at(i).dofs[0].of(Channel::measured_displacement);
+    const std::vector<double> noise_m =
+        made_noise({.correlation = 0.95}, read_m.size(), kNoise_m, kSitePeriod_s, i + 1);
+    for (std::size_t j = 0; j < read_m.size(); ++j) read_m[j] += noise_m[j];
+  }
+  recordings[1].file = "held_out.csv";
+  recordings[1].role = RecordingRole::held_out;
+  const Diagnosis diagnosis = diagnose(made_model(), recordings, {});
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  EXPECT_EQ(diagnosis.report.ranking.front().law, "bilinear");
+  ASSERT_TRUE(diagnosis.report.interface_shrink);
+  // Noise of the motion times the stiffness that the specimen has at the time; a law that follows its noise answers
+  // less.
+  const report::Shrink& shrink = *diagnosis.report.interface_shrink;
+  EXPECT_NEAR(shrink.nrmse_after / shrink.floor_nrmse, 1.0, 0.15);
+}
+
 TEST(SettledNoise, HeldOutRecordingHasColouredNoiseToo) {
   const NamedLaw& bilinear = kLaws[1];
   const Beside damping{6e3, 0.0};

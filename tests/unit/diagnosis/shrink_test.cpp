@@ -16,6 +16,7 @@ Shrink removing(Interval removed, double before = 0.1, double changed = 0.08) {
   shrink.nrmse_before = before;
   shrink.floor_nrmse = 0.01;
   shrink.changed_nrmse = changed;
+  shrink.variance_removed = 0.5 * (removed.low + removed.high);
   shrink.ci95 = removed;
   return shrink;
 }
@@ -28,7 +29,7 @@ TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
   for (const Verdict verdict : {Verdict::named, Verdict::set, Verdict::partial}) {
     EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2})), Verdict::unknown);
     EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.2}, 0.015)), Verdict::none) << "there is hardly a gap";
-    EXPECT_EQ(carried_over(verdict, removing({-0.4, 0.72})), verdict) << "it may well carry over";
+    EXPECT_EQ(carried_over(verdict, removing({0.66, 0.8})), verdict) << "it may well carry over";
     EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65})), Verdict::unknown) << "of a gap ten times its floor";
     EXPECT_EQ(carried_over(verdict, removing({0.45, 0.65}, 0.018)), verdict) << "no more can be explained";
     EXPECT_EQ(carried_over(verdict, removing({0.29, 0.43}, 0.0135)), verdict) << "nor here, less than a half";
@@ -40,13 +41,24 @@ TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
   EXPECT_EQ(carried_over(Verdict::unknown, removing({-0.4, 0.2}, 0.015)), Verdict::unknown);
 }
 
+TEST(CarryingOver, PartThatLeavesMostOfTheGapIsNone) {
+  const Shrink likely_more = removing({-0.13, 0.715});
+  EXPECT_EQ(carried_over(Verdict::set, likely_more), Verdict::set) << "not certainly";
+  EXPECT_EQ(carried_over(Verdict::partial, likely_more), Verdict::unknown);
+  EXPECT_EQ(carried_over(Verdict::partial, likely_more, {.partial_leaves = 0.8}), Verdict::partial) << "allowed";
+  Shrink named = likely_more;
+  named.unknown_share = 0.7;
+  named.nrmse_after = 0.08;
+  EXPECT_EQ(carried_over(Verdict::named, named), Verdict::unknown);
+}
+
 TEST(CarryingOver, DropsCauseThatMakesTheGapLarger) {
   // One block in which the model runs away makes the interval wide.
   Shrink shrink = removing({-60.0, 0.98});
   shrink.nrmse_after = 0.12;
-  EXPECT_EQ(carried_over(Verdict::partial, shrink), Verdict::unknown);
+  EXPECT_EQ(carried_over(Verdict::set, shrink), Verdict::unknown);
   shrink.nrmse_after = 0.1004;  // by less than the floor, sqrt(0.1^2 + 0.01^2) = 0.1005
-  EXPECT_EQ(carried_over(Verdict::partial, shrink), Verdict::partial);
+  EXPECT_EQ(carried_over(Verdict::set, shrink), Verdict::set);
 }
 
 TEST(CarryingOver, KeepsCauseOfOneChannelDespiteOtherChannel) {

@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/random.hpp"
 #include "diagnosis/traces/traces.hpp"
+#include "diagnosis/verdict/causes.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 #include "tests/unit/diagnosis/made_signals.hpp"
 
@@ -216,6 +218,43 @@ TEST(NetworkTrace, JitterOfLittleMoreThanAPeriodIsNoLoss) {
     ASSERT_FALSE(loss.empty());
     EXPECT_EQ(loss[0].effect.type->name, "loss") << seed;
   }
+}
+
+/// Cycles of growing size in steps of one size, each reached within a twentieth of it.
+std::vector<double> slow_protocol_m(double step_m) {
+  std::vector<double> values;
+  double reached = 0.0;
+  for (int cycle = 1; cycle <= 6; ++cycle) {
+    for (const double turn : {10.0 * cycle, -10.0 * cycle, 0.0}) {
+      while (std::abs(turn - reached) > 0.5) values.push_back(step_m * (reached += turn > reached ? 1.0 : -1.0));
+    }
+  }
+  return with_noise(std::move(values), 0.05 * step_m);
+}
+
+TEST(SlowReadings, EqualStepsOfTheProtocolAreNoneOfTheConverter) {
+  const std::vector<double> protocol_m = slow_protocol_m(4e-4);
+  EXPECT_NEAR(steps_of_readings(protocol_m).step, 4e-4, 4e-6);  // what they would be taken for
+  EXPECT_EQ(steps_of_slow_readings(protocol_m).step, 0.0);
+  // A converter that is coarser than the steps of the protocol shows all the same.
+  EXPECT_NEAR(steps_of_slow_readings(in_steps(protocol_m, 2e-3)).step, 2e-3, 2e-5);
+  // At the rate of a controller nothing is asked of the distance of readings.
+  EXPECT_NEAR(steps_of_slow_readings(in_steps(motion_m(), span_of(motion_m()) / 60.0)).step, span_of(motion_m()) / 60.0,
+              1e-3 * span_of(motion_m()) / 60.0);
+}
+
+TEST(VerdictWithTraces, PartStaysAPartWhereMoreThanTheDigitsIsLeft) {
+  const std::array steps{
+      Trace{.effect = {.type = find_effect(EffectInterface::displacement_sensor, "quantization"), .values = {1e-4}},
+            .in = Channel::measured_displacement,
+            .gap_share = 1e-4}};
+  using report::Verdict;
+  const GapParts little_in_digits{.traced = 1e-4, .explained = 0.99, .left = 4e-3};
+  EXPECT_EQ(verdict_with(steps, Verdict::partial, little_in_digits), Verdict::partial);
+  EXPECT_EQ(verdict_with(steps, Verdict::unknown, {.traced = 1e-4, .left = 0.2}), Verdict::partial);
+  // Nearly all of the gap is in the digits: they are its cause.
+  EXPECT_EQ(verdict_with(steps, Verdict::unknown, {.traced = 1e-4, .left = 1e-7}), Verdict::named);
+  EXPECT_EQ(verdict_with({}, Verdict::unknown, {.left = 0.2}), Verdict::unknown);
 }
 
 TEST(FindTraces, SumsRecordingsAndSkipsEffectsOfTheModel) {
