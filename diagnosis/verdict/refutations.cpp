@@ -435,7 +435,8 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
     const EffectParameter& parameter = effect.parameters[i];
     const ParameterEstimate& estimate = fit.parameters[position][i];
     const SearchRange* const range = search_range(effect, parameter);
-    if (!estimate.at_bound || range == nullptr || estimate.value == left_out(problem, effect, i)) continue;
+    if (!estimate.at_bound || estimate.at_least || range == nullptr) continue;
+    if (estimate.value == left_out(problem, effect, i)) continue;
     const double scale = problem.scales.of(range->scale);
     const bool is_upper = estimate.value > 0.5 * scale * (range->low + range->high);
     const bool is_low_chosen = range->low < 0.0 && scale * range->low > parameter.low &&
