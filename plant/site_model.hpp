@@ -26,6 +26,15 @@ struct SensorNoise {
   double force_noise_n = 0.0;         // [N] standard deviation, not negative
   std::uint64_t seed = 0;
   std::uint64_t first_stream = 0;  // two streams per actuator from here on: displacement, force
+
+  // Coloured noise beside the white one: over a time t its correlation is exp(-t / correlation time).
+  double displacement_coloured_noise_m = 0.0;    // [m] standard deviation, not negative
+  double displacement_correlation_time_s = 0.0;  // [s] positive where there is such noise
+  double force_coloured_noise_n = 0.0;           // [N] standard deviation, not negative
+  double force_correlation_time_s = 0.0;         // [s] positive where there is such noise
+
+  /// Its streams are so many beyond those of the white noise: more than all sites together have.
+  static constexpr std::uint64_t kToColouredStreams = std::uint64_t{1} << 32U;
 };
 
 /// What is known of one degree of freedom of a site: the value that a scenario's simulated rig and the

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -13,9 +12,9 @@
 #include "core/config_error.hpp"
 #include "core/random.hpp"
 #include "core/text/scalar.hpp"
+#include "diagnosis/identification/noise_of_sensors.hpp"
 #include "diagnosis/response_shrink.hpp"
 #include "diagnosis/runs/run_records.hpp"
-#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/test_response.hpp"
 #include "diagnosis/verdict/drawn_causes.hpp"
 #include "recording/error.hpp"
@@ -95,6 +94,23 @@ std::string longer_effects(const std::filesystem::path& file, std::span<const Ef
   return list;
 }
 
+/// The key `sensors` of a rig.
+std::string written_sensors(const SensorNoise& noise) {
+  std::string text =
+      fmt::format("displacement_noise_m: {}, force_noise_n: {}, seed: {}", written_number(noise.displacement_noise_m),
+                  written_number(noise.force_noise_n), noise.seed);
+  const auto add_coloured = [&](std::string_view level, double value, std::string_view correlation_time,
+                                double time_s) {
+    if (!(value > 0.0)) return;
+    text += fmt::format(", {}: {}, {}: {}", level, written_number(value), correlation_time, written_number(time_s));
+  };
+  add_coloured("displacement_coloured_noise_m", noise.displacement_coloured_noise_m, "displacement_correlation_time_s",
+               noise.displacement_correlation_time_s);
+  add_coloured("force_coloured_noise_n", noise.force_coloured_noise_n, "force_correlation_time_s",
+               noise.force_correlation_time_s);
+  return "{" + text + "}";
+}
+
 /// The scenario with compensator and rig of the site replaced by those of the model, effects of the structure added,
 /// and the laboratory rigs of other sites replaced by their models. The compensator is the model's because causes
 /// found beside it correct it. Its sensors have this noise and no other: that of the recorded test is in the recording.
@@ -103,9 +119,7 @@ Scenario scenario_with(const std::filesystem::path& file, const std::string& sit
   const std::string place = "substructures[" + site + "].";
   std::vector<std::string> overrides{
       place + "compensator=" + (model.compensators.empty() ? "{type: none}" : "\n" + model.compensators),
-      place + "rig=" + model.rig,
-      place + fmt::format("rig.sensors={{displacement_noise_m: {}, force_noise_n: {}, seed: {}}}",
-                          written_number(noise.displacement_noise_m), written_number(noise.force_noise_n), noise.seed)};
+      place + "rig=" + model.rig, place + "rig.sensors=" + written_sensors(noise)};
   if (!structure_causes.empty()) overrides.push_back("effects=\n" + longer_effects(file, structure_causes));
   for (const SubstructureScenario& other : read_scenario(file, {}).substructures) {
     if (other.id == site || !other.site.rig_is_elsewhere) continue;
@@ -134,20 +148,6 @@ std::string early_end(std::string_view which, const SimulatedTest& test, Eigen::
 void note_early_end(std::string_view which, const SimulatedTest& test, const TestResponse& recorded,
                     std::vector<std::string>& notes) {
   if (test.response.steps() < recorded.steps()) notes.push_back(early_end(which, test, recorded.steps()));
-}
-
-/// White noise of the site's sensors in its recording: what enters the structure with the measured force, and the
-/// compensators with the measured displacement. Of several degrees of freedom the root mean square.
-SensorNoise noise_of(const Recording& recording) {
-  const auto level = [&](Channel channel) {
-    double squares = 0.0;
-    for (const DofRecording& dof : recording.dofs) {
-      if (dof.has(channel)) squares += std::pow(typical_white_noise(dof.of(channel)), 2);
-    }
-    return std::sqrt(squares / static_cast<double>(recording.dofs.size()));
-  };
-  return {.displacement_noise_m = level(Channel::measured_displacement),
-          .force_noise_n = level(Channel::measured_force)};
 }
 
 /// The test of a run directory, to be simulated with other models of the site.
@@ -193,6 +193,17 @@ class RepeatedTest {
   std::vector<EffectSetting> structure_causes_;
 };
 
+/// The model with the causes, one per degree of freedom.
+std::vector<SiteModel> completed_dofs(const SiteModelFile& model, std::span<const ListedEffect> causes) {
+  std::vector<SiteModel> completed = model.dofs;
+  for (const ListedEffect& cause : causes) {
+    for (std::size_t dof = 0; dof < completed.size(); ++dof) {
+      if (!cause.dof || std::cmp_equal(*cause.dof, dof)) add_effect(completed[dof], cause.setting);
+    }
+  }
+  return completed;
+}
+
 /// Runs the completed test with drawn noise, and with drawn noise and parameters.
 PossibleTests possible_tests(const RepeatedTest& test, std::span<const Eigen::MatrixXd> doubts, SensorNoise noise,
                              const TestResponse& completed, const PartProgress& progress) {
@@ -226,7 +237,8 @@ void add_response(SiteDiagnosis& diagnosis, const SiteModelFile& model, const st
     const RepeatedTest test{model, diagnosis, scenario, id};
     const Scenario before = test.as_given();
     const TestResponse recorded = recorded_response(run, before);
-    const SensorNoise noise = noise_of(read_recording(run, RecordingRole::fit, id));
+    const SensorNoise noise = noise_of_sensors(completed_dofs(model, diagnosis.listed_causes(model)),
+                                               read_recording(run, RecordingRole::fit, id));
     const std::size_t rounds = 2 + 2 * draws_for_95();
     const SimulatedTest as_given = simulated_test(before, recorded.steps(), progress.round(0, rounds));
     const SimulatedTest completed = simulated_test(test.completed({}, {}), recorded.steps(), progress.round(1, rounds));

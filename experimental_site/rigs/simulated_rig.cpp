@@ -1,5 +1,6 @@
 #include "experimental_site/rigs/simulated_rig.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -11,6 +12,19 @@
 namespace hybridtest {
 
 static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "exchange() must not lock");
+
+namespace {
+
+/// @param stream   of the white noise beside it.
+NoisySensor::Coloured coloured_noise(double noise, double correlation_time_s, double period_s, std::uint64_t seed,
+                                     std::uint64_t stream) {
+  NoisySensor::Coloured coloured{.noise = noise, .random = Random{seed, stream + SensorNoise::kToColouredStreams}};
+  if (noise > 0.0)
+    coloured.correlation = std::exp(-period_s / checked("correlation_time_s", correlation_time_s, kPositive));
+  return coloured;
+}
+
+}  // namespace
 
 SimulatedRig::Effects SimulatedRig::effects_of(const SiteModel& model, double control_period_s) {
   const auto at = [&](EffectInterface interface) { return effects_at(model, interface, control_period_s); };
@@ -38,6 +52,11 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
   effects.resize(transfer_systems.size());
   const double displacement_noise_m = checked("displacement_noise_m", noise.displacement_noise_m, kNotNegative);
   const double force_noise_n = checked("force_noise_n", noise.force_noise_n, kNotNegative);
+  expect_in_range("displacement_coloured_noise_m", noise.displacement_coloured_noise_m, kNotNegative);
+  expect_in_range("force_coloured_noise_n", noise.force_coloured_noise_n, kNotNegative);
+  const auto coloured = [&](double level, double correlation_time_s, std::uint64_t of_stream) {
+    return coloured_noise(level, correlation_time_s, control_period_s_, noise.seed, of_stream);
+  };
   std::uint64_t stream = noise.first_stream;
   for (std::size_t i = 0; i < transfer_systems.size(); ++i, stream += 2) {
     Effects& of = effects[i];
@@ -47,8 +66,12 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
                                                     std::move(of.displacement_sensor)},
                           .specimen_effects = std::move(of.specimen),
                           .force_sensor_effects = std::move(of.force_sensor),
-                          .displacement_sensor = NoisySensor{displacement_noise_m, Random{noise.seed, stream}},
-                          .force_sensor = NoisySensor{force_noise_n, Random{noise.seed, stream + 1}}});
+                          .displacement_sensor = NoisySensor{displacement_noise_m, Random{noise.seed, stream},
+                                                             coloured(noise.displacement_coloured_noise_m,
+                                                                      noise.displacement_correlation_time_s, stream)},
+                          .force_sensor = NoisySensor{
+                              force_noise_n, Random{noise.seed, stream + 1},
+                              coloured(noise.force_coloured_noise_n, noise.force_correlation_time_s, stream + 1)}});
   }
   displacement_m_ = velocity_m_per_s_ = force_n_ = SiteVector::Zero(dofs);
 }

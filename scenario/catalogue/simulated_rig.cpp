@@ -87,6 +87,17 @@ void read_sensors(Section section, SimulatedSiteReading& site) {
   SensorNoise noise;
   noise.displacement_noise_m = section.number("displacement_noise_m", kNotNegative, 0.0);
   noise.force_noise_n = section.number("force_noise_n", kNotNegative, 0.0);
+  // Neither is written out where the file has neither: a scenario without them is the same as before.
+  const auto read_coloured = [&](const char* level, const char* correlation_time, double& noise_level, double& time_s) {
+    const bool has_level = section.has_optional(level);
+    if (!section.has_optional(correlation_time) && !has_level) return;
+    noise_level = section.number(level, kNotNegative);
+    time_s = section.number(correlation_time, kPositive);
+  };
+  read_coloured("displacement_coloured_noise_m", "displacement_correlation_time_s", noise.displacement_coloured_noise_m,
+                noise.displacement_correlation_time_s);
+  read_coloured("force_coloured_noise_n", "force_correlation_time_s", noise.force_coloured_noise_n,
+                noise.force_correlation_time_s);
   noise.seed = static_cast<std::uint64_t>(section.integer("seed", 0, std::int64_t{1} << 53, 0));
   section.finish();
   for (std::size_t i = 0; i < site.dofs.size(); ++i) {
@@ -154,7 +165,9 @@ std::vector<std::string> nominal_inputs(const SimulatedSiteReading& site) {
 
 /// A force without noise reads the same on a plateau, in a gap and without a specimen.
 bool force_always_varies(const SimulatedSiteReading& site) {
-  return site.dofs.front().noise.force_noise_n > 0.0 && reading_step(site, EffectInterface::force_sensor) == 0.0;
+  const SensorNoise& noise = site.dofs.front().noise;
+  return (noise.force_noise_n > 0.0 || noise.force_coloured_noise_n > 0.0) &&
+         reading_step(site, EffectInterface::force_sensor) == 0.0;
 }
 
 /// Without a law, the effects are the specimen.
@@ -225,8 +238,9 @@ RigReading read_simulated_rig(Section& section, int dofs, std::uint64_t first_no
   reading.type = "simulated";
   reading.transfer_delay_s = site.transfer_delay_s;
   reading.rating = site.rating;
-  reading.displacement_noise_m = site.dofs.front().noise.displacement_noise_m;
-  reading.force_noise_n = site.dofs.front().noise.force_noise_n;
+  const SensorNoise& noise = site.dofs.front().noise;
+  reading.displacement_noise_m = std::hypot(noise.displacement_noise_m, noise.displacement_coloured_noise_m);
+  reading.force_noise_n = std::hypot(noise.force_noise_n, noise.force_coloured_noise_n);
   reading.displacement_resolution_m = reading_step(site, EffectInterface::displacement_sensor);
   reading.force_always_varies = force_always_varies(site);
   reading.nominal_inputs = nominal_inputs(site);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 
@@ -12,6 +14,7 @@
 #include "mechanics/laws/bouc_wen.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
+#include "plant/sensors/noisy_sensor.hpp"
 #include "plant/specimens/elastic_specimen.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/delay.hpp"
@@ -164,7 +167,11 @@ TEST(SimulatedRig, ReconnectingRepeatsTheRun) {
                        SecondOrder::Parameters{.natural_frequency_hz = 15.0, .damping_ratio = 0.9, .delay = 4ms}, 1ms)),
                    specimen_of(std::make_unique<Bilinear>(Bilinear::Parameters{
                        .stiffness_n_per_m = kStiffness_n_per_m, .yield_force_n = 4.0e4, .hardening_ratio = 0.05})),
-                   {.displacement_noise_m = 1e-5, .force_noise_n = 50.0, .seed = 7},
+                   {.displacement_noise_m = 1e-5,
+                    .force_noise_n = 50.0,
+                    .seed = 7,
+                    .force_coloured_noise_n = 20.0,
+                    .force_correlation_time_s = 0.01},
                    1ms};
   const auto run = [&rig] {
     rig.connect();
@@ -195,6 +202,36 @@ TEST(SimulatedRig, ChannelsHaveIndependentNoise) {
   EXPECT_EQ(feedback.force_n[0], (Random{7, 1}.normal()));
   EXPECT_EQ(feedback.displacement_m[1], (Random{7, 2}.normal()));
   EXPECT_EQ(feedback.force_n[1], (Random{7, 3}.normal()));
+}
+
+TEST(SimulatedRig, ColouredNoiseHasItsTimeAndItsOwnStreams) {
+  const SimulatedRig::SensorNoise noise{.displacement_noise_m = 1.0,
+                                        .force_noise_n = 1.0,
+                                        .seed = 7,
+                                        .displacement_coloured_noise_m = 2.0,
+                                        .displacement_correlation_time_s = 0.01,
+                                        .force_coloured_noise_n = 3.0,
+                                        .force_correlation_time_s = 0.02};
+  SimulatedRig rig{transfer_systems(std::make_unique<Ideal>(), std::make_unique<Ideal>()),
+                   std::make_unique<ElasticSpecimen>(Eigen::MatrixXd::Identity(2, 2)), noise, 1ms};
+  const auto sensor = [](std::uint64_t stream, double coloured, double correlation_time_s) {
+    return NoisySensor{1.0,
+                       Random{7, stream},
+                       {.noise = coloured,
+                        .correlation = std::exp(-0.001 / correlation_time_s),
+                        .random = Random{7, stream + SensorNoise::kToColouredStreams}}};
+  };
+  std::array displacement{sensor(0, 2.0, 0.01), sensor(2, 2.0, 0.01)};
+  std::array force{sensor(1, 3.0, 0.02), sensor(3, 3.0, 0.02)};
+  rig.connect();
+  RigFeedback feedback = feedback_for(2);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(rig.exchange(command_of(SiteVector::Zero(2)), feedback), RigStatus::healthy);
+    for (const Eigen::Index dof : {0, 1}) {
+      EXPECT_EQ(feedback.displacement_m[dof], displacement[static_cast<std::size_t>(dof)].read(0.0));
+      EXPECT_EQ(feedback.force_n[dof], force[static_cast<std::size_t>(dof)].read(0.0));
+    }
+  }
 }
 
 TEST(SimulatedRig, NonFiniteCommandIsAFaultWithoutMotion) {
@@ -250,6 +287,9 @@ TEST(SimulatedRig, RejectsParametersOutOfRange) {
   EXPECT_NO_THROW(make({}, 1ms));
   EXPECT_THROW(make({.displacement_noise_m = -1.0}, 1ms), ConfigError);
   EXPECT_THROW(make({.force_noise_n = std::nan("")}, 1ms), ConfigError);
+  EXPECT_THROW(make({.displacement_coloured_noise_m = -1.0}, 1ms), ConfigError);
+  EXPECT_THROW(make({.force_coloured_noise_n = 1.0}, 1ms), ConfigError) << "no correlation time";
+  EXPECT_NO_THROW(make({.force_coloured_noise_n = 1.0, .force_correlation_time_s = 0.01}, 1ms));
   EXPECT_THROW(make({}, 0ms), ConfigError);
 }
 
@@ -266,7 +306,12 @@ TEST(SimulatedRig, ExchangeAllocatesNothing) {
                        std::make_unique<Delay>(20ms, 1ms), std::make_unique<Ideal>()),
       specimen_of(std::make_unique<BoucWen>(isolator), std::make_unique<GiuffreMenegottoPinto>(column),
                   std::make_unique<Bilinear>(beam), std::make_unique<Elastic>(1.0e6)),
-      {.displacement_noise_m = 1e-5, .force_noise_n = 50.0},
+      {.displacement_noise_m = 1e-5,
+       .force_noise_n = 50.0,
+       .displacement_coloured_noise_m = 1e-5,
+       .displacement_correlation_time_s = 0.01,
+       .force_coloured_noise_n = 50.0,
+       .force_correlation_time_s = 0.01},
       1ms};
   SimulatedRig coupled{transfer_systems(std::make_unique<Ideal>(), std::make_unique<Ideal>()),
                        std::make_unique<ElasticSpecimen>(Eigen::MatrixXd{{2.0, -1.0}, {-1.0, 3.0}}),

@@ -298,6 +298,12 @@ TEST_F(ScenarioTest, DigestChangesWithEveryValue) {
       "substructures[storey_1].rig.sensors.displacement_noise_m=2.0e-5",
       "substructures[storey_1].rig.sensors.force_noise_n=51.0",
       "substructures[storey_1].rig.sensors.seed=8",
+      "substructures[storey_1].rig.sensors={displacement_noise_m: 1.0e-5, force_noise_n: 50.0, seed: 7, "
+      "force_coloured_noise_n: 20.0, force_correlation_time_s: 0.01}",
+      "substructures[storey_1].rig.sensors={displacement_noise_m: 1.0e-5, force_noise_n: 50.0, seed: 7, "
+      "force_coloured_noise_n: 20.0, force_correlation_time_s: 0.02}",
+      "substructures[storey_1].rig.sensors={displacement_noise_m: 1.0e-5, force_noise_n: 50.0, seed: 7, "
+      "displacement_coloured_noise_m: 1.0e-6, displacement_correlation_time_s: 0.02}",
       "substructures[storey_1].control_rate_hz=1025",
       "substructures[storey_1].compensator.order=2",
       "substructures[storey_1].compensator.delay_s=0.024",

@@ -1,5 +1,8 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/random.hpp"
+#include "plant/site_model.hpp"
 #include "scenario/scenario.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
@@ -36,6 +39,29 @@ TEST(SiteNoise, DiffersBetweenSitesForOneSeed) {
   EXPECT_NE(first_n, 0.0);
   EXPECT_EQ(first_n, first_reading_n(*scenario.find("storey_1")));
   EXPECT_NE(first_n, first_reading_n(*scenario.find("storey_2")));
+}
+
+TEST(SiteNoise, ColouredNoiseIsReadWithItsTime) {
+  const ScenarioFile file;
+  const std::string sensors = "substructures[storey_1].rig.sensors=";
+  const auto reading_n = [&](const std::string& noise) {
+    return first_reading_n(*file.read(kScenarioText, {sensors + noise}).find("storey_1"));
+  };
+  const double white_n = reading_n("{force_noise_n: 50.0, seed: 7}");
+  const double both_n =
+      reading_n("{force_noise_n: 50.0, seed: 7, force_coloured_noise_n: 20.0, force_correlation_time_s: 0.01}");
+  Random coloured{7, SensorNoise::kToColouredStreams + 1};
+  EXPECT_NEAR(both_n - white_n, 20.0 * coloured.normal(), 1e-9);
+  for (const char* half : {"{force_coloured_noise_n: 20.0}", "{force_correlation_time_s: 0.01}",
+                           "{force_coloured_noise_n: 20.0, force_correlation_time_s: 0.0}",
+                           "{displacement_coloured_noise_m: -1.0e-6, displacement_correlation_time_s: 0.01}"}) {
+    EXPECT_THAT(file.errors(kScenarioText, {sensors + half}), testing::Not(testing::IsEmpty())) << half;
+  }
+}
+
+TEST(SiteNoise, WithoutColouredNoiseTheScenarioIsTheSame) {
+  const ScenarioFile file;
+  EXPECT_EQ(file.read(kScenarioText).effective.find("coloured"), std::string::npos);
 }
 
 }  // namespace
