@@ -46,8 +46,8 @@ std::vector<double> neutral_values(const EffectType& type) {
   return values;
 }
 
-/// Output of a stage with a linear base under a motion of order one.
-std::vector<double> driven(Effect& effect) {
+/// Output of a stage under a motion of order one. Its base is linear until it yields.
+std::vector<double> driven(Effect& effect, double yields_at = std::numeric_limits<double>::infinity()) {
   std::vector<double> outputs;
   double force = 0.0;
   for (int i = 0; i < 4000; ++i) {
@@ -60,7 +60,7 @@ std::vector<double> driven(Effect& effect) {
     effect.before(sample, given);
     Motion of_base = given;
     effect.before_base(of_base);
-    double output = of_base.displacement_m;
+    double output = std::clamp(of_base.displacement_m, -yields_at, yields_at);
     effect.after_base(output);
     effect.after(sample, given, output);
     force = motion.displacement_m + 0.05 * motion.velocity_m_per_s;  // of a specimen that dissipates energy
@@ -197,7 +197,9 @@ TEST_P(EveryEffect, ChangesTheSignalAwayFromNeutral) {
   const EffectType& type = *GetParam();
   Unchanged none;
   const auto effect = type.make(some_values(type), kPeriod_s);
-  EXPECT_NE(driven(*effect), driven(none));
+  // A strength changes nothing of a base that does not yield.
+  const double yields_at = effect->is_of_base() ? 0.7 : std::numeric_limits<double>::infinity();
+  EXPECT_NE(driven(*effect, yields_at), driven(none, yields_at));
 }
 
 TEST_P(EveryEffect, ResetRestoresInitialState) {
