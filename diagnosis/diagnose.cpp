@@ -369,13 +369,14 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   settle_corrections(all_judgements);
   // Smoothed as the fitted ones are.
   const bool is_smoothed = std::ranges::any_of(segments, &Segment::is_smoothed);
-  const SiteModel completed = is_smoothed ? with_effects(model, causes_of(stages, {})) : model;
+  const SiteModel completed = with_effects(model, causes_of(stages, {}));
+  const SiteModel& smoothed_by = is_smoothed ? completed : model;
   std::vector<Segment> held_out =
       segments_in_role(model, recordings, RecordingRole::held_out, settings.dof, workers,
                        [&](const Recording& recording, std::size_t position) {
-                         return modelled_segments(model, recording, settings.dof, position, completed, progress);
+                         return modelled_segments(model, recording, settings.dof, position, smoothed_by, progress);
                        });
-  tell_held_out_noise(model, stages, held_out);
+  tell_held_out_noise(completed, stages, held_out);
   const std::span<const Segment> judged = held_out.empty() ? segments : held_out;
   if (!held_out.empty() && traces.empty()) {
     drop_what_does_not_carry_over(model, held_out, settings.seed, settings.policy, stages, report.notes);

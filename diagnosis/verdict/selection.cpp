@@ -66,29 +66,30 @@ void look_again(IdentificationProblem& problem, IdentificationProblem& coarse, S
   settle(problem, coarse, selection, growth);
 }
 
-/// Removes laws without a loop from the library, if one was found.
-bool drop_law_without_loop(const IdentificationProblem& problem, const FitOutcome& found, Selection& selection) {
-  const auto has_one = [&](const FitOutcome& fit) {
-    for (std::size_t i = 0; i < fit.effects.size(); ++i) {
-      if (is_law_without_loop(problem, fit, i)) return true;
-    }
-    return false;
-  };
-  if (!has_one(found)) return false;
+bool has_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit) {
+  for (std::size_t i = 0; i < fit.effects.size(); ++i) {
+    if (is_law_without_loop(problem, fit, i)) return true;
+  }
+  return false;
+}
+
+/// The same without the law that was found, and without any other that has no loop.
+Selection without_such_laws(const IdentificationProblem& problem, const FitOutcome& found, Selection selection) {
   std::erase_if(selection.library, [&](const Candidate& candidate) {
-    return holds(found.effects, candidate.type) ? candidate.type->replacement != nullptr : has_one(candidate.fit);
+    const bool is_found_law = candidate.type->replacement != nullptr && holds(found.effects, candidate.type);
+    return is_found_law || has_law_without_loop(problem, candidate.fit);
   });
   selection.alike.clear();
   weigh(selection.library, scores_of(selection.library));
-  return true;
+  return selection;
 }
 
 /// Where a law without a loop was found, the search again without it: a load cell that gives way at its limit bends the
 /// force just so. The law stays where nothing else comes near what it explains.
 void doubt_law_without_loop(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                             Selection& selection, const PartProgress& progress, Growth& growth) {
-  Selection rest = selection;
-  if (!drop_law_without_loop(problem, growth.fit, rest)) return;
+  if (!has_law_without_loop(problem, growth.fit)) return;
+  Selection rest = without_such_laws(problem, growth.fit, selection);
   Growth other = find_effects(problem, coarse, rest, progress);
   const double gap = gap_energy(problem, selection.by_numbers).excess();
   const GapEnergy left_by_law = gap_energy(problem, growth.fit);

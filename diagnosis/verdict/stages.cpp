@@ -51,9 +51,7 @@ std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span
   return kept;
 }
 
-void tell_held_out_noise(const SiteModel& model, const std::vector<Stage>& stages, std::vector<Segment>& held_out) {
-  SiteModel completed = model;
-  for (const EffectSetting& cause : causes_of(stages, {})) add_effect(completed, cause);
+void tell_held_out_noise(const SiteModel& completed, const std::vector<Stage>& stages, std::vector<Segment>& held_out) {
   for (const Stage& stage : stages) {
     tell_held_out_noise(stage.problem, stage.selection.chosen, completed, held_out);
   }

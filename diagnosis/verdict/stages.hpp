@@ -40,7 +40,8 @@ struct Stage {
 [[nodiscard]] std::vector<Segment> at_suspects(const IdentificationProblem& problem, std::span<const Segment> segments);
 
 /// Tells held-out segments of the specimen the noise of their motion, where a stage explains the actuator's channel.
-void tell_held_out_noise(const SiteModel& model, const std::vector<Stage>& stages, std::vector<Segment>& held_out);
+/// @param completed   the model with all causes.
+void tell_held_out_noise(const SiteModel& completed, const std::vector<Stage>& stages, std::vector<Segment>& held_out);
 
 /// Whose settled noise held-out recordings have, too. Beside numbers of the model alone, whose form is right, what
 /// repeats in no function of the motion is noise. The form of an effect or of a law is never quite that of the
