@@ -158,7 +158,7 @@ TEST_P(UnrelatedInput, IsNotNamedAndChangesNothing) {
   EXPECT_EQ(diagnosis.report.verdict, expected.report.verdict);
 }
 
-INSTANTIATE_TEST_SUITE_P(Drawn, UnrelatedInput, testing::Range<std::uint64_t>(1, 21));
+INSTANTIATE_TEST_SUITE_P(Drawn, UnrelatedInput, testing::Range<std::uint64_t>(1, 9));
 
 TEST(RecordedInput, NothingIsNamedWhereTheModelIsRight) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
