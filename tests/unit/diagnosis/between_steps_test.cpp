@@ -121,6 +121,24 @@ TEST_P(DampingBehindSteps, IsFoundAndNothingElse) {
   }
 }
 
+/// The load cell is read in steps, whose error of 1.7 kN is 1.7 times what the damping changes.
+TEST(DampingBehindStepsOfTheForce, IsFoundAndNothingElse) {
+  constexpr double kStep_n = 6000.0;
+  constexpr double kDamping_n_s_per_m = 0.9e4;
+  const Recording recording = made_recording(made_motion_m, [](double t) {
+    const double force_n = kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t);
+    return kStep_n * std::round(force_n / kStep_n);
+  });
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
+  EXPECT_THAT(causes_of(diagnosis), testing::UnorderedElementsAre("quantization", "viscous_damping"));
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (cause.effect != "viscous_damping") continue;
+    // Over half a cycle, of which there are 22 here, the error of a step is of one sign.
+    const double error_n_s_per_m = kStep_n / std::sqrt(12.0 * 22.0) / 0.114;  // rms velocity
+    EXPECT_NEAR(cause.parameters.front().value, kDamping_n_s_per_m, 2.0 * error_n_s_per_m);
+  }
+}
+
 /// Of a motion of 28 mm: steps that last for many samples, and that last for one.
 INSTANTIATE_TEST_SUITE_P(SlowAndFast, DampingBehindSteps, testing::Values(0.0014, 0.0004, 0.0001));
 
