@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -111,13 +112,30 @@ void leave_out(const VerdictPolicy& policy, std::size_t position, FitOutcome res
   if (stage.judgement.may_be_set) stage.judgement.verdict = Verdict::set;
 }
 
-/// Of several effects, leaves out those with which a held-out recording is further from the model than without any, the
-/// worst first. The others are fitted again to the recordings they were found in.
+/// Whether an effect may make a held-out gap larger: with less than twice the energy of the floor left, none does.
+bool may_be_larger(const report::Shrink& held_out) {
+  return held_out.nrmse_after > std::numbers::sqrt2 * held_out.floor_nrmse;
+}
+
+/// More is left of a held-out recording with an effect than without it, by more than the floor.
+bool is_larger_with(std::span<const report::Shrink> with, std::span<const report::Shrink> without) {
+  if (with.size() != without.size()) return false;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    if (with[i].nrmse_after > std::hypot(without[i].nrmse_after, with[i].floor_nrmse)) return true;
+  }
+  return false;
+}
+
+/// Of several effects, leaves out those with which a held-out recording is further from the model than without any, or
+/// than without that one, the worst first. The others are fitted again to the recordings they were found in.
 void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
                             const VerdictPolicy& policy, std::vector<Stage>& stages, Stage& stage,
                             std::vector<std::string>& notes) {
   std::vector<report::Shrink> shrinks = left_by_all(model, held_out, seed, stages, stage);
-  while (stage.has_causes() && stage.selection.chosen.effects.size() > 1 && std::ranges::any_of(shrinks, is_worse)) {
+  const auto is_open = [&] {
+    return std::ranges::any_of(shrinks, is_worse) || std::ranges::any_of(shrinks, may_be_larger);
+  };
+  while (stage.has_causes() && stage.selection.chosen.effects.size() > 1 && is_open()) {
     FitOutcome& chosen = stage.selection.chosen;
     const FitOutcome all = chosen;
     std::size_t worst = 0;
@@ -133,6 +151,7 @@ void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> hel
     }
     chosen = all;
     if (share_left(least) >= share_left(shrinks)) return;
+    if (std::ranges::none_of(shrinks, is_worse) && !is_larger_with(shrinks, least)) return;
     notes.push_back(std::string{all.effects[worst].type->name} +
                     " is left out: with it, held-out recordings are further from the model than without.");
     leave_out(policy, worst, std::move(best), stage);

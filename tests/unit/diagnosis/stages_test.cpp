@@ -1,0 +1,67 @@
+#include "diagnosis/verdict/stages.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "diagnosis/identification/segment.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+/// What a recording that was held out tells of several causes.
+namespace hybridtest {
+namespace {
+
+using enum EffectInterface;
+using testing::ElementsAre;
+
+const EffectType* const kWithTime = find_effect(specimen, "stiffness_degradation_with_time");
+const EffectType* const kWithPath = find_effect(specimen, "stiffness_degradation");
+const EffectType* const kDamping = find_effect(specimen, "viscous_damping");
+
+/// A spring that loses 30 % of its stiffness in 12 s, in proportion to time, beside a damper; the motion is `reach`
+/// times the made one.
+std::vector<Segment> softened(double reach, double damping_n_s_per_m) {
+  const auto moved_m = [=](double t) { return reach * made_motion_m(t); };
+  const Recording recording = made_recording(moved_m, [&](double t) {
+    return (1.0 - t / 40.0) * kMadeStiffness_n_per_m * moved_m(t) +
+           damping_n_s_per_m * reach * made_velocity_m_per_s(t);
+  });
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  std::erase_if(segments, [](const Segment& segment) { return segment.to != Channel::measured_force; });
+  return segments;
+}
+
+/// A softening with time and another effect were found in one recording. What stays of them beside another one of half
+/// the motion, whose path is half as long.
+std::vector<const EffectType*> kept_with(const EffectType* other, double damping_n_s_per_m) {
+  const SiteModel model = made_model();
+  Stage stage{.problem = make_problem(model, softened(1.0, damping_n_s_per_m)), .selection = {}, .judgement = {}};
+  Selection& selection = stage.selection;
+  selection.baseline = fit_nothing(stage.problem, false);
+  selection.by_numbers = selection.baseline;
+  selection.library = {{.type = kWithTime, .fit = fit_effects(stage.problem, {kWithTime}, false)}};
+  selection.chosen = fit_effects(stage.problem, {kWithTime, other}, false);
+  selection.chosen_probabilities = {0.9, 0.9};
+  selection.shares = {0.5, 0.5};
+  stage.judgement = judge(stage.problem, selection, {});
+  std::vector<Stage> stages{stage};
+  std::vector<std::string> notes;
+  drop_what_does_not_carry_over(model, softened(0.5, damping_n_s_per_m), 1, {}, stages, notes);
+  std::vector<const EffectType*> types;
+  for (const EffectSetting& effect : stages.front().selection.chosen.effects) types.push_back(effect.type);
+  return types;
+}
+
+/// The effects fall with the inverse of time and of path. A specimen that softens in proportion to time does not: the
+/// path makes up for the difference where it was fitted.
+TEST(CarryingOver, LeavesOutACauseThatMakesTheHeldOutGapLarger) {
+  EXPECT_THAT(kept_with(kWithPath, 0.0), ElementsAre(kWithTime));
+}
+
+TEST(CarryingOver, KeepsACauseThatMakesTheHeldOutGapSmaller) {  // control
+  EXPECT_THAT(kept_with(kDamping, 2e4), ElementsAre(kWithTime, kDamping));
+}
+
+}  // namespace
+}  // namespace hybridtest
