@@ -255,7 +255,12 @@ double noise_floor(const Segment& segment, const InputErrors& errors) {
     for (const double value : values) squares += value * value;
     return std::sqrt(squares / static_cast<double>(values.size()));
   });
-  return std::hypot(std::max(segment.measured_noise, segment.step_noise), of_input, segment.smoothing_error);
+  return noise_floor_of_means(segment, of_input, 1.0);
+}
+
+double noise_floor_of_means(const Segment& segment, double of_input, double independent) {
+  const double of_readings = std::max(segment.measured_noise / std::sqrt(independent), segment.step_noise);
+  return std::hypot(of_readings, of_input, segment.smoothing_error);
 }
 
 }  // namespace hybridtest

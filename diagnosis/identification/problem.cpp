@@ -384,9 +384,7 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
   const double of_input =
       input_floor(errors, [&](std::span<const double> values) { return root_mean_square(fit.average(values)); });
-  // What a smooth curve leaves of a coarse converter's readings are its steps, for the most part: they count once.
-  const double of_readings = std::max(fit.segment.measured_noise / std::sqrt(independent), fit.segment.step_noise);
-  fit.channel_floor = std::hypot(of_readings, of_input, fit.smoothing_floor);
+  fit.channel_floor = noise_floor_of_means(fit.segment, of_input, independent);
   std::vector<std::vector<double>> wrong{errors.of_noise, errors.of_window, fit.segment.smoothing_errors};
   if (!problem.law_is_spring) wrong.push_back(change_by_smoothing(model, fit.segment));
   for (const std::vector<double>& values : wrong) {

@@ -149,6 +149,11 @@ struct InputErrors {
 
 /// Standard deviation per sample of the residual of a correct model, from noise in both channels.
 [[nodiscard]] double noise_floor(const Segment& segment, const InputErrors& errors);
+/// The same of means over samples, of which so many are independent. What a smooth curve leaves of a coarse converter's
+/// readings are its steps, for the most part: they count once, and no mean makes them less.
+/// @param of_input      what the errors of the input leave of these means.
+/// @param independent   at least 1.
+[[nodiscard]] double noise_floor_of_means(const Segment& segment, double of_input, double independent);
 
 /// The segments of one degree of freedom that a model predicts, along the chain. If the modelled force depends on
 /// velocity or acceleration, which displacement sensors measure badly, force and motion are smoothed equally

@@ -112,7 +112,7 @@ void leave_out(const VerdictPolicy& policy, std::size_t position, FitOutcome res
   if (stage.judgement.may_be_set) stage.judgement.verdict = Verdict::set;
 }
 
-/// Whether an effect may make a held-out gap larger: with less than twice the energy of the floor left, none does.
+/// Whether it is asked if an effect makes a held-out gap larger: not with less than twice the energy of the floor left.
 bool may_be_larger(const report::Shrink& held_out) {
   return held_out.nrmse_after > std::numbers::sqrt2 * held_out.floor_nrmse;
 }
