@@ -327,25 +327,45 @@ void settle_effects(const IdentificationProblem& problem, const Selection& selec
   }
 }
 
-/// A number of the model in place of two effects of its interface that are not both numbers: a bandwidth that is off is
-/// nearly a delay and another bandwidth. Two have to be decidedly better than one that is expected to be off.
+/// Whether a number of the model may stand in the place of two effects: of its interface, no laws, not both numbers.
+bool may_be_number(const IdentificationProblem& problem, const EffectType& number, const EffectType& one,
+                   const EffectType& other) {
+  const bool are_its = one.interface == number.interface && other.interface == number.interface;
+  const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
+  return are_its && !is_a_law && !(is_number(problem, one) && is_number(problem, other));
+}
+
+/// The zeros of both sensors, which move the path of the law.
+bool are_both_zeros(const EffectType& one, const EffectType& other) {
+  const auto is_zero = [](const EffectType& type) {
+    return is_of_sensor(type) && type.traits.number == ModelNumber::offset;
+  };
+  return is_zero(one) && is_zero(other) && one.interface != other.interface;
+}
+
+/// One effect in place of two, which have to be decidedly better: a number of the model, which is expected to be off,
+/// of its interface (a bandwidth that is off is nearly a delay and another bandwidth); or two strengths of the specimen
+/// for both sensors' zeros.
 void merge(const IdentificationProblem& problem, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const double both = score_of(problem, growth.fit);
+  std::vector<EffectSetting> numbers = numbers_of(problem);
+  std::erase_if(numbers, [&](const EffectSetting& number) { return holds(effects, number.type); });
+  const EffectType* const two_strengths = find_effect(EffectInterface::specimen, "strength_asymmetry");
   std::vector<Instead> tried;
-  for (const EffectSetting& number : numbers_of(problem)) {
-    if (holds(effects, number.type)) continue;
-    for (std::size_t second = 1; second < effects.size(); ++second) {
-      for (std::size_t first = 0; first < second; ++first) {
-        const EffectType& one = *effects[first].type;
-        const EffectType& other = *effects[second].type;
-        const bool are_its = one.interface == number.type->interface && other.interface == number.type->interface;
-        const bool is_a_law = one.replacement != nullptr || other.replacement != nullptr;
-        if (!are_its || is_a_law || (is_number(problem, one) && is_number(problem, other))) continue;
+  for (std::size_t second = 1; second < effects.size(); ++second) {
+    for (std::size_t first = 0; first < second; ++first) {
+      const EffectType& one = *effects[first].type;
+      const EffectType& other = *effects[second].type;
+      const auto add = [&](const EffectSetting& instead) {
         std::vector<EffectSetting> start = without(without(effects, second), first);
-        start.push_back(number);
-        tried.push_back({number.type, std::move(start), {}});
+        start.push_back(instead);
+        tried.push_back({instead.type, std::move(start), {}});
+      };
+      for (const EffectSetting& number : numbers) {
+        if (may_be_number(problem, *number.type, one, other)) add(number);
       }
+      if (are_both_zeros(one, other) && !holds(effects, two_strengths)) add(absent(*two_strengths));
     }
   }
   problem.workers.for_each(tried.size(), [&](std::size_t i) {

@@ -319,15 +319,22 @@ std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, c
   return numbers;
 }
 
+bool is_judged(const IdentificationProblem& problem, const EffectType& effect) {
+  return touches_a_gap(problem, effect) && is_searched(problem, effect);
+}
+
 std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem) {
   std::vector<const EffectType*> effects;
   // A specimen that yields is another law, with all its numbers free.
   const EffectType* const part_that_yields = find_effect(EffectInterface::specimen, "yielding");
+  // It is tried in the place of all that was found: it has something of a dashpot and of dry friction.
+  const EffectType* const fluid_damper = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
   const auto add = [&](const EffectType& effect) {
-    if (touches_a_gap(problem, effect) && is_searched(problem, effect)) effects.push_back(&effect);
+    if (is_judged(problem, effect)) effects.push_back(&effect);
   };
   for (const EffectType& effect : effect_library()) {
-    if (effect.make == nullptr || shows_in_digits(effect) || &effect == part_that_yields) continue;
+    if (effect.make == nullptr || shows_in_digits(effect)) continue;
+    if (&effect == part_that_yields || &effect == fluid_damper) continue;
     if (!effect.traits.takes_input) add(effect);
     for (const InputRange& input : problem.inputs) {
       if (effect.traits.takes_input && input.varies) add(with_input(effect, input.name));

@@ -69,8 +69,11 @@ using FitProgress = std::function<void(std::size_t done, std::size_t all)>;
 void fit_each(const Workers& workers, std::size_t count, const std::function<void(std::size_t)>& fit,
               const FitProgress& progress);
 
+/// Whether the effect acts on a suspect segment with a gap, and has anything that is searched.
+[[nodiscard]] bool is_judged(const IdentificationProblem& problem, const EffectType& effect);
+
 /// The effects that a diagnosis can judge on the suspect segments, and the laws that are searched by themselves, but
-/// for those of special devices.
+/// for those of special devices and the fluid damper.
 [[nodiscard]] std::vector<const EffectType*> judged_effects(const IdentificationProblem& problem);
 
 /// Gain of a candidate on held-out blocks above which it explains something [nats]: log(n / a) for n judged effects and

@@ -227,6 +227,8 @@ std::string transducer_lag_refuted(const Suspect& suspect) {
   return {};
 }
 
+constexpr std::array<std::string_view, 3> kDryFrictions{"coulomb_friction", "stribeck_friction", "friction_with_input"};
+
 bool slides_as_in_model(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
   const EffectSetting* const own = place_of(suspect.problem.model, type);
@@ -257,6 +259,32 @@ std::string friction_refuted(const Suspect& suspect) {
   if (stuck_m <= tuning::kMainShare * path_m) return {};
   return fmt::format("{}: it would stick over {:.0f} % of the path, as a spring that yields", suspect.name(),
                      100.0 * stuck_m / path_m);
+}
+
+/// A power that may as well be the first or the second is a linear or a quadratic damping; as small a one as is looked
+/// for, dry friction; and beside dry friction a part of that, which no formula of it has quite.
+std::string power_refuted(const Suspect& suspect) {
+  const bool is_beside_friction = std::ranges::any_of(suspect.outcome.effects, [](const EffectSetting& effect) {
+    return std::ranges::find(kDryFrictions, effect.type->name) != kDryFrictions.end();
+  });
+  const ParameterEstimate& exponent = suspect.parameter("exponent");
+  if (is_beside_friction || (exponent.at_bound && exponent.value < 1.0)) {
+    return suspect.name() + ": it may as well be dry friction";
+  }
+  for (const auto& [power, name] : {std::pair{1.0, "linear"}, {2.0, "quadratic"}}) {
+    if (std::abs(exponent.value - power) <= half_interval_95(exponent)) {
+      return fmt::format("{}: it may as well be {}", suspect.name(), name);
+    }
+  }
+  return {};
+}
+
+/// The shortest relaxation that is looked for is hardly more than a dashpot.
+std::string relaxation_refuted(const Suspect& suspect) {
+  const ParameterEstimate& time = suspect.parameter("time_constant_s");
+  const SearchRange* const range = search_range(*suspect.effect.type, suspect.effect.type->parameters.back());
+  const bool is_shortest = time.at_bound && time.value < 0.5 * range->high * suspect.problem.scales.of(range->scale);
+  return is_shortest ? suspect.name() + ": it may as well be a viscous damping" : std::string{};
 }
 
 /// A part that may as well have been broken before the test is a model that is too stiff: what it carried until it
@@ -316,6 +344,8 @@ constexpr std::array kChecks{
     Check{displacement_sensor, "lag", transducer_lag_refuted},
     Check{specimen, "fracture", instant_refuted},
     Check{specimen, "geometric_stiffness", load_refuted},
+    Check{specimen, "nonlinear_viscous_damping", power_refuted},
+    Check{specimen, "relaxation", relaxation_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
     Check{specimen, "friction_with_input", friction_refuted},

@@ -30,13 +30,9 @@ FitOutcome fit_numbers(const IdentificationProblem& problem, const Identificatio
   return refit_effects(problem, search_effects(coarse, numbers_of(coarse), false).effects, false);
 }
 
-/// The effects that explain the gap, from the library as it stands; none where its best is not decidedly better.
-Growth find_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
-                    const PartProgress& progress) {
-  if (selection.library.empty() ||
-      selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
-    return {.fit = selection.baseline, .accepted = {}};
-  }
+/// The effects that are found from the leaders of the library on.
+Growth grow_from_library(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                         Selection& selection, const PartProgress& progress) {
   Growth growth = best_start(problem, coarse, selection, progress.part(tuning::kLibraryFitted, tuning::kPairsFitted));
   const PartProgress further = progress.part(tuning::kPairsFitted, tuning::kEffectsChosen);
   // Beside a leader alone nothing was accepted.
@@ -48,6 +44,16 @@ Growth find_effects(const IdentificationProblem& problem, const IdentificationPr
     settle(problem, coarse, selection, growth);
   }
   return growth;
+}
+
+/// The effects that explain the gap, from the library as it stands; none where its best is not decidedly better.
+Growth find_effects(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                    const PartProgress& progress) {
+  if (selection.library.empty() ||
+      selection.library.front().score < held_out_score(problem, selection.baseline) + decisive_gain(problem)) {
+    return {.fit = selection.baseline, .accepted = {}};
+  }
+  return grow_from_library(problem, coarse, selection, progress);
 }
 
 /// The noise is known better beside what was found than it was beside the best effect by itself. Where the floor was
@@ -100,7 +106,7 @@ void doubt_law_without_loop(const IdentificationProblem& problem, const Identifi
   growth = std::move(other);
 }
 
-/// A law in the place of all that was found.
+/// A law or a damper in the place of all that was found.
 void put_in_place(Candidate law, double probability, Selection& selection, Growth& growth) {
   growth = {.fit = law.fit, .accepted = {{law.type, probability}}};
   std::erase_if(selection.library, [&](const Candidate& candidate) { return candidate.type == law.type; });
@@ -124,6 +130,37 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
+/// A fluid damper with the numbers of the model that it needs; none where it may as well be something simpler.
+std::optional<Candidate> fit_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse,
+                                          const Selection& selection) {
+  const EffectType* const type = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
+  if (!is_judged(problem, *type)) return {};
+  std::vector<EffectSetting> start{{type, {0.0, 1.0}}};
+  for (EffectSetting& number : numbers_of(problem)) start.push_back(std::move(number));
+  const std::optional<Candidate> found = fit_together(coarse, type, start, search_effects);
+  if (!found) return {};
+  FitOutcome needed = refit_effects(problem, found->fit.effects, false);
+  prune(problem, selection.by_numbers, needed);
+  if (!holds(needed.effects, type)) return {};
+  std::optional<Candidate> damper = fit_together(problem, type, needed.effects, refit_effects);
+  if (damper && !refutation(problem, *damper).empty()) damper.reset();
+  return damper;
+}
+
+/// Where what was found leaves something to explain: a fluid damper instead, if it is decidedly better. Nothing is
+/// looked for beside it. A power of the velocity has something of a dashpot and of dry friction: before the others are
+/// known, only one that leaves nothing is believed.
+void try_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse, bool all_are_known,
+                      Selection& selection, Growth& growth) {
+  if (!gap_energy(problem, growth.fit).is_clear()) return;
+  std::optional<Candidate> damper = fit_fluid_damper(problem, coarse, selection);
+  if (!damper || (!all_are_known && gap_energy(problem, damper->fit).is_clear())) return;
+  const double before = score_of(problem, growth.fit);
+  if (damper->score <= before + decisive_gain(problem)) return;
+  const double probability = softmax({damper->score, before}).front();
+  put_in_place(*std::move(damper), probability, selection, growth);
+}
+
 /// Where what was found leaves more than a part allows: the best law of those that leave a part at most, and predict
 /// better than what was found. Under a large gap that no simple law explains, few samples count as independent of each
 /// other, and the numbers of a detailed law cost more than it can gain: what it leaves of blocks that were left out
@@ -142,6 +179,21 @@ void try_all_laws(const IdentificationProblem& problem, const IdentificationProb
   if (laws.empty()) return;
   const double probability = softmax(scores_of(laws)).front();
   put_in_place(std::move(laws.front()), probability, selection, growth);
+}
+
+/// Where nothing explains a clear gap by itself, several effects may do it together: each of them has to be decidedly
+/// better than none, so that none is taken for what it does beside the others.
+void try_several(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
+                 const PartProgress& progress, Growth& growth) {
+  const bool is_unknown = growth.fit.effects.empty() && !selection.library.empty();
+  if (!is_unknown || !stands_above_floor(problem, selection.baseline, tuning::kNearFloor)) return;
+  Selection together = selection;
+  Growth several = grow_from_library(problem, coarse, together, progress);
+  const auto count = static_cast<double>(several.fit.effects.size());
+  const double before = held_out_score(problem, selection.baseline);
+  if (count < 2.0 || score_of(problem, several.fit) < before + count * decisive_gain(problem)) return;
+  selection = std::move(together);
+  growth = std::move(several);
 }
 
 /// What the numbers of the model leave. Damping counts only where it was found beside the effects: elsewhere an effect
@@ -213,11 +265,15 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   score_again(problem, selection.library);
   put_stage_before_sensor(selection.library);
   weigh(selection.library, scores_of(selection.library));
-  Growth growth = find_effects(problem, coarse, selection, progress);
+  Growth growth{.fit = selection.library.front().fit, .accepted = {}};
+  try_fluid_damper(problem, coarse, false, selection, growth);
+  if (growth.accepted.empty()) growth = find_effects(problem, coarse, selection, progress);
   doubt_law_without_loop(problem, coarse, selection, progress, growth);
   look_again(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
   try_special_laws(problem, coarse, selection, progress.part(tuning::kPairsFitted, tuning::kEffectsChosen), growth);
+  try_fluid_damper(problem, coarse, true, selection, growth);
   try_all_laws(problem, coarse, policy, selection, growth);
+  try_several(problem, coarse, selection, progress, growth);
   keep_what_tells(problem, policy, selection, growth);
   if (growth.fit.effects.empty()) return selection;
   // Of what was chosen at the lower rate, the full rate may leave nothing.

@@ -36,11 +36,13 @@
 #include "plant/effects/specimen/gap.hpp"
 #include "plant/effects/specimen/geometric_stiffness.hpp"
 #include "plant/effects/specimen/inertia.hpp"
+#include "plant/effects/specimen/nonlinear_viscous_damping.hpp"
 #include "plant/effects/specimen/pinching.hpp"
 #include "plant/effects/specimen/quadratic_damping.hpp"
 #include "plant/effects/specimen/relaxation.hpp"
 #include "plant/effects/specimen/stiffness_degradation.hpp"
 #include "plant/effects/specimen/stiffness_error.hpp"
+#include "plant/effects/specimen/strength_asymmetry.hpp"
 #include "plant/effects/specimen/strength_degradation.hpp"
 #include "plant/effects/specimen/strength_error.hpp"
 #include "plant/effects/specimen/stribeck_friction.hpp"
@@ -140,8 +142,10 @@ std::span<const EffectType> effect_library() noexcept {
       entry<DisplacementQuantization>(At::displacement_sensor, "quantization"),
       entry<StiffnessError>(At::specimen, "stiffness_error"),
       entry<StrengthError>(At::specimen, "strength_error"),
+      entry<StrengthAsymmetry>(At::specimen, "strength_asymmetry"),
       entry<ViscousDamping>(At::specimen, "viscous_damping"),
       entry<QuadraticDamping>(At::specimen, "quadratic_damping"),
+      entry<NonlinearViscousDamping>(At::specimen, "nonlinear_viscous_damping"),
       entry<CoulombFriction>(At::specimen, "coulomb_friction"),
       entry<StribeckFriction>(At::specimen, "stribeck_friction"),
       entry<CubicStiffness>(At::specimen, "cubic_stiffness"),

@@ -281,6 +281,41 @@ TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {
   EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001}, 0.0001)), IsEmpty());
 }
 
+TEST(Refutation, PowerOfTheVelocityThatIsASimplerDamping) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  const auto damper = [&](double exponent, double error) {
+    Candidate candidate = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, exponent});
+    candidate.fit.parameters[0][1].beside_wrong_numbers = error;
+    return refutation(problem, candidate);
+  };
+  EXPECT_THAT(damper(0.9, 0.04), IsEmpty());
+  EXPECT_THAT(damper(0.9, 0.06), HasSubstr("may as well be linear"));
+  EXPECT_THAT(damper(1.9, 0.04), IsEmpty());
+  EXPECT_THAT(damper(1.9, 0.06), HasSubstr("may as well be quadratic"));
+  Candidate smallest = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.1});
+  smallest.fit.parameters[0][1].at_bound = true;
+  EXPECT_THAT(refutation(problem, smallest), HasSubstr("may as well be dry friction"));
+  Candidate beside = fit_of(specimen, "coulomb_friction", {3.0e3, 0.0, 0.001}, 0.0001);
+  const Candidate damping = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.5});
+  beside.fit.effects.push_back(damping.fit.effects.front());
+  beside.fit.parameters.push_back(damping.fit.parameters.front());
+  beside.fit.covariances.push_back(damping.fit.covariances.front());
+  beside.type = damping.type;
+  EXPECT_THAT(refutation(problem, beside), HasSubstr("may as well be dry friction"));
+}
+
+TEST(Refutation, RelaxationThatIsHardlyMoreThanADashpot) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  Candidate relaxation = fit_of(specimen, "relaxation", {1.0e5, 0.03});
+  EXPECT_THAT(refutation(problem, relaxation), IsEmpty());
+  relaxation.fit.parameters[0][1].at_bound = true;
+  EXPECT_THAT(refutation(problem, relaxation), HasSubstr("may as well be a viscous damping"));
+  // The longest is no dashpot.
+  Candidate longest = fit_of(specimen, "relaxation", {1.0e5, 100.0});
+  longest.fit.parameters[0][1].at_bound = true;
+  EXPECT_THAT(refutation(problem, longest), IsEmpty());
+}
+
 TEST(Refutation, PartThatBrokeBeforeTheRecordingsShowIt) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   const auto broken_at = [&](double instant_s) {

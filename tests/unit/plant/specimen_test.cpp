@@ -1,12 +1,17 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/plant/effect_bench.hpp"
 
 /// Effects on the specimen against their closed forms.
 namespace hybridtest {
 namespace {
+
+using testing::DoubleNear;
+using testing::Pointwise;
 
 constexpr double kPi = std::numbers::pi;
 constexpr auto kSpecimen = EffectInterface::specimen;
@@ -48,6 +53,12 @@ std::vector<Formula> formulas() {
           "quadratic_damping",
           {3.0e5},
           [](const Driver& d, double t) { return 3.0e5 * d.velocity_m_per_s(t) * std::abs(d.velocity_m_per_s(t)); }},
+      Formula{"nonlinear_viscous_damping",
+              {4.0e4, 0.35},
+              [](const Driver& d, double t) {
+                const double velocity = d.velocity_m_per_s(t);
+                return 4.0e4 * std::copysign(std::pow(std::abs(velocity), 0.35), velocity);
+              }},
       Formula{"cubic_stiffness",
               {2.0e9},
               [](const Driver& d, double t) { return 2.0e9 * std::pow(d.displacement_m(t), 3); }},
@@ -91,6 +102,26 @@ TEST(Yielding, DissipatesBilinearEnergyPerCycle) {
   const double expected_j = 4.0 * kYield_n * (kAmplitude_m - kYield_n / kStiffness_n_per_m);
   EXPECT_NEAR(work_j(forces, driver, 1000, 2000), expected_j, 0.1 * expected_j);
   EXPECT_NEAR(forces[3], kStiffness_n_per_m * driver.displacement_m(time_s(3)), 1e-9);  // nothing lost yet
+}
+
+TEST(StrengthAsymmetry, MovesTheStrengthsApartAndKeepsTheStiffness) {
+  // k d = 1 kN beside Fy = 4 kN: yields at 5 kN and at -3 kN. Quarters of the yield displacement, and back.
+  const auto effect = made(kSpecimen, "strength_asymmetry", {0.001});
+  Bilinear law{{.stiffness_n_per_m = 1.0e6, .yield_force_n = 4.0e3, .hardening_ratio = 0.0}};
+  const auto forces = along(*effect, {0.0, 0.002, 0.005, 0.008, 0.006, 0.0, -0.004, -0.002}, [&](const Motion& motion) {
+    const double force_n = law.trial(motion.displacement_m, motion.velocity_m_per_s);
+    law.commit();
+    return force_n;
+  });
+  const std::vector<double> by_hand_n{0.0, 2.0e3, 5.0e3, 5.0e3, 3.0e3, -3.0e3, -3.0e3, -1.0e3};
+  EXPECT_THAT(forces, Pointwise(DoubleNear(1e-9), by_hand_n));
+}
+
+TEST(StrengthAsymmetry, LeavesASpringAsItIs) {
+  const auto effect = made(kSpecimen, "strength_asymmetry", {0.001});
+  // Also where the first sample is not at zero.
+  const auto forces = along(*effect, {0.003, 0.004, -0.002}, [](const Motion& m) { return 1.0e6 * m.displacement_m; });
+  EXPECT_THAT(forces, Pointwise(DoubleNear(1e-9), std::vector<double>{3.0e3, 4.0e3, -2.0e3}));
 }
 
 TEST(BoucWenHysteresis, LoadingIsExponential) {

@@ -296,6 +296,8 @@ std::vector<Cause> also_named(const PlantEffect& effect, LawKind users) {
     return {{"specimen", "hysteresis_law", "pinching"}, {"specimen", "hysteresis_law", "bouc_wen_baber_noori"}};
   }
   if (effect.name == "strength_degradation") return {{"specimen", "hysteresis_law", "bouc_wen_baber_noori"}};
+  // Its orifice opens, and the model's damping is off besides: a power between the first and the second.
+  if (effect.name == "quadratic_damping") return {{"specimen", "nonlinear_viscous_damping"}};
   return {};
 }
 
