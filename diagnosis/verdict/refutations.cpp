@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -227,16 +228,20 @@ std::string transducer_lag_refuted(const Suspect& suspect) {
   return {};
 }
 
-constexpr std::array<std::string_view, 3> kDryFrictions{"coulomb_friction", "stribeck_friction", "friction_with_input"};
+/// Where dry friction has its presliding displacement; nothing for other effects and for laws.
+std::optional<std::size_t> presliding_of(const EffectType& type) {
+  const auto presliding = std::ranges::find(type.parameters, "presliding_displacement_m", &EffectParameter::name);
+  if (type.replacement != nullptr || presliding == type.parameters.end()) return {};
+  return static_cast<std::size_t>(presliding - type.parameters.begin());
+}
 
 bool slides_as_in_model(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
   const EffectSetting* const own = place_of(suspect.problem.model, type);
-  const auto presliding = std::ranges::find(type.parameters, "presliding_displacement_m", &EffectParameter::name);
-  if (own == nullptr || presliding == type.parameters.end()) return false;
-  const auto position = static_cast<std::size_t>(presliding - type.parameters.begin());
-  const ParameterEstimate& estimate = suspect.estimates[position];
-  return estimate.value - half_width_95(estimate) <= own->values[position];
+  const std::optional<std::size_t> position = presliding_of(type);
+  if (own == nullptr || !position) return false;
+  const ParameterEstimate& estimate = suspect.estimates[*position];
+  return estimate.value - half_width_95(estimate) <= own->values[*position];
 }
 
 /// Between reversals friction sticks over twice its presliding displacement, then it slides.
@@ -264,9 +269,8 @@ std::string friction_refuted(const Suspect& suspect) {
 /// A power that may as well be the first or the second is a linear or a quadratic damping; as small a one as is looked
 /// for, dry friction; and beside dry friction a part of that, which no formula of it has quite.
 std::string power_refuted(const Suspect& suspect) {
-  const bool is_beside_friction = std::ranges::any_of(suspect.outcome.effects, [](const EffectSetting& effect) {
-    return std::ranges::find(kDryFrictions, effect.type->name) != kDryFrictions.end();
-  });
+  const bool is_beside_friction = std::ranges::any_of(
+      suspect.outcome.effects, [](const EffectSetting& effect) { return presliding_of(*effect.type).has_value(); });
   const ParameterEstimate& exponent = suspect.parameter("exponent");
   if (is_beside_friction || (exponent.at_bound && exponent.value < 1.0)) {
     return suspect.name() + ": it may as well be dry friction";
