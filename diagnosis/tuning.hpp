@@ -236,9 +236,14 @@ inline constexpr double kModelAllowance = 0.0005;
 /// Minimum and maximum number of held-out blocks per recording; the number of cycles decides.
 inline constexpr double kBlocksMin = 5.0;
 inline constexpr double kBlocksMax = 12.0;
-/// A law is a spring when its force at these shares of the peak is proportional, within this share.
+/// A law is a spring when its force at these shares of the peak is proportional but for rounding. Share by which two
+/// numbers differ at most that are the same, one of them written with other digits, as those of a ground motion.
 inline constexpr std::array kSpringProbes{-1.0, -0.4, 0.3, 0.7};
-inline constexpr double kSpringRounding = 1e-9;
+inline constexpr double kRounding = 1e-9;
+
+/// Friction coefficient of a slider that is told where the recordings tell the friction force only: of PTFE on steel
+/// (Constantinou, Mokha and Reinhorn, 1990).
+inline constexpr double kSliderFriction = 0.1;
 
 // Search: its limits.
 
@@ -412,8 +417,6 @@ inline constexpr int kRatioIterations = 12;
 inline constexpr int kRatioHalvings = 8;
 inline constexpr double kRatioDifference = 1e-6;
 inline constexpr double kRatioSettled = 1e-12;
-/// Share of a ground motion's root mean square below which two are the same, written with other digits.
-inline constexpr double kSameMotion = 1e-9;
 /// Network latency of a repeated simulated test: short compared with any step.
 inline constexpr int kRerunLatency_us = 50;
 

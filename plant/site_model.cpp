@@ -40,6 +40,10 @@ StageEffects effects_at(const SiteModel& model, EffectInterface interface, doubl
       if (input != model.inputs.end()) {
         made.back()->follow_input(static_cast<std::size_t>(input - model.inputs.begin()));
       }
+      if (effect.type->traits.follows_stiffness) {
+        if (const std::unique_ptr<Law> law = law_of(model))
+          made.back()->follow_stiffness(law->initial_stiffness_n_per_m());
+      }
     }
   }
   return StageEffects{std::move(made)};

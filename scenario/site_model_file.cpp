@@ -6,9 +6,11 @@
 #include <sstream>
 
 #include "core/config/section.hpp"
+#include "core/text/indented.hpp"
 #include "core/text/scalar.hpp"
 #include "scenario/catalogue/compensators.hpp"
 #include "scenario/catalogue/simulated_rig.hpp"
+#include "scenario/dampers_beside_law.hpp"
 
 namespace hybridtest {
 namespace {
@@ -138,15 +140,6 @@ bool list_all(std::vector<ListedEffect>& added, std::vector<SiteModel> dofs) {
 }
 
 constexpr double kUsualControlRate_hz = 1024.0;
-
-std::string indented(std::string_view lines, std::string_view first, std::string_view others) {
-  std::string text;
-  std::istringstream stream{std::string{lines}};
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.empty()) text.append(text.empty() ? first : others).append(line) += '\n';
-  }
-  return text;
-}
 
 /// What effects add to the settings of the compensators, one per degree of freedom; those effects leave the list.
 std::vector<double> take_setting_changes(std::vector<ListedEffect>& effects, const std::vector<SiteModel>& dofs) {
@@ -296,14 +289,20 @@ bool is_site_file(const std::filesystem::path& file) {
          !has_any({"schema", "time", "structure", "substructures"});
 }
 
-SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
-                              const std::string& compensators) {
-  config::Document document = config::Document::load(file);
+namespace {
+
+/// As read_site_model().
+/// @param moved   in: overrides of the file; out: those that put fluid dampers beside the law.
+SiteModelFile read_with(std::vector<std::string>& moved, const std::filesystem::path& file,
+                        std::string_view substructure, const std::string& compensators) {
+  config::Document document = config::Document::load(file, moved);
   Section root = document.root();
   const bool is_scenario = root.has("substructures");
   const bool takes_given = !compensators.empty() && !is_scenario && !root.has("compensator");
   if (takes_given) {
-    document = config::Document::load(file, {"compensator=\n" + compensators});
+    std::vector<std::string> overrides = moved;
+    overrides.push_back("compensator=\n" + compensators);
+    document = config::Document::load(file, overrides);
     root = document.root();
   }
   SitePlace place = site_in(root, substructure);
@@ -356,7 +355,18 @@ SiteModelFile read_site_model(const std::filesystem::path& file, std::string_vie
   }
   model.text += place.rig.effective();
   model.rig = whole_rig(place.rig);
+  moved = dampers_beside_law(place.rig);
   return model;
+}
+
+}  // namespace
+
+SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
+                              const std::string& compensators, PowerDampers power_dampers) {
+  std::vector<std::string> moved;
+  SiteModelFile model = read_with(moved, file, substructure, compensators);
+  if (power_dampers == PowerDampers::in_law || moved.empty()) return model;
+  return read_with(moved, file, substructure, compensators);
 }
 
 }  // namespace hybridtest

@@ -99,8 +99,8 @@ constexpr Searched kHeating{"heating", "", "uy over L", Scale::one, 0.0, 0.5};
 constexpr Searched kFriction{"friction_force_n", "N", "while it slides fast", Scale::force_n, 0.0, 1.5, 0.0};
 constexpr Searched kPresliding{"presliding_displacement_m", "m",  "from rest until it slides",
                                Scale::displacement_m,       1e-3, 0.5};
-// Down to a restoring force of a thousandth of the friction: the law has no flat dish.
-constexpr Searched kRestoring{"restoring_per_m", "1/m", "1 / (mu R)", Scale::per_m, 1e-3, 30.0};
+// Down to a restoring force of a thousandth of the friction, which is that of a flat dish.
+constexpr Searched kRestoring{"restoring_per_m", "1/m", "1 / (mu R)", Scale::per_m, 1e-3, 30.0, 0.0};
 constexpr Searched kSlowRatio{"slow_friction_ratio", "", "mu_slow over mu_fast", Scale::one, 0.0, 1.0};
 constexpr Searched kFrictionRate{"friction_rate_s_per_m", "s/m", "a", Scale::s_per_m, 1.0, 100.0};
 constexpr Searched kHysteretic{"hysteretic_displacement_m", "m", "xh", Scale::displacement_m, 1e-3, 0.5};
@@ -138,11 +138,12 @@ LeadRubber::Parameters lead_rubber(Values v) {
           .heating_path_m = v[3] > 0.0 ? v[1] / v[3] : 0.0};  // 0: no heating
 }
 
-/// Weight and curvature show in the force as their ratio alone: of a dish of 1 m.
+/// Weight, curvature and friction coefficient show in the force as W / R and mu W alone: of the coefficient of a slider
+/// of PTFE on steel.
 FrictionPendulum::Parameters friction_pendulum(Values v) {
-  return {.weight_n = v[0] * v[2],
-          .radius_m = 1.0,
-          .friction_coefficient = 1.0 / v[2],
+  return {.weight_n = v[0] / tuning::kSliderFriction,
+          .radius_m = 1.0 / (tuning::kSliderFriction * v[2]),
+          .friction_coefficient = tuning::kSliderFriction,
           .slow_friction_ratio = v[3],
           .friction_rate_s_per_m = v[4],
           .presliding_displacement_m = v[1]};

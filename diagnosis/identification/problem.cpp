@@ -414,7 +414,7 @@ bool is_spring(const SiteModel& model, double largest_m) {
   const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
   const double whole_n = force_n(largest_m);
   return std::ranges::all_of(tuning::kSpringProbes, [&](double share) {
-    return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kSpringRounding * std::abs(whole_n);
+    return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kRounding * std::abs(whole_n);
   });
 }
 
@@ -540,8 +540,9 @@ IdentificationProblem judged_at(const IdentificationProblem& problem, Channel ou
 }
 
 bool is_model_number(const IdentificationProblem& problem, const EffectType& type) noexcept {
-  // Not linear, and so no nuisance.
-  if (type.traits.number == ModelNumber::strength || type.traits.number == ModelNumber::bandwidth) return true;
+  // None of these is a nuisance.
+  constexpr std::array kNumbers{ModelNumber::strength, ModelNumber::hardening, ModelNumber::bandwidth};
+  if (std::ranges::find(kNumbers, type.traits.number) != kNumbers.end()) return true;
   if (place_of(problem.model, type) != nullptr) return true;
   return std::ranges::any_of(problem.segments, [&](const FitSegment& fit) {
     return std::ranges::find(fit.nuisance_types, &type) != fit.nuisance_types.end();

@@ -42,6 +42,7 @@ double least_of(const IdentificationProblem& problem, const EffectType& effect, 
   if (range.low >= 0.0) return std::max(0.0, parameter.low);
   if (!range.restriction.is_amount) return parameter.low;
   double has = range.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
+  if (place_of(problem.model, effect) != nullptr) return std::max(parameter.low, -std::max(0.0, has));
   for (const EffectSetting& known : problem.model.effects) {
     if (known.type == &effect) has += known.values[index];
   }

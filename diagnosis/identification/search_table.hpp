@@ -145,6 +145,8 @@ inline constexpr std::array kRows{
                 -0.9,
                 9.0,
                 {.beside = LawUse::at_strength, .is_unseen_at_high = true}},
+    SearchRange{
+        specimen, "hardening_error", "hardening_error_ratio", Scale::one, -0.5, 0.9, {.beside = LawUse::at_strength}},
     SearchRange{specimen, "strength_asymmetry", "shift_m", Scale::displacement_m, -0.3, 0.3},
     SearchRange{
         specimen, "viscous_damping", "damping_n_s_per_m", Scale::damping_n_s_per_m, -2.0, 2.0, {.is_amount = true}},
@@ -163,6 +165,7 @@ inline constexpr std::array kRows{
                 2.0,
                 {.is_amount = true}},
     SearchRange{specimen, "nonlinear_viscous_damping", "exponent", Scale::one, 0.1, 2.0},
+    SearchRange{specimen, "nonlinear_viscous_damping", "brace_stretch_m", Scale::displacement_m, 0.0, 1.0},
     SearchRange{specimen, "coulomb_friction", "friction_force_n", Scale::force_n, 0.0, 1.5},
     SearchRange{specimen, "coulomb_friction", "asymmetry", Scale::one, -0.9, 0.9},
     SearchRange{specimen, "coulomb_friction", "presliding_displacement_m", Scale::displacement_m, 1e-4, 0.5},

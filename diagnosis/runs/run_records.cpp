@@ -199,7 +199,7 @@ std::string site_of_run(const std::filesystem::path& run, std::string_view site)
 
 SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings, const std::filesystem::path& model,
                              std::string_view site) {
-  SiteModelFile given = read_site_model(model, site);
+  SiteModelFile given = read_site_model(model, site, {}, PowerDampers::beside_law);
   if (!given.compensators.empty()) return given;
   std::optional<std::string> of_runs;
   for (const std::filesystem::path& run : recordings) {
@@ -212,7 +212,7 @@ SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings, 
     }
     of_runs = of_run;
   }
-  return of_runs && !of_runs->empty() ? read_site_model(model, site, *of_runs) : given;
+  return of_runs && !of_runs->empty() ? read_site_model(model, site, *of_runs, PowerDampers::beside_law) : given;
 }
 
 std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {
@@ -434,7 +434,7 @@ void note_differences(const Scenario& scenario, const Scenario& ran, const Struc
     const Eigen::Map<const Eigen::RowVectorXd> own{values.data(), steps};
     const Eigen::RowVectorXd recorded = ground_m_per_s2.row(static_cast<Eigen::Index>(k)).head(steps);
     const double off = (own - recorded).norm();
-    if (off <= tuning::kSameMotion * recorded.norm()) continue;
+    if (off <= tuning::kRounding * recorded.norm()) continue;
     notes.push_back(
         fmt::format("The ground motion {} of the scenario differs from the recorded one by {:.3g} of its root mean "
                     "square. The recorded ground motion is used.",

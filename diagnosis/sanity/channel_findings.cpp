@@ -150,6 +150,36 @@ std::optional<Words> words_of(const std::optional<WildReadings>& wild, std::stri
                "Put the mean of their neighbours in their place, and check connector and cable."};
 }
 
+/// Where a signal was lost for some samples, its reading is exactly zero between two on the same side that are far from
+/// it: either step is larger than a real signal's largest, by what noise may add. Nothing with fewer than two places.
+std::optional<Words> dropouts(std::span<const double> values, std::string_view unit) {
+  double largest_step = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] == 0.0 || values[i - 1] == 0.0) continue;
+    largest_step = std::max(largest_step, std::abs(values[i] - values[i - 1]));
+  }
+  const double far = tuning::kNearFloor * largest_step;
+  std::size_t places = 0;
+  std::size_t lost = 0;
+  for (std::size_t begin = 1; begin < values.size(); ++begin) {
+    if (values[begin] != 0.0 || values[begin - 1] == 0.0) continue;
+    std::size_t end = begin;
+    while (end < values.size() && values[end] == 0.0) ++end;
+    if (end == values.size()) break;
+    const double before = values[begin - 1];
+    const double after = values[end];
+    if (before * after > 0.0 && std::min(std::abs(before), std::abs(after)) > far) {
+      ++places;
+      lost += end - begin;
+    }
+    begin = end;
+  }
+  if (places < 2) return {};
+  return Words{
+      fmt::format("drops to 0 {} in {} places, {} samples in all: the signal was lost there", unit, places, lost),
+      "Put values between those before and after in their place, and check connector and cable."};
+}
+
 /// Neighbouring readings have nothing in common.
 bool is_white(std::span<const double> values) {
   double mean = 0.0;
@@ -333,7 +363,9 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
   };
   const EffectInterface sensor =
       out == Channel::measured_force ? EffectInterface::force_sensor : EffectInterface::displacement_sensor;
-  if (add_to(name_of(sensor), words_of(wild_readings(channels.of(out)), unit_of(column_name(out))), true)) return;
+  const std::string unit = unit_of(column_name(out));
+  if (add_to(name_of(sensor), words_of(wild_readings(channels.of(out)), unit), true)) return;
+  if (add_to(name_of(sensor), dropouts(channels.of(out), unit), true)) return;
   if (chain.segment.empty()) return;
   const Segment& segment = chain.segment.front();
   const Followed pair{.in = chain.in,

@@ -123,6 +123,8 @@ bool may_be_off(const IdentificationProblem& problem, const EffectType& type) {
 std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
   std::vector<EffectSetting> numbers;
   for (const EffectType* const type : judged_effects(problem)) {
+    // Strength and hardening free beside a stiffness make any law that softens of one that yields.
+    if (type->traits.number == ModelNumber::hardening) continue;
     if (may_be_off(problem, *type) && place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
   }
   return numbers;

@@ -52,7 +52,7 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
                                    const FitOutcome& without, const Candidate& with);
 
 /// The numbers of the model that may be off, and damping, as effects that change nothing yet. Not among them: zeros,
-/// which are known exactly before a test, and effects that the model has.
+/// which are known exactly before a test, effects that the model has, and the hardening.
 [[nodiscard]] std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem);
 
 /// Drops what the other effects can do without, the least needed first, and what is needless.

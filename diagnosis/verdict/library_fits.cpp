@@ -291,7 +291,7 @@ std::vector<std::size_t> longest_first(const IdentificationProblem& problem,
 bool is_of_law(const EffectType& effect) noexcept {
   const ModelNumber number = effect.traits.number;
   return effect.interface == EffectInterface::specimen &&
-         (number == ModelNumber::stiffness || number == ModelNumber::strength);
+         (number == ModelNumber::stiffness || number == ModelNumber::strength || number == ModelNumber::hardening);
 }
 
 std::vector<EffectSetting> wrong_numbers(const IdentificationProblem& problem, const FitOutcome& fit) {
@@ -327,14 +327,16 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   std::vector<const EffectType*> effects;
   // A specimen that yields is another law, with all its numbers free.
   const EffectType* const part_that_yields = find_effect(EffectInterface::specimen, "yielding");
-  // It is tried in the place of all that was found: it has something of a dashpot and of dry friction.
+  // Without a damper in the model it is tried in the place of all that was found: it has something of a dashpot and of
+  // dry friction.
   const EffectType* const fluid_damper = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
   const auto add = [&](const EffectType& effect) {
     if (is_judged(problem, effect)) effects.push_back(&effect);
   };
   for (const EffectType& effect : effect_library()) {
     if (effect.make == nullptr || shows_in_digits(effect)) continue;
-    if (&effect == part_that_yields || &effect == fluid_damper) continue;
+    if (&effect == part_that_yields || (&effect == fluid_damper && place_of(problem.model, effect) == nullptr))
+      continue;
     if (!effect.traits.takes_input) add(effect);
     for (const InputRange& input : problem.inputs) {
       if (effect.traits.takes_input && input.varies) add(with_input(effect, input.name));

@@ -269,6 +269,7 @@ std::string friction_refuted(const Suspect& suspect) {
 /// A power that may as well be the first or the second is a linear or a quadratic damping; as small a one as is looked
 /// for, dry friction; and beside dry friction a part of that, which no formula of it has quite.
 std::string power_refuted(const Suspect& suspect) {
+  if (place_of(suspect.problem.model, *suspect.effect.type) != nullptr) return {};  // a damper that the model has
   const bool is_beside_friction = std::ranges::any_of(
       suspect.outcome.effects, [](const EffectSetting& effect) { return presliding_of(*effect.type).has_value(); });
   const ParameterEstimate& exponent = suspect.parameter("exponent");

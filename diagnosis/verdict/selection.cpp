@@ -134,8 +134,8 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
 std::optional<Candidate> fit_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                           const Selection& selection) {
   const EffectType* const type = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
-  if (!is_judged(problem, *type)) return {};
-  std::vector<EffectSetting> start{{type, {0.0, 1.0}}};
+  if (place_of(problem.model, *type) != nullptr || !is_judged(problem, *type)) return {};
+  std::vector<EffectSetting> start{{type, {0.0, 1.0, 0.0}}};
   for (EffectSetting& number : numbers_of(problem)) start.push_back(std::move(number));
   const std::optional<Candidate> found = fit_together(coarse, type, start, search_effects);
   if (!found) return {};
@@ -149,10 +149,10 @@ std::optional<Candidate> fit_fluid_damper(const IdentificationProblem& problem, 
 
 /// Where what was found leaves something to explain: a fluid damper instead, if it is decidedly better. Nothing is
 /// looked for beside it. A power of the velocity has something of a dashpot and of dry friction: before the others are
-/// known, only one that leaves nothing is believed.
+/// known, only one beside a spring that leaves nothing is believed.
 void try_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse, bool all_are_known,
                       Selection& selection, Growth& growth) {
-  if (!gap_energy(problem, growth.fit).is_clear()) return;
+  if (!gap_energy(problem, growth.fit).is_clear() || !(all_are_known || problem.law_is_spring)) return;
   std::optional<Candidate> damper = fit_fluid_damper(problem, coarse, selection);
   if (!damper || (!all_are_known && gap_energy(problem, damper->fit).is_clear())) return;
   const double before = score_of(problem, growth.fit);

@@ -48,6 +48,8 @@ class Effect {
   /// Told once, before the first sample, which of StageSample::inputs it follows. Without that, or without inputs, an
   /// effect that follows one takes its nominal value.
   virtual void follow_input(std::size_t /*position*/) noexcept {}
+  /// Told once, before the first sample: the initial stiffness of the law that is the base.
+  virtual void follow_stiffness(double /*initial_n_per_m*/) noexcept {}
   /// As new.
   virtual void reset() noexcept = 0;
 };

@@ -35,6 +35,7 @@
 #include "plant/effects/specimen/friction_with_input.hpp"
 #include "plant/effects/specimen/gap.hpp"
 #include "plant/effects/specimen/geometric_stiffness.hpp"
+#include "plant/effects/specimen/hardening_error.hpp"
 #include "plant/effects/specimen/inertia.hpp"
 #include "plant/effects/specimen/nonlinear_viscous_damping.hpp"
 #include "plant/effects/specimen/pinching.hpp"
@@ -142,6 +143,7 @@ std::span<const EffectType> effect_library() noexcept {
       entry<DisplacementQuantization>(At::displacement_sensor, "quantization"),
       entry<StiffnessError>(At::specimen, "stiffness_error"),
       entry<StrengthError>(At::specimen, "strength_error"),
+      entry<HardeningError>(At::specimen, "hardening_error"),
       entry<StrengthAsymmetry>(At::specimen, "strength_asymmetry"),
       entry<ViscousDamping>(At::specimen, "viscous_damping"),
       entry<QuadraticDamping>(At::specimen, "quadratic_damping"),

@@ -46,6 +46,7 @@ enum class ModelNumber : std::uint8_t {
   mass,
   stiffness,
   strength,
+  hardening,
   damping,
   step,
   gain,
@@ -63,6 +64,7 @@ struct EffectTraits {
   ModelNumber number = ModelNumber::none;
   DigitTrace digits = DigitTrace::none;
   bool follows_derivatives = false;  // its force follows velocity or acceleration
+  bool follows_stiffness = false;    // it has to know the initial stiffness of the specimen's law
   bool needs_time = false;           // it follows rate, time or acceleration: without time it has no meaning
   bool takes_place = false;          // beside one that the model has, it takes its place; see add_effect()
   bool takes_input = false;          // it follows a recorded input beside the motion; see with_input()

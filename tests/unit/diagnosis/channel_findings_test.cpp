@@ -88,11 +88,43 @@ TEST(ChannelFindings, WildReadingsAreSaid) {
   for (const std::size_t at : {2000U, 2001U, 4500U}) force_n[at] = 80.0 * most_n;
   EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("! force_sensor: measured_force_n has 3 readings of up to")));
   // A transducer has them, too, with nothing recorded in front of it.
-  force_n[2000] = force_n[2001] = force_n[4500] = 0.0;
+  recording = made_recording(made_motion_m, spring_n);
   recording.dofs[0].of(Channel::command_displacement).clear();
   recording.dofs[0].of(Channel::measured_displacement)[100] = -9999.0;
   EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr("! displacement_sensor: measured_displacement_m has a "
                                                          "reading of -9999 m")));
+}
+
+/// A cable with a bad contact: for some samples the reading is zero, as often as it likes.
+TEST(ChannelFindings, DropoutsAreSaid) {
+  for (const Channel channel : {Channel::measured_force, Channel::measured_displacement}) {
+    Recording recording = made_recording(made_motion_m, spring_n);
+    std::vector<double>& values = recording.dofs[0].of(channel);
+    std::size_t lost = 0;
+    std::size_t places = 0;
+    for (std::size_t at = 500; at + 10 < values.size(); at += 701) {
+      if (std::abs(values[at]) < 0.3 * std::ranges::max(values)) continue;
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(at), 5, 0.0);
+      lost += 5;
+      ++places;
+    }
+    ASSERT_GE(places, 2U);
+    EXPECT_THAT(found_in(recording), ElementsAre(HasSubstr(" in " + std::to_string(places) + " places, " +
+                                                           std::to_string(lost) + " samples in all")));
+  }
+}
+
+/// A force of exactly zero is no dropout where the specimen has a gap, nor where one place alone is lost.
+TEST(ChannelFindings, ForceOfZeroIsNoDropout) {
+  const auto gap_n = [](double t) {
+    const double beyond_m = std::max(0.0, std::abs(made_motion_m(t)) - 0.004);
+    return kMadeStiffness_n_per_m * std::copysign(beyond_m, made_motion_m(t));
+  };
+  EXPECT_THAT(found_in(made_recording(made_motion_m, gap_n, 0.0)), IsEmpty());
+  Recording recording = made_recording(made_motion_m, spring_n);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  std::fill_n(std::ranges::max_element(force_n), 4, 0.0);
+  EXPECT_THAT(found_in(recording), IsEmpty());
 }
 
 /// As large and longer is a blow; and a reading is not wild that holds little of the energy.

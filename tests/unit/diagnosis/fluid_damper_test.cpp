@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "diagnosis/diagnose.hpp"
 #include "mechanics/laws/parallel.hpp"
@@ -64,6 +65,53 @@ TEST_P(FluidDamper, TakesThePlaceOfTheLinearOneOfTheModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfExponent, FluidDamper, testing::Values(0.3, 0.5, 0.75));
+
+/// The model has a damper with another coefficient, another exponent, or both: the numbers of the whole specimen, in
+/// the place of those of the model.
+TEST(FluidDamperOfTheModel, HasOtherNumbers) {
+  const Recording recording = damper_recording(0.5);
+  for (const auto& [share, exponent] : {std::pair{0.8, 0.5}, {1.0, 0.6}, {1.3, 0.35}}) {
+    SCOPED_TRACE(exponent);
+    SiteModel model = made_model();
+    model.effects.push_back({find_effect(EffectInterface::specimen, "nonlinear_viscous_damping"),
+                             {share * kDamping_n_s_per_m, exponent, 0.0}});
+    const Diagnosis diagnosis = diagnosis_of(model, recording);
+    EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
+    const report::RankedCause& cause = diagnosis.report.ranking.front();
+    ASSERT_EQ(cause.effect, "nonlinear_viscous_damping");
+    expect_damper(cause, 0.5);
+  }
+}
+
+/// A damper on a brace that is not rigid: spring and damper in series, by the fourth-order Runge-Kutta method.
+TEST(FluidDamperOnABrace, IsNamedWithItsBrace) {
+  constexpr double kExponent = 0.4;
+  constexpr double kStretch_m = 0.002;
+  const auto slope = [](double share, double t) {
+    const double relaxes = std::copysign(std::pow(std::abs(share), 1.0 / kExponent), share);
+    return (made_velocity_m_per_s(t) - relaxes) / kStretch_m;
+  };
+  double share = 0.0;
+  double now = 0.0;
+  const Recording recording = made_recording(made_motion_m, [&](double t) {
+    constexpr double kStep_s = 2e-6;
+    for (; now + 0.5 * kStep_s < t; now += kStep_s) {
+      const double k1 = slope(share, now);
+      const double k2 = slope(share + 0.5 * kStep_s * k1, now + 0.5 * kStep_s);
+      const double k3 = slope(share + 0.5 * kStep_s * k2, now + 0.5 * kStep_s);
+      const double k4 = slope(share + kStep_s * k3, now + kStep_s);
+      share += kStep_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+    return kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * share;
+  });
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
+  EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("nonlinear_viscous_damping"));
+  const report::RankedCause& cause = diagnosis.report.ranking.front();
+  expect_damper(cause, kExponent);
+  // As the coefficient.
+  EXPECT_NEAR(find_parameter(cause, "brace_stretch_m")->value, kStretch_m, 0.01 * kStretch_m);
+}
 
 /// A linear damper is no power of the velocity: the control.
 TEST(LinearDamper, IsNoNonlinearOne) {

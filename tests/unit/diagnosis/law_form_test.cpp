@@ -141,6 +141,24 @@ TEST(LawForm, WrongStrengthAloneIsNoMissingEffect) {
   EXPECT_NEAR(value_of(only_cause(diagnosis), "strength_error_ratio"), -0.2, 1e-3);
 }
 
+/// More hardening or less, down to a strength that falls: one number, whatever else could be made of three of them.
+TEST(LawForm, WrongHardeningAloneIsOneNumber) {
+  const auto real = real_bilinear();
+  const Recording recording = recording_of(*real);
+  for (const double modelled : {kHardening + 0.1, 0.0}) {
+    SCOPED_TRACE(modelled);
+    SiteModel model = made_model();
+    model.make_law = [modelled] {
+      return std::make_unique<Bilinear>(Bilinear::Parameters{kMadeStiffness_n_per_m, kYield_n, modelled});
+    };
+    const Diagnosis diagnosis = diagnosis_of(model, recording);
+    EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+    EXPECT_EQ(only_cause(diagnosis).effect, "hardening_error");
+    const double error = (kHardening - modelled) / (1.0 - modelled);
+    EXPECT_NEAR(value_of(only_cause(diagnosis), "hardening_error_ratio"), error, 1e-3);
+  }
+}
+
 /// With both wrong it is still the law of the model, and not another one of the same form.
 TEST(LawForm, WrongStrengthAndStiffnessAreNoOtherLaw) {
   const auto real = real_bilinear();

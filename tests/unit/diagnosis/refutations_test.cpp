@@ -284,7 +284,7 @@ TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {
 TEST(Refutation, PowerOfTheVelocityThatIsASimplerDamping) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   const auto damper = [&](double exponent, double error) {
-    Candidate candidate = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, exponent});
+    Candidate candidate = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, exponent, 0.0});
     candidate.fit.parameters[0][1].beside_wrong_numbers = error;
     return refutation(problem, candidate);
   };
@@ -292,11 +292,11 @@ TEST(Refutation, PowerOfTheVelocityThatIsASimplerDamping) {
   EXPECT_THAT(damper(0.9, 0.06), HasSubstr("may as well be linear"));
   EXPECT_THAT(damper(1.9, 0.04), IsEmpty());
   EXPECT_THAT(damper(1.9, 0.06), HasSubstr("may as well be quadratic"));
-  Candidate smallest = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.1});
+  Candidate smallest = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.1, 0.0});
   smallest.fit.parameters[0][1].at_bound = true;
   EXPECT_THAT(refutation(problem, smallest), HasSubstr("may as well be dry friction"));
   Candidate beside = fit_of(specimen, "coulomb_friction", {3.0e3, 0.0, 0.001}, 0.0001);
-  const Candidate damping = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.5});
+  const Candidate damping = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.5, 0.0});
   beside.fit.effects.push_back(damping.fit.effects.front());
   beside.fit.parameters.push_back(damping.fit.parameters.front());
   beside.fit.covariances.push_back(damping.fit.covariances.front());

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "mechanics/laws/bilinear.hpp"
+#include "plant/site_model.hpp"
 #include "tests/unit/plant/effect_bench.hpp"
 
 /// Effects on the specimen against their closed forms.
@@ -54,7 +55,7 @@ std::vector<Formula> formulas() {
           {3.0e5},
           [](const Driver& d, double t) { return 3.0e5 * d.velocity_m_per_s(t) * std::abs(d.velocity_m_per_s(t)); }},
       Formula{"nonlinear_viscous_damping",
-              {4.0e4, 0.35},
+              {4.0e4, 0.35, 0.0},
               [](const Driver& d, double t) {
                 const double velocity = d.velocity_m_per_s(t);
                 return 4.0e4 * std::copysign(std::pow(std::abs(velocity), 0.35), velocity);
@@ -267,6 +268,41 @@ TEST(StrengthError, ChangesStrengthButNotStiffness) {
   for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_NEAR(forces[i], expected[i], 1e-12) << i;
 }
 
+/// The same as a law with the hardening ratio b + e (1 - b), over loading, unloading and reversed yielding.
+TEST(HardeningError, ChangesHardeningAlone) {
+  const auto law_with = [](double hardening_ratio) {
+    return Bilinear{{.stiffness_n_per_m = 1.0e6, .yield_force_n = 4.0e3, .hardening_ratio = hardening_ratio}};
+  };
+  const auto force_n = [](Bilinear& law, double displacement_m) {
+    const double force = law.trial(displacement_m, 0.0);
+    law.commit();
+    return force;
+  };
+  for (const double error : {0.2, -0.1}) {
+    Bilinear modelled = law_with(0.15);
+    Bilinear real = law_with(0.15 + error * 0.85);
+    const auto effect = made(kSpecimen, "hardening_error", {error});
+    effect->follow_stiffness(modelled.initial_stiffness_n_per_m());
+    const std::vector<double> path{0.0, 0.003, 0.01, 0.004, -0.009, -0.002, 0.012};
+    const auto forces = along(*effect, path, [&](const Motion& m) { return force_n(modelled, m.displacement_m); });
+    for (std::size_t i = 0; i < path.size(); ++i) EXPECT_NEAR(forces[i], force_n(real, path[i]), 1e-9) << error << i;
+  }
+}
+
+/// Of a site the effect learns the stiffness of the law, that of another law in its place included.
+TEST(HardeningError, KnowsTheStiffnessOfTheLaw) {
+  SiteModel model;
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(
+        Bilinear::Parameters{.stiffness_n_per_m = 1.0e6, .yield_force_n = 4.0e3, .hardening_ratio = 0.0});
+  };
+  model.effects = {{find_effect(kSpecimen, "hardening_error"), {0.25}}};
+  StageEffects effects = effects_at(model, kSpecimen, kBenchPeriod_s);
+  const std::unique_ptr<Law> law = law_of(model);
+  const auto base = [&](const Motion& m) { return law->trial(m.displacement_m, 0.0); };
+  EXPECT_NEAR(effects.step({.motion = {.displacement_m = 0.010}}, base), 0.75 * 4.0e3 + 0.25 * 1.0e6 * 0.010, 1e-9);
+}
+
 /// A stop beside a law whose numbers are wrong stands where it stands, before and behind them in the list.
 TEST(StageEffects, WrongNumbersOfTheLawChangeNothingBesideIt) {
   const auto plastic = [](const Motion& m) { return std::clamp(10.0 * m.displacement_m, -8.0, 8.0); };
@@ -352,6 +388,44 @@ TEST(Relaxation, HasMaxwellComplexStiffness) {
         0.5 * 1.0e5 * (driver.displacement_m(time_s(i)) + driver.velocity_m_per_s(time_s(i)) / kOmega);
     ASSERT_NEAR(forces[i], expected, 1e3 * 4e-5);  // straight lines: (omega dt)^2 / 12 of the amplitude
   }
+}
+
+/// A damper on a brace that is held after a sudden motion: with y = f / c and m = 1 / n, y' = -y^m / d, which has the
+/// solution y^(1 - m) = y0^(1 - m) + (m - 1) t / d; exponential for n = 1.
+TEST(BracedDamper, RelaxesAsItsEquationSays) {
+  constexpr double kStretch_m = 0.004;
+  constexpr double kHeld_m = 0.002;
+  for (const double exponent : {0.4, 1.0, 1.8}) {
+    const auto effect = made(kSpecimen, "nonlinear_viscous_damping", {3.0e4, exponent, kStretch_m});
+    const auto forces = along(*effect, std::vector<double>(400, kHeld_m));
+    const double m = 1.0 / exponent;
+    // The substeps of the first sample stretch the brace as they go: what is left then is where the solution begins.
+    const double start = forces.front() / 3.0e4;
+    EXPECT_GT(start, 0.0);
+    for (std::size_t i = 0; i < forces.size(); i += 20) {
+      const double t = time_s(i);
+      const double power = std::pow(start, 1.0 - m) + (m - 1.0) * t / kStretch_m;  // for n > 1 negative at rest
+      const double expected =
+          exponent == 1.0 ? start * std::exp(-t / kStretch_m) : std::pow(std::max(0.0, power), 1.0 / (1.0 - m));
+      // Second order: a quarter of a millisecond over a time constant of four, squared, and a half of that.
+      ASSERT_NEAR(forces[i] / 3.0e4, expected, 0.002 * start) << exponent << ' ' << i;
+    }
+  }
+}
+
+/// On a brace that hardly gives way it is the damper by itself, but for the time of half a sample.
+TEST(BracedDamper, IsTheDamperOnARigidBrace) {
+  const Driver driver = sine(0.01, 12.0);
+  const auto braced = response(*made(kSpecimen, "nonlinear_viscous_damping", {3.0e4, 0.5, 1e-7}), driver, 600);
+  const auto rigid = response(*made(kSpecimen, "nonlinear_viscous_damping", {3.0e4, 0.5, 0.0}), driver, 600);
+  double squares = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 1; i < rigid.size(); ++i) {
+    squares += std::pow(braced[i] - rigid[i], 2);
+    all += rigid[i] * rigid[i];
+  }
+  // The velocity over a sample is that of its middle: half a millisecond, at 12 rad/s, and more at each reversal.
+  EXPECT_LT(std::sqrt(squares / all), 0.02);
 }
 
 /// Size and phase of a power law of the frequency, and its answer to a ramp, at several orders.

@@ -96,6 +96,52 @@ TEST_F(SiteFile, WrongSettingIsCorrectedInTheCompensator) {
   }
 }
 
+/// The specimen is the same, and the damper has numbers of its own.
+TEST_F(SiteFile, FluidDampersStandBesideTheLaw) {
+  const std::string damper = "{type: viscous, damping_n_s_per_m: 3.0e4, exponent: 0.5}";
+  const std::string both =
+      fmt::format("{{type: parallel, laws: [{{type: elastic, stiffness_n_per_m: 100.0}}, {}]}}", damper);
+  struct Case {
+    std::string text;
+    bool has_law = true;
+    std::size_t effects = 1;
+  };
+  for (const Case& one :
+       {Case{fmt::format("specimen: {}\n", damper), false}, Case{fmt::format("rig: {{specimen: {}}}\n", both)},
+        Case{fmt::format("specimen: {{type: parallel, laws: [{}]}}\n"
+                         "effects: [{{interface: specimen, effect: inertia, mass_kg: 2.0}}]\n",
+                         both),
+             true, 2}}) {
+    SCOPED_TRACE(one.text);
+    const SiteModelFile plain = read(one.text);
+    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, PowerDampers::beside_law);
+    EXPECT_EQ(static_cast<bool>(moved.dofs[0].make_law), one.has_law);
+    ASSERT_EQ(moved.dofs[0].effects.size(), one.effects);
+    const EffectSetting& effect = moved.dofs[0].effects.back();
+    EXPECT_EQ(effect.type->name, "nonlinear_viscous_damping");
+    EXPECT_EQ(effect.values, (std::vector<double>{3.0e4, 0.5, 0.0}));
+    for (const SiteModelFile& other : {moved, read(moved.text)}) {
+      EXPECT_EQ(other.dofs[0].effects.size(), one.effects);
+      for (const double velocity : {-0.3, 0.01, 0.7}) {
+        const Motion motion{.displacement_m = 0.02, .velocity_m_per_s = velocity, .acceleration_m_per_s2 = 1.5};
+        EXPECT_NEAR(force_at(other.dofs[0], motion), force_at(plain.dofs[0], motion), 1e-9);
+      }
+    }
+  }
+}
+
+/// A linear damper has a number of its own already, and of two dampers neither could take the other's place.
+TEST_F(SiteFile, OtherDampersStayInTheLaw) {
+  const std::string damper = "{type: viscous, damping_n_s_per_m: 3.0e4, exponent: 0.5}";
+  for (const std::string& law : {std::string{"{type: viscous, damping_n_s_per_m: 3.0e4}"},
+                                 fmt::format("{{type: parallel, laws: [{}, {}]}}", damper, damper)}) {
+    const SiteModelFile plain = read("specimen: " + law + "\n");
+    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, PowerDampers::beside_law);
+    EXPECT_EQ(moved.text, plain.text);
+    EXPECT_TRUE(moved.dofs[0].effects.empty());
+  }
+}
+
 TEST_F(SiteFile, EffectFollowsARecordedInputAndIsWrittenAgain) {
   const SiteModelFile site = read(
       "specimen: {type: elastic, stiffness_n_per_m: 100.0}\n"
