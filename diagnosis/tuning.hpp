@@ -247,8 +247,9 @@ inline constexpr double kSliderFriction = 0.1;
 
 // Search: its limits.
 
-/// Number of steps, relative gain below which the search stops, and number of starts that it continues.
-inline constexpr int kSearchIterations = 12;
+/// Number of steps for each searched parameter, three at least, relative gain below which the search stops, and number
+/// of starts that it continues. A law with thirteen numbers needs forty steps to come down its valley.
+inline constexpr int kStepsPerParameter = 4;
 inline constexpr double kSearchTolerance = 1e-5;
 inline constexpr std::size_t kRefinedStarts = 2;
 /// Starts by the number of searched parameters: 0, 1, 2, 3 or more.

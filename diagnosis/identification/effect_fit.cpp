@@ -50,7 +50,7 @@ std::vector<const EffectType*> types_of(const std::vector<EffectSetting>& effect
   return types;
 }
 
-enum class Look { from_start, everywhere };
+enum class Look { from_start, around_start, everywhere };
 
 /// Of effects that are known, in the search.
 Eigen::VectorXd places_of(const SearchPlan& plan, const std::vector<EffectSetting>& effects) {
@@ -90,7 +90,8 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
     first = simplest_first(problem, effects, plan, with_nuisance);
   }
   const int starts = look == Look::everywhere ? starts_for(static_cast<Eigen::Index>(plan.searched.size())) : 0;
-  const Eigen::VectorXd places = search_best(projection, first, starts);
+  const Eigen::VectorXd places =
+      look == Look::around_start ? search_around(projection, first) : search_best(projection, first, starts);
   const Projected solution = projection.solve(places);
   const Linearisation linear = linearise(projection, places, solution);
 
@@ -243,6 +244,11 @@ FitOutcome refit_effects(const IdentificationProblem& problem, const std::vector
 FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                           bool with_nuisance) {
   return fit_from(problem, types_of(start), start, Look::everywhere, with_nuisance);
+}
+
+FitOutcome search_around(const IdentificationProblem& problem, const std::vector<EffectSetting>& found,
+                         bool with_nuisance) {
+  return fit_from(problem, types_of(found), found, Look::around_start, with_nuisance);
 }
 
 FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance) {

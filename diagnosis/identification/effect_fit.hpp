@@ -88,6 +88,11 @@ struct Squares {
 [[nodiscard]] FitOutcome search_effects(const IdentificationProblem& problem, const std::vector<EffectSetting>& start,
                                         bool with_nuisance);
 
+/// The same from points around known values, in case that search ended in a side valley.
+/// @param found   one setting per effect.
+[[nodiscard]] FitOutcome search_around(const IdentificationProblem& problem, const std::vector<EffectSetting>& found,
+                                       bool with_nuisance);
+
 /// No effect at all.
 [[nodiscard]] FitOutcome fit_nothing(const IdentificationProblem& problem, bool with_nuisance);
 

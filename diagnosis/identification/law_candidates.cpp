@@ -85,6 +85,8 @@ constexpr Searched kWidthShare{"width_share", "", "lambda", Scale::one, 0.1, 2.0
 constexpr Searched kRoundness{"exponent", "", "n, the larger, the sharper the yielding", Scale::one, 1.5, 30.0};
 constexpr Searched kFlag{"flag_ratio", "", "beta", Scale::one, 0.0, 1.0};
 constexpr Searched kUnloading{"unloading_exponent", "", "alpha", Scale::one, 0.0, 0.9};
+constexpr Searched kCracking{"cracking_ratio", "", "cracking force over yield force", Scale::one, 0.0, 0.9, 0.0};
+constexpr Searched kCracked{"cracked_ratio", "", "stiffness after cracking over before", Scale::one, 0.1, 1.0};
 constexpr Searched kBreakForce{"pinching_force_ratio", "", "kf", Scale::one, 0.02, 1.0};
 constexpr Searched kBreakDisplacement{"pinching_displacement_ratio", "", "kd", Scale::one, 0.0, 1.0};
 // Yield displacement over the capacity: the part that is lost in an elastic, perfectly plastic cycle of ductility 1.25.
@@ -205,10 +207,15 @@ SelfCentring::Parameters self_centring(Values v) {
 }
 
 Takeda::Parameters takeda(Values v) {
+  // Without cracking one, and the yield displacement is strength over stiffness.
+  const double cracking = v.size() > 4 ? v[4] : 0.0;
+  const double cracked = v.size() > 5 ? v[5] : 1.0;
   Takeda::Parameters parameters;
   parameters.stiffness_n_per_m = v[0];
-  parameters.yield_force_n = v[0] * v[1];
+  parameters.yield_force_n = v[0] * v[1] * cracked / (1.0 - cracking + cracking * cracked);
   parameters.hardening_ratio = v[2];
+  parameters.cracking_force_n = cracking * parameters.yield_force_n;
+  parameters.cracked_ratio = cracked;
   parameters.unloading_exponent = v[3];
   return parameters;
 }
@@ -286,6 +293,8 @@ constexpr LawReplacement kNonlinearElastic =
     replacement<SelfCentring, self_centring>("self_centring", "softens and comes back the same way, without a loop");
 constexpr LawReplacement kTakeda = replacement<Takeda, takeda>(
     "takeda", "reloads towards its largest displacement and unloads the softer, the further it went");
+constexpr LawReplacement kTakedaCracked = replacement<Takeda, takeda>(
+    "takeda", "cracks, reloads towards its largest displacement and unloads the softer, the further it went");
 constexpr LawReplacement kPeakOriented =
     replacement<PeakOriented, peak_oriented>("peak_oriented", "reloads towards its largest displacement");
 constexpr LawReplacement kPeakOrientedLoss = replacement<PeakOriented, peak_oriented>(
@@ -328,6 +337,9 @@ struct Table {
         {kStiffness, kYield, kHardening});
     add(form, kTakeda, "unloads with k (xy / xmax)^alpha", "Takeda, Sozen and Nielsen (1970)",
         {kStiffness, kYield, kHardening, kUnloading});
+    add(form, kTakedaCracked, "cracks, yields, unloads with k (xy / xmax)^alpha", "Takeda, Sozen and Nielsen (1970)",
+        {kStiffness, kYield, kHardening, kUnloading, kCracking, kCracked});
+    refine({0.3, 0.5});
     std::vector<Searched> oriented{kStiffness, kYield, kHardening};
     add(form, kPeakOriented, "reloads in a line to the largest displacement", "Clough (1966)", oriented);
     oriented.insert(oriented.end(), {kLossOfStrength, kLossOfUnloading, kLossOfReloading});

@@ -428,8 +428,10 @@ double cost_at(const VariableProjection& projection, const Eigen::VectorXd& plac
   return std::numeric_limits<double>::infinity();
 }
 
+constexpr std::array<int, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
+
+/// A point of the sequence; from the ninth dimension on, the coordinates are those of the first again.
 Eigen::VectorXd halton(int index, Eigen::Index dimensions) {
-  constexpr std::array<int, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
   Eigen::VectorXd point(dimensions);
   for (Eigen::Index i = 0; i < dimensions; ++i) {
     const int base = kPrimes[static_cast<std::size_t>(i) % kPrimes.size()];
@@ -469,7 +471,7 @@ Start refine(const VariableProjection& projection, const Start& start) {
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = tuning::kSearchIterations;
+  options.max_num_iterations = tuning::kStepsPerParameter * std::max(3, static_cast<int>(places.size()));
   options.function_tolerance = tuning::kSearchTolerance;
   options.num_threads = 1;
   // A step is cut off at the bounds, and the trust region judges it. A line search before would ask for the slopes of
@@ -508,16 +510,10 @@ int starts_for(Eigen::Index searched) noexcept {
   return tuning::kStarts[static_cast<std::size_t>(std::min<Eigen::Index>(searched, 3))];
 }
 
-Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first, int starts) {
-  const auto searched = static_cast<Eigen::Index>(projection.plan().searched.size());
-  if (searched == 0) return Eigen::VectorXd{};
-  const bool has_instant = std::ranges::any_of(projection.plan().searched, &SearchedParameter::is_instant);
-  if (has_instant) starts *= tuning::kInstantStarts;
-  std::vector<Start> tried;
-  if (first.size() == searched) tried.push_back({first});
-  const Eigen::VectorXd small = nearly_absent(projection.plan());
-  if (small.size() > 0) tried.push_back({small});
-  for (int i = 0; i < starts; ++i) tried.push_back({halton(i, searched)});
+namespace {
+
+/// The best of the best few starts, continued; or else of the starts.
+Start continued(const VariableProjection& projection, std::vector<Start> tried) {
   const Workers& workers = projection.workers();
   workers.for_each(tried.size(), [&](std::size_t i) { tried[i].cost = cost_at(projection, tried[i].places); });
   std::ranges::stable_sort(tried, {}, &Start::cost);
@@ -526,8 +522,34 @@ Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::V
   workers.for_each(found.size(), [&](std::size_t i) {
     found[i] = settle_instants(projection, refine(projection, settle_instants(projection, found[i])));
   });
-  const Start& best = *std::ranges::min_element(found, {}, &Start::cost);
-  return best.cost < tried.front().cost ? best.places : tried.front().places;
+  Start& best = *std::ranges::min_element(found, {}, &Start::cost);
+  return best.cost < tried.front().cost ? std::move(best) : std::move(tried.front());
+}
+
+}  // namespace
+
+Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first, int starts) {
+  const auto searched = static_cast<Eigen::Index>(projection.plan().searched.size());
+  if (searched == 0) return Eigen::VectorXd{};
+  const bool has_instant = std::ranges::any_of(projection.plan().searched, &SearchedParameter::is_instant);
+  if (has_instant) starts *= tuning::kInstantStarts;
+  std::vector<Start> tried;
+  if (first.size() == searched) tried.push_back({first});
+  // A few points tell nothing of so many dimensions.
+  if (!tried.empty() && searched > std::ssize(kPrimes)) return continued(projection, std::move(tried)).places;
+  const Eigen::VectorXd small = nearly_absent(projection.plan());
+  if (small.size() > 0) tried.push_back({small});
+  for (int i = 0; i < starts; ++i) tried.push_back({halton(i, searched)});
+  return continued(projection, std::move(tried)).places;
+}
+
+Eigen::VectorXd search_around(const VariableProjection& projection, const Eigen::VectorXd& found) {
+  std::vector<Start> tried;
+  const int starts = starts_for(found.size());
+  for (int i = 0; i < starts; ++i) tried.push_back({0.75 * found + 0.25 * halton(i, found.size())});
+  if (tried.empty()) return found;
+  const Start around = continued(projection, std::move(tried));
+  return around.cost < cost_at(projection, found) ? around.places : found;
 }
 
 }  // namespace hybridtest

@@ -130,6 +130,10 @@ class VariableProjection {
 [[nodiscard]] Eigen::VectorXd search_best(const VariableProjection& projection, const Eigen::VectorXd& first,
                                           int starts);
 
+/// Likewise from points a quarter of the way from one that was found to such starts; that one where none ends lower. A
+/// search of many parameters may end in a side valley.
+[[nodiscard]] Eigen::VectorXd search_around(const VariableProjection& projection, const Eigen::VectorXd& found);
+
 /// Starts that fill a range of so many parameters; none for none.
 [[nodiscard]] int starts_for(Eigen::Index searched) noexcept;
 

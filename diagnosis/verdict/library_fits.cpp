@@ -362,7 +362,8 @@ EffectSetting start_from(const LawCandidate& law, const EffectSetting& simpler) 
   return start;
 }
 
-/// Fits the laws that refine a simpler one while the best candidate leaves something to explain.
+/// Fits the laws that refine a simpler one while the best candidate leaves something to explain, and a law that leads
+/// in the end once more.
 void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& candidates) {
   const FitOutcome baseline = fit_nothing(coarse, false);
   if (candidates.front().score < held_out_score(coarse, baseline) + decisive_gain(coarse)) return;
@@ -384,6 +385,10 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
     }
     std::ranges::stable_sort(candidates, std::greater{}, &Candidate::score);
   }
+  const Candidate& leader = candidates.front();
+  if (leader.type->replacement == nullptr || !gap_energy(coarse, leader.fit).is_clear()) return;
+  std::optional<Candidate> around = fit_together(coarse, leader.type, leader.fit.effects, search_around);
+  if (around && around->score > leader.score) candidates.front() = std::move(*around);
 }
 
 }  // namespace
@@ -450,7 +455,7 @@ bool is_half_told(const Candidate& law) {
 
 namespace {
 
-/// Searched over its whole range, from what is known of the simpler law that it refines.
+/// Searched over its whole range, from what is known of the simpler law that it refines, and around what was found.
 std::optional<Candidate> search_law(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                                     const LawCandidate& law, const std::vector<Candidate>& library) {
   std::vector<std::vector<EffectSetting>> starts;
@@ -468,6 +473,9 @@ std::optional<Candidate> search_law(const IdentificationProblem& problem, const 
         fit_together(coarse, &law.type, start, law.refines == nullptr ? refit_effects : search_effects);
     if (!found) continue;
     if (!best || squares_of(coarse, found->fit).fitted < squares_of(coarse, best->fit).fitted) best = std::move(found);
+  }
+  if (best && law.refines != nullptr) {
+    best = fit_together(coarse, &law.type, best->fit.effects, search_around);
   }
   if (!best) return best;
   return fit_together(problem, &law.type, best->fit.effects, refit_effects);

@@ -130,15 +130,16 @@ void try_special_laws(const IdentificationProblem& problem, const Identification
   put_in_place(std::move(laws.front()), probability, selection, growth);
 }
 
-/// A fluid damper with the numbers of the model that it needs; none where it may as well be something simpler.
+/// A fluid damper with the numbers of the model that it needs; none where it may as well be something simpler, or where
+/// it predicts no better at the lower rate than what was found.
 std::optional<Candidate> fit_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse,
-                                          const Selection& selection) {
+                                          const Selection& selection, const Growth& growth) {
   const EffectType* const type = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
   if (place_of(problem.model, *type) != nullptr || !is_judged(problem, *type)) return {};
   std::vector<EffectSetting> start{{type, {0.0, 1.0, 0.0}}};
   for (EffectSetting& number : numbers_of(problem)) start.push_back(std::move(number));
   const std::optional<Candidate> found = fit_together(coarse, type, start, search_effects);
-  if (!found) return {};
+  if (!found || found->held_out <= held_out_score(coarse, refit_effects(coarse, growth.fit.effects, false))) return {};
   FitOutcome needed = refit_effects(problem, found->fit.effects, false);
   prune(problem, selection.by_numbers, needed);
   if (!holds(needed.effects, type)) return {};
@@ -153,7 +154,7 @@ std::optional<Candidate> fit_fluid_damper(const IdentificationProblem& problem, 
 void try_fluid_damper(const IdentificationProblem& problem, const IdentificationProblem& coarse, bool all_are_known,
                       Selection& selection, Growth& growth) {
   if (!gap_energy(problem, growth.fit).is_clear() || !(all_are_known || problem.law_is_spring)) return;
-  std::optional<Candidate> damper = fit_fluid_damper(problem, coarse, selection);
+  std::optional<Candidate> damper = fit_fluid_damper(problem, coarse, selection, growth);
   if (!damper || (!all_are_known && gap_energy(problem, damper->fit).is_clear())) return;
   const double before = score_of(problem, growth.fit);
   if (damper->score <= before + decisive_gain(problem)) return;
@@ -161,20 +162,35 @@ void try_fluid_damper(const IdentificationProblem& problem, const Identification
   put_in_place(*std::move(damper), probability, selection, growth);
 }
 
+/// Whether effects beside the model's law make another one of it: they go with the amplitude, or with what the specimen
+/// went through.
+bool bends_the_law(const IdentificationProblem& problem, const FitOutcome& fit) {
+  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
+  const auto bends = [&](const EffectSetting& effect) {
+    const EffectFamily family = effect.type->traits.family;
+    const bool is_of_history = family == EffectFamily::amplitude || family == EffectFamily::degradation;
+    return effect.type->interface == EffectInterface::specimen && is_of_history && !is_number(problem, *effect.type);
+  };
+  return std::ranges::none_of(fit.effects, is_law) && std::ranges::any_of(fit.effects, bends);
+}
+
 /// Where what was found leaves more than a part allows: the best law of those that leave a part at most, and predict
 /// better than what was found. Under a large gap that no simple law explains, few samples count as independent of each
 /// other, and the numbers of a detailed law cost more than it can gain: what it leaves of blocks that were left out
-/// tells more. Nothing is looked for beside it.
+/// tells more. Where it leaves less, and bends the law: the best one that is decidedly better. Nothing is looked for
+/// beside it.
 void try_all_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse,
                   const VerdictPolicy& policy, Selection& selection, Growth& growth) {
   const GapEnergy left = gap_energy(problem, growth.fit);
   const double part = policy.partial_leaves * gap_energy(problem, selection.by_numbers).excess();
-  if (!left.is_clear() || left.excess() <= part) return;
+  const bool is_too_much = left.excess() > part;
+  if (!left.is_clear() || !(is_too_much || bends_the_law(problem, growth.fit))) return;
   std::vector<Candidate> laws = fit_all_laws(problem, coarse, selection.library);
-  const double before = std::max(held_out_score(problem, growth.fit),
-                                 held_out_score(problem, selection.baseline) + decisive_gain(problem));
+  const double before = is_too_much ? std::max(held_out_score(problem, growth.fit),
+                                               held_out_score(problem, selection.baseline) + decisive_gain(problem))
+                                    : score_of(problem, growth.fit) + decisive_gain(problem);
   std::erase_if(laws, [&](const Candidate& law) {
-    return law.held_out <= before || gap_energy(problem, law.fit).excess() > part;
+    return (is_too_much ? law.held_out : law.score) <= before || gap_energy(problem, law.fit).excess() > part;
   });
   if (laws.empty()) return;
   const double probability = softmax(scores_of(laws)).front();

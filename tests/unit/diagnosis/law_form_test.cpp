@@ -10,9 +10,11 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/law_candidates.hpp"
 #include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/bouc_wen_baber_noori.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/self_centring.hpp"
+#include "mechanics/laws/takeda.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -157,6 +159,54 @@ TEST(LawForm, WrongHardeningAloneIsOneNumber) {
     const double error = (kHardening - modelled) / (1.0 - modelled);
     EXPECT_NEAR(value_of(only_cause(diagnosis), "hardening_error_ratio"), error, 1e-3);
   }
+}
+
+/// Concrete that cracks before it yields: without cracks in the law, a hundredth of the force is left.
+TEST(LawForm, CrackingIsPartOfTheLaw) {
+  Takeda real{{.stiffness_n_per_m = kMadeStiffness_n_per_m,
+               .yield_force_n = kYield_n,
+               .hardening_ratio = kHardening,
+               .cracking_force_n = 5e3,
+               .cracked_ratio = 0.4}};
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording_of(real));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  const report::RankedCause& cause = only_cause(diagnosis);
+  EXPECT_EQ(cause.law, "takeda");
+  // 20 N of noise on 16 kN, 6000 samples.
+  EXPECT_NEAR(value_of(cause, "yield_force_n"), kYield_n, 2e-3 * kYield_n);
+  EXPECT_NEAR(value_of(cause, "cracking_force_n"), 5e3, 0.01 * 5e3);
+  EXPECT_NEAR(value_of(cause, "cracked_ratio"), 0.4, 0.01);
+}
+
+/// Thirteen numbers, all of which tell: a search that gave up after twelve steps left a tenth of the force.
+TEST(LawForm, LawOfManyNumbersIsFittedToTheNoise) {
+  const BoucWenBaberNoori::Parameters real{.stiffness_n_per_m = kMadeStiffness_n_per_m,
+                                           .alpha = 0.03,
+                                           .n = 1.2,
+                                           .gamma_per_m = 130.0,
+                                           .beta_per_m = 200.0,
+                                           .strength_degradation_per_j = 2e-4,
+                                           .stiffness_degradation_per_j = 4e-4,
+                                           .pinching = 0.85,
+                                           .pinching_rate_per_j = 3e-3,
+                                           .pinching_level = 0.1,
+                                           .pinching_width_m = 0.0015,
+                                           .width_share = 0.3};
+  BoucWenBaberNoori law{real};
+  SiteModel bilinear = made_model();
+  bilinear.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{kMadeStiffness_n_per_m, kYield_n, kHardening});
+  };
+  const Diagnosis diagnosis = diagnosis_of(bilinear, recording_of(law));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  const report::RankedCause& cause = only_cause(diagnosis);
+  EXPECT_EQ(cause.law, "bouc_wen_baber_noori");
+  // What the numbers of the loop tell for certain; width and its share make up for each other.
+  EXPECT_NEAR(value_of(cause, "stiffness_n_per_m"), kMadeStiffness_n_per_m, 0.01 * kMadeStiffness_n_per_m);
+  EXPECT_NEAR(value_of(cause, "n"), real.n, 0.02 * real.n);
+  EXPECT_NEAR(value_of(cause, "pinching"), real.pinching, 0.02 * real.pinching);
+  EXPECT_NEAR(value_of(cause, "strength_degradation_per_j"), 2e-4, 0.05 * 2e-4);
+  EXPECT_NEAR(value_of(cause, "stiffness_degradation_per_j"), 4e-4, 0.05 * 4e-4);
 }
 
 /// With both wrong it is still the law of the model, and not another one of the same form.
