@@ -248,7 +248,7 @@ inline constexpr double kSliderFriction = 0.1;
 // Search: its limits.
 
 /// Number of steps for each searched parameter, three at least, relative gain below which the search stops, and number
-/// of starts that it continues. A law with thirteen numbers needs forty steps to come down its valley.
+/// of starts that it continues. With twelve, a law of thirteen numbers stopped on its way.
 inline constexpr int kStepsPerParameter = 4;
 inline constexpr double kSearchTolerance = 1e-5;
 inline constexpr std::size_t kRefinedStarts = 2;

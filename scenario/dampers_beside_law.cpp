@@ -1,5 +1,7 @@
 #include "scenario/dampers_beside_law.hpp"
 
+#include <optional>
+
 #include "core/text/indented.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "scenario/catalogue/effects.hpp"
@@ -12,9 +14,10 @@ using config::Section;
 /// The law's text without its fluid dampers, which are added to the list; empty where nothing is left.
 std::string without_dampers(Section law, std::vector<EffectSetting>& dampers) {
   const std::string type = law.text("type");
-  if (type == "viscous" && law.number("exponent", kAnyNumber, 1.0) != 1.0) {
+  const double exponent = type == "viscous" ? law.number("exponent", kAnyNumber, 1.0) : 1.0;
+  if (exponent != 1.0) {
     const EffectType* const damper = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
-    dampers.push_back({damper, {law.number("damping_n_s_per_m"), law.number("exponent"), 0.0}});
+    dampers.push_back({damper, {law.number("damping_n_s_per_m"), exponent, 0.0}});
     return {};
   }
   if (type != "parallel") return law.effective();

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "core/config/section.hpp"
 #include "core/text/indented.hpp"
@@ -291,16 +292,14 @@ bool is_site_file(const std::filesystem::path& file) {
 
 namespace {
 
-/// As read_site_model().
-/// @param moved   in: overrides of the file; out: those that put fluid dampers beside the law.
-SiteModelFile read_with(std::vector<std::string>& moved, const std::filesystem::path& file,
-                        std::string_view substructure, const std::string& compensators) {
-  config::Document document = config::Document::load(file, moved);
+/// As read_site_model(), with overrides of the file.
+SiteModelFile read_with(std::vector<std::string> overrides, const std::filesystem::path& file,
+                        std::string_view substructure, const std::string& compensators, PowerDampers power_dampers) {
+  config::Document document = config::Document::load(file, overrides);
   Section root = document.root();
   const bool is_scenario = root.has("substructures");
   const bool takes_given = !compensators.empty() && !is_scenario && !root.has("compensator");
   if (takes_given) {
-    std::vector<std::string> overrides = moved;
     overrides.push_back("compensator=\n" + compensators);
     document = config::Document::load(file, overrides);
     root = document.root();
@@ -343,6 +342,10 @@ SiteModelFile read_with(std::vector<std::string>& moved, const std::filesystem::
     place.rig.error("", error.what());
   }
   document.throw_if_errors();
+  if (power_dampers == PowerDampers::beside_law) {
+    std::vector<std::string> moved = dampers_beside_law(place.rig);
+    if (!moved.empty()) return read_with(std::move(moved), file, substructure, compensators, PowerDampers::in_law);
+  }
   const bool is_flat = !is_scenario && !root.has("rig");
   if (!is_flat) {
     // What stands beside the rig goes in front of it.
@@ -355,7 +358,6 @@ SiteModelFile read_with(std::vector<std::string>& moved, const std::filesystem::
   }
   model.text += place.rig.effective();
   model.rig = whole_rig(place.rig);
-  moved = dampers_beside_law(place.rig);
   return model;
 }
 
@@ -363,10 +365,7 @@ SiteModelFile read_with(std::vector<std::string>& moved, const std::filesystem::
 
 SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
                               const std::string& compensators, PowerDampers power_dampers) {
-  std::vector<std::string> moved;
-  SiteModelFile model = read_with(moved, file, substructure, compensators);
-  if (power_dampers == PowerDampers::in_law || moved.empty()) return model;
-  return read_with(moved, file, substructure, compensators);
+  return read_with({}, file, substructure, compensators, power_dampers);
 }
 
 }  // namespace hybridtest

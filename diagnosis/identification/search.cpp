@@ -42,9 +42,9 @@ double least_of(const IdentificationProblem& problem, const EffectType& effect, 
   if (range.low >= 0.0) return std::max(0.0, parameter.low);
   if (!range.restriction.is_amount) return parameter.low;
   double has = range.scale == ParameterScale::damping_n_s_per_m ? damping_of_law(problem) : 0.0;
-  if (place_of(problem.model, effect) != nullptr) return std::max(parameter.low, -std::max(0.0, has));
+  const bool is_whole = place_of(problem.model, effect) != nullptr;  // it takes the place of what the model has of it
   for (const EffectSetting& known : problem.model.effects) {
-    if (known.type == &effect) has += known.values[index];
+    if (known.type == &effect && !is_whole) has += known.values[index];
   }
   return std::max(parameter.low, -std::max(0.0, has));
 }

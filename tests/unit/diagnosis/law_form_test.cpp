@@ -143,7 +143,7 @@ TEST(LawForm, WrongStrengthAloneIsNoMissingEffect) {
   EXPECT_NEAR(value_of(only_cause(diagnosis), "strength_error_ratio"), -0.2, 1e-3);
 }
 
-/// More hardening or less, down to a strength that falls: one number, whatever else could be made of three of them.
+/// More hardening or less: one number, though three others together could make it.
 TEST(LawForm, WrongHardeningAloneIsOneNumber) {
   const auto real = real_bilinear();
   const Recording recording = recording_of(*real);
@@ -161,7 +161,7 @@ TEST(LawForm, WrongHardeningAloneIsOneNumber) {
   }
 }
 
-/// Concrete that cracks before it yields: without cracks in the law, a hundredth of the force is left.
+/// Concrete that cracks before it yields.
 TEST(LawForm, CrackingIsPartOfTheLaw) {
   Takeda real{{.stiffness_n_per_m = kMadeStiffness_n_per_m,
                .yield_force_n = kYield_n,
@@ -178,7 +178,7 @@ TEST(LawForm, CrackingIsPartOfTheLaw) {
   EXPECT_NEAR(value_of(cause, "cracked_ratio"), 0.4, 0.01);
 }
 
-/// Thirteen numbers, all of which tell: a search that gave up after twelve steps left a tenth of the force.
+/// A law of thirteen numbers, under a model of another form.
 TEST(LawForm, LawOfManyNumbersIsFittedToTheNoise) {
   const BoucWenBaberNoori::Parameters real{.stiffness_n_per_m = kMadeStiffness_n_per_m,
                                            .alpha = 0.03,

@@ -289,7 +289,7 @@ TEST(HardeningError, ChangesHardeningAlone) {
   }
 }
 
-/// Of a site the effect learns the stiffness of the law, that of another law in its place included.
+/// Of a site the effect learns the stiffness of the law.
 TEST(HardeningError, KnowsTheStiffnessOfTheLaw) {
   SiteModel model;
   model.make_law = [] {
