@@ -12,6 +12,8 @@ constexpr Duration kControlPoll = std::chrono::milliseconds{5};
 constexpr Duration kRepeat = std::chrono::milliseconds{20};
 /// The answer to `pause` and `resume` is an event, which an operator hears only when it has discovered its sender.
 constexpr Duration kRepeatQuestion = std::chrono::milliseconds{300};
+/// A site that stops ends the whole test, and a coordinator that was not yet discovered is then gone unseen.
+constexpr Duration kAwaitCoordinator = std::chrono::seconds{1};
 
 }  // namespace
 
@@ -78,8 +80,12 @@ bool OperatorRequest::is_obeyed() const {
 }
 
 bool OperatorRequest::may_send(Instant now) const {
-  if (stops()) return !found_.empty();
-  return contains(std::string{kCoordinatorId}) && now - last_discovery_ >= kRepeatQuestion;
+  if (verb_ == ControlVerb::emergency_stop) return !found_.empty();
+  const bool knows_coordinator = contains(std::string{kCoordinatorId});
+  if (verb_ == ControlVerb::stop) {
+    return knows_coordinator || (!found_.empty() && now - last_discovery_ >= kAwaitCoordinator);
+  }
+  return knows_coordinator && now - last_discovery_ >= kRepeatQuestion;
 }
 
 void OperatorRequest::note_obeyed(const std::string& id, Instant now) {

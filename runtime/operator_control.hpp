@@ -22,10 +22,10 @@ struct FoundParticipant {
   std::optional<Duration> obeyed_after{};  // from the discovery
 };
 
-/// A request of the operator on one network path: sent at once to each participant that is discovered, and repeated
-/// until all have obeyed. `stop` and `emergency_stop` count as obeyed when a participant leaves the test; an emergency
-/// stop goes to the sites directly and needs no coordinator. `pause` and `resume` count when the coordinator reports
-/// them. A test in real time refuses a pause.
+/// A request of the operator on one network path, repeated until all have obeyed. `stop` and `emergency_stop` count as
+/// obeyed when a participant leaves the test. An emergency stop is sent at once to each participant that is discovered
+/// and needs no coordinator; a `stop` waits for the coordinator, one second after the last discovery at most. `pause`
+/// and `resume` count when the coordinator reports them. A test in real time refuses a pause.
 class OperatorRequest {
  public:
   /// @param sender   the incarnation of the operator's process.

@@ -48,6 +48,21 @@ TEST(OperatorRequest, RepeatsUntilAllHaveObeyed) {
   EXPECT_TRUE(request.is_complete());
 }
 
+TEST(OperatorRequest, StopWaitsOneSecondForTheCoordinator) {
+  OperatorRequest request{ControlVerb::stop, kSender};
+  request.learn(status_of("site", LifecycleState::running), after_ms(0));
+  EXPECT_FALSE(request.due(after_ms(999)));  // the site would end the test, and the coordinator be gone unseen
+  request.learn(status_of("coordinator", LifecycleState::running), after_ms(999));
+  EXPECT_TRUE(request.due(after_ms(999)));
+}
+
+TEST(OperatorRequest, StopGoesToTheSitesWhereNoCoordinatorIsFound) {
+  OperatorRequest request{ControlVerb::stop, kSender};
+  request.learn(status_of("site", LifecycleState::running), after_ms(0));
+  EXPECT_FALSE(request.due(after_ms(999)));
+  EXPECT_TRUE(request.due(after_ms(1000)));
+}
+
 TEST(OperatorRequest, PauseWaitsForTheCoordinatorToBeHeard) {
   OperatorRequest request{ControlVerb::pause, kSender};
   request.learn(status_of("site", LifecycleState::running), after_ms(0));
