@@ -53,8 +53,14 @@ std::unique_ptr<Law> law_of(const SiteModel& model) {
   const auto replaced =
       std::ranges::find_if(model.effects.rbegin(), model.effects.rend(),
                            [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
-  if (replaced != model.effects.rend()) return replaced->type->replacement->make(replaced->values);
-  return model.make_law ? model.make_law() : nullptr;
+  std::unique_ptr<Law> law;
+  if (replaced != model.effects.rend()) {
+    law = replaced->type->replacement->make(replaced->values);
+  } else if (model.make_law) {
+    law = model.make_law();
+  }
+  if (law != nullptr) law->ignore_reversals_within(model.reversal_noise_m);
+  return law;
 }
 
 namespace {

@@ -45,6 +45,7 @@ struct SiteModel {
   double removable_delay_s = 0.0;                  // the transfer system's own pure delay
   bool has_bandwidth = false;                      // the transfer system has a bandwidth or natural frequency
   std::function<std::unique_ptr<Law>()> make_law;  // empty: the specimen has no force
+  double reversal_noise_m = 0.0;                   // see Law::ignore_reversals_within()
   /// @param delay_change_s   added to its setting, which stays between 0 and the most it may be. Empty: none.
   std::function<std::unique_ptr<Compensator>(double sample_period_s, double delay_change_s)> make_compensator;
   DelaySetting compensator_delay = {};

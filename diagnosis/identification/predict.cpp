@@ -28,6 +28,7 @@ class RememberingLaw final : public Law {
   void revert() noexcept override { law_->revert(); }
   void reset() noexcept override { law_->reset(); }
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override { return law_->initial_stiffness_n_per_m(); }
+  void ignore_reversals_within(double distance_m) noexcept override { law_->ignore_reversals_within(distance_m); }
 
  private:
   std::unique_ptr<Law> law_;
@@ -60,10 +61,12 @@ class LawFromMemory final : public Law {
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override {
     return make_()->initial_stiffness_n_per_m();
   }
+  void ignore_reversals_within(double distance_m) noexcept override { least_reversal_m_ = distance_m; }
 
  private:
   void take_along() noexcept {
     law_ = make_();
+    law_->ignore_reversals_within(least_reversal_m_);
     for (std::size_t i = 0; i < next_; ++i) {
       static_cast<void>(law_->trial(memory_->displacement_m[i], memory_->velocity_m_per_s[i]));
       law_->commit();
@@ -73,6 +76,7 @@ class LawFromMemory final : public Law {
   std::function<std::unique_ptr<Law>()> make_;
   std::shared_ptr<const LawMemory> memory_;
   std::unique_ptr<Law> law_;  // after the path differs from the remembered one
+  double least_reversal_m_ = 0.0;
   std::size_t next_ = 0;
 };
 
@@ -192,6 +196,7 @@ std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& 
 std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
   SiteModel extended = model;
   extended.inputs = segment.inputs.names;
+  extended.reversal_noise_m = segment.reversal_noise_m;
   if (segment.is_quasi_static) {
     std::erase_if(extended.effects, [](const EffectSetting& effect) { return effect.type->traits.needs_time; });
   }

@@ -55,6 +55,15 @@ std::vector<double> input_of(const Segment& segment, const DofRecording& dof) {
   return segment.input_step > 0.0 ? between_steps(readings, segment.input_step) : readings;
 }
 
+/// See Segment::reversal_noise_m.
+double reversal_noise_m(double deviation_m, std::size_t samples) { return 2.0 * peak_of_noise(deviation_m, samples); }
+
+double reversal_noise_m(const std::vector<Motion>& noise) {
+  double squares = 0.0;
+  for (const Motion& at : noise) squares += at.displacement_m * at.displacement_m;
+  return noise.empty() ? 0.0 : reversal_noise_m(std::sqrt(squares / static_cast<double>(noise.size())), noise.size());
+}
+
 /// Smooths the measured displacement, and also over half the window: the difference shows what smoothing removes.
 void smooth_input(Segment& segment, std::span<const double> displacement_m, std::size_t half_width) {
   segment.half_width = half_width;
@@ -64,6 +73,7 @@ void smooth_input(Segment& segment, std::span<const double> displacement_m, std:
   segment.noise = polynomial.motion(error);
   segment.narrow_input.clear();
   segment.narrow_noise.clear();
+  segment.reversal_noise_m = reversal_noise_m(segment.noise);
   if (half_width / 2 < LocalPolynomial::kHalfWidthMin) return;
   const LocalPolynomial narrow{half_width / 2, segment.period_s};
   segment.narrow_input = narrow.motion(displacement_m);
@@ -203,6 +213,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   result.smoothed_by = deviation;
   result.input = motion_of_readings(result, input_of(segment, dof));
   result.noise = motion_of_readings(result, drawn_error(result.input, segment.input_noise, segment.input_step));
+  result.reversal_noise_m = reversal_noise_m(result.noise);
   result.narrow_input.clear();
   result.narrow_noise.clear();
   result.inputs = smooth_inputs(smoother, segment.inputs);
@@ -285,6 +296,8 @@ std::vector<double> smoothing_errors(const SiteModel& model, const Segment& smoo
                                      double deviation) {
   Segment plain = smooth;
   plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(input_of(smooth, dof));
+  plain.reversal_noise_m =
+      reversal_noise_m(std::hypot(smooth.input_noise, smooth.input_step / std::sqrt(12.0)), plain.input.size());
   plain.unjudged = 0;
   std::vector<double> errors = FlatSmoother{deviation}.smooth(predict(model, plain));
   const std::vector<double> first_motion = predict(model, smooth);
@@ -354,6 +367,17 @@ double left_beside(const SiteModel& model, const std::vector<double>& force_n, c
   return (right - columns * columns.colPivHouseholderQr().solve(right)).squaredNorm() / static_cast<double>(judged);
 }
 
+/// A specimen that is simulated turns at reversals that are as small as the noise, too, and a real one does not: they
+/// are ignored unless the force is nearer to the model's with them.
+void settle_reversals(const SiteModel& model, Segment& segment) {
+  if (segment.to != Channel::measured_force || !(segment.reversal_noise_m > 0.0)) return;
+  Segment with_all = segment;
+  with_all.reversal_noise_m = 0.0;
+  const bool are_nearer =
+      left_beside(model, segment.measured, with_all, false) < left_beside(model, segment.measured, segment, false);
+  if (are_nearer) segment.reversal_noise_m = 0.0;
+}
+
 /// The motion alone smoothed, the force as it is.
 Segment with_smooth_motion(const Segment& segment, double deviation) {
   Segment result = segment;
@@ -412,6 +436,7 @@ std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& 
     const bool is_smoothed = can_be_smoothed(segment) && follows_derivatives(completed);
     segments.push_back(is_smoothed ? best_smoothed(completed, segment, recording.dofs[dof], progress)
                                    : std::move(segment));
+    settle_reversals(completed, segments.back());
   }
   return segments;
 }

@@ -55,6 +55,8 @@ struct Segment {
   std::vector<Motion> noise;
   // The noise that `input` still has as another channel tells it, coloured noise and hum with it; empty: none does.
   std::vector<Motion> told_noise;
+  // What `input` turns by where the motion does not: the noise of a reading from peak to peak [m]. 0: none.
+  double reversal_noise_m = 0.0;
   // How `input` was derived from readings: the window of the polynomial and the weights behind it, see
   // smoothed_alike(); 0: none.
   std::size_t half_width = 0;

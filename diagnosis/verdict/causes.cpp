@@ -71,14 +71,6 @@ std::vector<std::size_t> credible(const IdentificationProblem& problem, const Se
   return members;
 }
 
-/// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
-bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
-  return std::ranges::all_of(problem.segments, [&](const FitSegment& fit) {
-    if (!fit.is_suspect || !fit.segment.touched_by(*effect.type)) return true;
-    return (predict(problem, fit, std::span{&effect, 1}) - fit.baseline).norm() <= share * fit.measured.norm();
-  });
-}
-
 /// How late a ramp is at last that goes as far and takes as long as a segment, as it comes out of the model's transfer
 /// system [s].
 double delay_of_ramp_s(const IdentificationProblem& problem, const SiteModel& model, const Segment& like) {

@@ -101,6 +101,13 @@ bool is_number(const IdentificationProblem& problem, const EffectType& type) {
   return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
 }
 
+bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
+  return std::ranges::all_of(problem.segments, [&](const FitSegment& fit) {
+    if (!fit.is_suspect || !fit.segment.touched_by(*effect.type)) return true;
+    return (predict(problem, fit, std::span{&effect, 1}) - fit.baseline).norm() <= share * fit.measured.norm();
+  });
+}
+
 bool earns_its_place(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
                      const Candidate& with) {
   const double gain = held_out_score(problem, with.fit) - held_out_score(problem, without);
@@ -266,6 +273,19 @@ bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
   return typeid(first) == typeid(second);
 }
 
+/// Whether several numbers of the model that are slightly off beside one effect have to be far off beside another.
+bool pushes_numbers(const IdentificationProblem& problem, const std::vector<EffectSetting>& with_one,
+                    const std::vector<EffectSetting>& with_another) {
+  const auto is_slight = [&](const EffectSetting& number) {
+    return changes_at_most(problem, number, 2.0 * tuning::kNumbersWithin);
+  };
+  const auto pushed = std::ranges::count_if(with_another, [&](const EffectSetting& number) {
+    const auto own = std::ranges::find(with_one, number.type, &EffectSetting::type);
+    return own != with_one.end() && is_number(problem, *number.type) && is_slight(*own) && !is_slight(number);
+  });
+  return pushed > 1;
+}
+
 /// What is tried in the place of an effect, and its fit beside the others.
 struct Instead {
   const EffectType* type = nullptr;
@@ -277,18 +297,25 @@ struct Instead {
 /// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
 /// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
 /// become a law of the same form. A number of the model is expected to be off: an effect that is none has to be
-/// decidedly better.
+/// decidedly better. But it is expected to be off by itself: than what needs several others to be far off, an
+/// effect beside which they are slightly off is decidedly better.
 void exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = effects[position].type->replacement != nullptr;
-  std::vector<double> scores{score_of(problem, growth.fit) + expected(problem, *effects[position].type)};
+  const double own = score_of(problem, growth.fit) + expected(problem, *effects[position].type);
+  std::vector<double> scores{own};
   std::optional<Candidate> best;
-  double highest = scores.front() + tuning::kParameterPrior;  // a tie changes nothing
+  double highest = own + tuning::kParameterPrior;  // a tie changes nothing
   const auto compare = [&](std::optional<Candidate> instead) {
     if (!instead) return;
-    scores.push_back(score_of(problem, instead->fit) + expected(problem, *instead->type));
-    if (scores.back() <= highest) return;
-    highest = scores.back();
+    double score = score_of(problem, instead->fit);
+    if (!pushes_numbers(problem, effects, instead->fit.effects)) score += expected(problem, *instead->type);
+    if (pushes_numbers(problem, instead->fit.effects, effects)) {
+      score += decisive_gain(problem) + expected(problem, *effects[position].type);
+    }
+    scores.push_back(score);
+    if (score <= highest) return;
+    highest = score;
     best = std::move(instead);
   };
   std::vector<Instead> tried;
@@ -322,8 +349,15 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
   growth.fit = std::move(best->fit);
 }
 
-/// Each chosen effect in turn.
+/// Each chosen effect in turn; first the hardening, which is not expected to be off as other numbers of a law are.
 void settle_effects(const IdentificationProblem& problem, const Selection& selection, Growth& growth) {
+  const auto is_hardening = [](const EffectSetting& effect) {
+    return effect.type->traits.number == ModelNumber::hardening;
+  };
+  const auto hardening = std::ranges::find_if(growth.fit.effects, is_hardening);
+  if (hardening != growth.fit.effects.end()) {
+    exchange(problem, selection, static_cast<std::size_t>(hardening - growth.fit.effects.begin()), growth);
+  }
   for (std::size_t position = 0; position < growth.fit.effects.size(); ++position) {
     exchange(problem, selection, position, growth);
   }
@@ -438,8 +472,10 @@ std::ptrdiff_t count_of_others(const IdentificationProblem& problem, const FitOu
                                [&](const EffectSetting& effect) { return !is_number(problem, *effect.type); });
 }
 
-/// Whether numbers of the model gave way to effects that are none, without these being decidedly better.
+/// Whether numbers of the model gave way to effects that are none, without these being decidedly better, and without
+/// others that were far off being slightly off now.
 bool numbers_gave_way(const IdentificationProblem& problem, const FitOutcome& left, const FitOutcome& before) {
+  if (pushes_numbers(problem, left.effects, before.effects)) return false;
   const std::ptrdiff_t more = count_of_others(problem, left) - count_of_others(problem, before);
   const double gain = score_of(problem, left) - score_of(problem, before);
   return more > 0 && gain < static_cast<double>(more) * decisive_gain(problem);

@@ -44,6 +44,9 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
 /// A number of the model, or the damping that every model leaves out.
 [[nodiscard]] bool is_number(const IdentificationProblem& problem, const EffectType& type);
 
+/// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
+[[nodiscard]] bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share);
+
 /// A further effect is accepted only if it improves the score on held-out blocks and explains enough. Wrong numbers of
 /// the model are expected: the score alone decides. Any other effect is also judged by the gap that it leaves and by
 /// the whole gap where it acts that numbers do not explain, unless it leaves hardly anything: even the right effect

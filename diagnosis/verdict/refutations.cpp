@@ -215,15 +215,42 @@ double lateness_s(const FitSegment& fit) {
   return -solution[1] / solution[0];
 }
 
-/// What a transducer that lags reads is late behind the command, as no actuator is early.
+/// How early the measured force is before the one that the model has for the reading, whatever their gain:
+/// F = g F0 + T F0'.
+double force_leads_s(const FitSegment& fit) {
+  const Eigen::MatrixXd& directions = fit.numbers.directions;
+  Eigen::VectorXd read = fit.measured;
+  if (directions.cols() > 0) read += directions * fit.numbers.off;  // as it was before the numbers were free
+  const Eigen::Index size = read.size() - 2;
+  Eigen::MatrixX3d columns{size, 3};
+  columns.col(0) = fit.baseline.segment(1, size);
+  columns.col(1) = (fit.baseline.tail(size) - fit.baseline.head(size)) /
+                   (2.0 * fit.segment.period_s * static_cast<double>(fit.averaged));
+  columns.col(2).setOnes();
+  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(read.segment(1, size));
+  return solution[1] / solution[0];
+}
+
+/// What a transducer that lags reads is late behind the command, as no actuator is early; and the force is early before
+/// it by as much, as no damping is negative.
 std::string transducer_lag_refuted(const Suspect& suspect) {
   const double lag_s = suspect.parameter("time_constant_s").value;
+  const std::string claim = suspect.name() + " by " + report::quantity(lag_s, "s");
   for (const FitSegment& fit : suspect.problem.segments) {
-    if (fit.segment.from != Channel::command_displacement || !suspect.ends_at(fit)) continue;
-    const double late_s = lateness_s(fit);
-    if (!is_nearer_to_none(late_s, lag_s)) continue;
-    return fmt::format("{} by {}: the reading comes {} after the command", suspect.name(), report::quantity(lag_s, "s"),
-                       report::quantity(late_s, "s"));
+    if (fit.segment.from == Channel::command_displacement && suspect.ends_at(fit)) {
+      const double late_s = lateness_s(fit);
+      if (is_nearer_to_none(late_s, lag_s)) {
+        return fmt::format("{}: the reading comes {} after the command", claim, report::quantity(late_s, "s"));
+      }
+    }
+    if (fit.segment.to == Channel::measured_force && fit.segment.touched_by(*suspect.effect.type) &&
+        fit.baseline.squaredNorm() > 0.0) {
+      const double early_s = force_leads_s(fit);
+      if (is_nearer_to_none(early_s, lag_s)) {
+        return fmt::format("{}: the force comes {} before what the model has for the reading", claim,
+                           report::quantity(early_s, "s"));
+      }
+    }
   }
   return {};
 }

@@ -350,14 +350,31 @@ std::optional<Candidate> lag_of_transducer(IdentificationProblem whole, const st
   const FitOutcome both = refit_effects(whole, found, false);
   std::vector<EffectSetting> rest = found;
   std::erase_if(rest, [&](const EffectSetting& effect) { return is_late(effect) || damps(effect); });
-  std::vector<EffectSetting> effects = rest;
-  effects.insert(effects.begin(), absent(*lag));
-  Candidate one{.type = lag, .fit = search_effects(whole, effects, false)};
   const Eigen::VectorXd all = changes_of(whole, both);
-  if (!is_small(changes_of(whole, one.fit) - all, all - changes_by(whole, rest))) return {};
-  if (is_told(whole, one.fit, both, nats_that_decide(policy.credible))) return {};
+  const Eigen::VectorXd by_both = all - changes_by(whole, rest);
   const auto stands_for = [](const EffectType& type) { return is_late_motion(type) || is_damping(type); };
-  if (is_refuted(whole, stands_for, one)) return {};
+  const auto beside = [&](const std::vector<EffectSetting>& others) {
+    std::vector<EffectSetting> effects = others;
+    effects.insert(effects.begin(), absent(*lag));
+    return Candidate{.type = lag, .fit = search_effects(whole, effects, false)};
+  };
+  const auto stands_for_both = [&](const Candidate& one) {
+    return is_small(changes_of(whole, one.fit) - all, by_both) &&
+           !is_told(whole, one.fit, both, nats_that_decide(policy.credible)) && !is_refuted(whole, stands_for, one);
+  };
+  Candidate one = beside(rest);
+  if (one.fit.effects.front().values[0] == 0.0) return {};
+  if (stands_for_both(one)) return one;
+  // The actuator may be late by a little as well.
+  std::vector<EffectSetting> undamped = found;
+  std::erase_if(undamped, damps);
+  one = beside(undamped);
+  if (!stands_for_both(one)) return {};
+  const auto late_of = [&](std::vector<EffectSetting> effects) {
+    std::erase_if(effects, [&](const EffectSetting& effect) { return !is_late(effect); });
+    return changes_by(whole, effects);
+  };
+  if (!is_slight(late_of(one.fit.effects), late_of(found))) return {};
   return one;
 } catch (const ConfigError&) {
   return {};

@@ -28,8 +28,13 @@ GiuffreMenegottoPinto::State GiuffreMenegottoPinto::virgin() const noexcept {
 double GiuffreMenegottoPinto::trial(double displacement_m, double /*velocity_m_per_s*/) noexcept {
   const double increment_m = displacement_m - committed_.displacement_m;
   State next = committed_;
-  if (increment_m > 0.0 && committed_.branch != Branch::rising) begin_branch(next, Branch::rising);
-  if (increment_m < 0.0 && committed_.branch != Branch::falling) begin_branch(next, Branch::falling);
+  const Branch heading = increment_m > 0.0 ? Branch::rising : Branch::falling;
+  const bool turns = increment_m != 0.0 && committed_.branch != heading;
+  if (turns && std::abs(increment_m) <= least_reversal_m_) {
+    trial_ = committed_;
+    return committed_.force_n + parameters_.stiffness_n_per_m * increment_m;
+  }
+  if (turns) begin_branch(next, heading);
   next.force_n = force_n(next, displacement_m);
   next.displacement_m = displacement_m;
   trial_ = next;

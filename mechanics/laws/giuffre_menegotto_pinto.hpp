@@ -22,7 +22,7 @@ namespace hybridtest {
 /// reversals of the displacement against the committed one, as in Steel02 of OpenSees.
 ///
 /// A known property of the law: after a small unloading it reloads on a new curve and can exceed
-/// the curve it left.
+/// the curve it left. ignore_reversals_within() keeps it on that curve.
 class GiuffreMenegottoPinto final : public Law {
  public:
   struct Parameters {
@@ -60,13 +60,14 @@ class GiuffreMenegottoPinto final : public Law {
   void revert() noexcept override { trial_ = committed_; }
   void reset() noexcept override { committed_ = trial_ = virgin(); }
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override { return parameters_.stiffness_n_per_m; }
+  void ignore_reversals_within(double distance_m) noexcept override { least_reversal_m_ = distance_m; }
 
  private:
   enum class Branch { virgin, rising, falling };
 
   struct State {
     Branch branch = Branch::virgin;
-    double displacement_m = 0.0;
+    double displacement_m = 0.0;  // on the branch
     double force_n = 0.0;
     double reversal_displacement_m = 0.0;
     double reversal_force_n = 0.0;
@@ -82,6 +83,7 @@ class GiuffreMenegottoPinto final : public Law {
   [[nodiscard]] double force_n(const State& state, double displacement_m) const noexcept;
 
   Parameters parameters_;
+  double least_reversal_m_ = 0.0;  // shorter ones are elastic and change nothing
   double yield_displacement_m_;
   State committed_;
   State trial_;

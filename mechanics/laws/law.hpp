@@ -19,6 +19,10 @@ class Law {
   virtual void reset() noexcept = 0;
   /// Tangent at the virgin state [N/m], for stability limits and damping.
   [[nodiscard]] virtual double initial_stiffness_n_per_m() const noexcept = 0;
+  /// Reversals over no more than this distance [m] are noise of the displacement. A law whose force changes for good
+  /// where it turns stays on its branch then, and is elastic from the branch to the displacement and back. Kept by
+  /// reset(). Other laws do as before.
+  virtual void ignore_reversals_within(double /*distance_m*/) noexcept {}
 };
 
 }  // namespace hybridtest

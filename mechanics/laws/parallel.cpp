@@ -34,4 +34,8 @@ double Parallel::initial_stiffness_n_per_m() const noexcept {
   return stiffness_n_per_m;
 }
 
+void Parallel::ignore_reversals_within(double distance_m) noexcept {
+  for (const std::unique_ptr<Law>& law : laws_) law->ignore_reversals_within(distance_m);
+}
+
 }  // namespace hybridtest

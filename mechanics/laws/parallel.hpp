@@ -19,6 +19,7 @@ class Parallel final : public Law {
   void revert() noexcept override;
   void reset() noexcept override;
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override;
+  void ignore_reversals_within(double distance_m) noexcept override;
 
  private:
   std::vector<std::unique_ptr<Law>> laws_;

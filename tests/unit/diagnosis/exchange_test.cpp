@@ -68,6 +68,26 @@ TEST(Exchange, LawOfTheSameFormGivesWayToAStrengthAndDampingThatIsSlight) {
   EXPECT_FALSE(diagnosis.report.corrections.empty());
 }
 
+/// Stiffness, strength and hardening, each off by as much as the load takes from the stiffness, are exactly such a
+/// load.
+TEST(Exchange, LoadIsNotThreeNumbersOfTheLaw) {
+  SiteModel model = made_model();
+  model.make_law = [] { return smooth_law(1.0); };
+  constexpr double kSofter = 0.98;
+  constexpr double kLoadOverHeight_n_per_m = 0.12 * kMadeStiffness_n_per_m;
+  const std::unique_ptr<Law> real = smooth_law(kSofter);
+  const Diagnosis diagnosis = diagnosis_with(model, [&](double t) {
+    const double force_n = real->trial(made_motion_m(t), 0.0);
+    real->commit();
+    return force_n - kLoadOverHeight_n_per_m * made_motion_m(t);
+  });
+  ASSERT_THAT(causes_of(diagnosis), testing::ElementsAre("geometric_stiffness"));
+  const report::RankedCause& load = diagnosis.report.ranking.front();
+  // Of a law 2 % too soft, the stiffness and the load may each take a part: by as much.
+  EXPECT_NEAR(find_parameter(load, "axial_force_n")->value / find_parameter(load, "height_m")->value,
+              kLoadOverHeight_n_per_m, (1.0 - kSofter) * kMadeStiffness_n_per_m);
+}
+
 report::RankedCause cause_with(const char* effect, double share, bool is_indistinguishable) {
   report::RankedCause cause;
   cause.effect = effect;

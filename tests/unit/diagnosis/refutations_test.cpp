@@ -237,6 +237,20 @@ TEST(Refutation, EffectThatTheOthersTakeBack) {
   EXPECT_THAT(beside_lag(0.8), IsEmpty());
 }
 
+/// A motion that is read late has its force early: where the two go together, it is the actuator that is late.
+TEST(Refutation, LagOfATransducerWhoseForceIsNoEarlier) {
+  constexpr double kLag_s = 0.01;
+  const auto late_m = [](double t) { return made_motion_m(t - kLag_s); };
+  const auto problem_with = [&](double force_lag_s) {
+    return problem_of(made_recording(late_m, [=](double t) { return spring_n(t - force_lag_s); }));
+  };
+  const Candidate lag = fit_of(displacement_sensor, "lag", {kLag_s, 0.0});
+  EXPECT_THAT(refutation(problem_with(kLag_s), lag), HasSubstr("before what the model has for the reading"));
+  EXPECT_THAT(refutation(problem_with(0.6 * kLag_s), lag), HasSubstr("before what the model has for the reading"));
+  EXPECT_THAT(refutation(problem_with(0.4 * kLag_s), lag), IsEmpty());
+  EXPECT_THAT(refutation(problem_with(0.0), lag), IsEmpty());
+}
+
 TEST(Refutation, EarlierEffectThatRestContradictsIsNeedless) {
   // A bias that was needed before the damping was found: it does not speak against the damping, it goes.
   const IdentificationProblem problem =

@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <numbers>
 
+#include "core/random.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "mechanics/laws/bilinear.hpp"
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -119,6 +124,57 @@ TEST(ChangeBySmoothing, IsWhatNoiseOnTheMotionOfAYieldingLawChanged) {
   for (std::size_t i = 0; i < left.size(); ++i) left[i] += predicted[i] - noisy.measured[i];
   // Of the force that the noise took, no more than a half is left.
   EXPECT_LT(root_mean_square(left), 0.5 * residual_n(model, noisy));
+}
+
+std::unique_ptr<Law> steel() {
+  return std::make_unique<GiuffreMenegottoPinto>(GiuffreMenegottoPinto::Parameters{
+      .stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 1.6e4, .hardening_ratio = 0.05});
+}
+
+/// A slow motion and a fast one that is hardly faster in between: there the noise turns, far from the peaks.
+double grazing_m(double t) {
+  const double growth = std::min(1.0, t);
+  return growth *
+         (0.02 * std::sin(2.0 * std::numbers::pi * 0.3 * t) + 0.0031 * std::sin(2.0 * std::numbers::pi * 1.9 * t));
+}
+
+/// The specimen's segment of a specimen of steel that moves so, read with noise.
+Segment of_steel(const std::function<double(double)>& moved_m, double noise_m) {
+  SiteModel model = made_model();
+  model.make_law = steel;
+  const std::unique_ptr<Law> specimen = steel();
+  Random random{5};
+  const Recording recording = made_recording([&](double t) { return moved_m(t) + noise_m * random.normal(); },
+                                             [&](double t) {
+                                               const double force_n = specimen->trial(moved_m(t), 0.0);
+                                               specimen->commit();
+                                               return force_n;
+                                             });
+  return modelled_segments(model, recording, 0, 0).back();
+}
+
+/// What steel leaves of the force of a segment, over the force [rms].
+double left_by_steel(const Segment& segment) {
+  SiteModel model = made_model();
+  model.make_law = steel;
+  return residual_n(model, segment) / root_mean_square(segment.measured);
+}
+
+TEST(ModelledSegments, SteelDoesNotTurnInTheNoise) {
+  const Segment segment = of_steel(grazing_m, 2e-5);
+  EXPECT_GT(segment.reversal_noise_m, 0.0);
+  Segment with_all = segment;
+  with_all.reversal_noise_m = 0.0;
+  // 3e-5 m of noise, smoothed, times the stiffness: some 20 N of 14 kN.
+  EXPECT_LT(left_by_steel(segment), 2e-3);
+  EXPECT_GT(left_by_steel(with_all), 0.02);
+}
+
+/// A simulated specimen has each reversal of its motion, also those that are as small as the noise.
+TEST(ModelledSegments, SteelTurnsWhereItIsSeenToTurn) {
+  const Segment segment =
+      of_steel([](double t) { return grazing_m(t) + 1.5e-5 * std::sin(2.0 * std::numbers::pi * 12.0 * t); }, 1e-5);
+  EXPECT_EQ(segment.reversal_noise_m, 0.0);
 }
 
 TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {

@@ -67,6 +67,23 @@ class OnePole {
   double read_ = 0.0;
 };
 
+/// The motion comes late by more than the force comes early: the actuator is late, too, by a little.
+TEST(TransducerLag, IsASetBesideAnActuatorThatIsLateByALittle) {
+  constexpr double kTransducer_s = 0.004;
+  const auto moved_m = [](double t) { return made_motion_m(std::max(0.0, t - 3e-4)); };
+  const Diagnosis diagnosis = diagnosis_of(made_model(), made_recording(OnePole{kTransducer_s, moved_m}, [&](double t) {
+                                             return kMadeStiffness_n_per_m * moved_m(t);
+                                           }));
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::set);
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (cause.is_cause && cause.effect == "viscous_damping") {
+      EXPECT_TRUE(cause.is_indistinguishable);
+      EXPECT_LE(cause.probability, 0.5);
+    }
+  }
+  EXPECT_THAT(causes_of(diagnosis), testing::IsSupersetOf({"lag", "viscous_damping"}));
+}
+
 TEST(TransducerLag, FoundByTheForceOfALawThatYieldsIsNoPartOfTheActuatorsDelay) {
   constexpr double kActuator_s = 0.006;
   constexpr double kTransducer_s = 0.010;

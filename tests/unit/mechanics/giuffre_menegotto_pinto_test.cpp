@@ -37,6 +37,35 @@ TEST(GiuffreMenegottoPinto, LeavesAReversalWithItsInitialStiffness) {
   EXPECT_NEAR(spring.trial(0.04 - 1e-5, 0.0), turning_n - 4.0e6 * 1e-5, 1e-8 * 4.0e4);
 }
 
+TEST(GiuffreMenegottoPinto, ReversalWithinTheNoiseLeavesNoTrace) {
+  constexpr double kNoise_m = 3e-4;
+  GiuffreMenegottoPinto straight{kColumn};
+  GiuffreMenegottoPinto steady{kColumn};
+  GiuffreMenegottoPinto turning{kColumn};  // control
+  steady.ignore_reversals_within(kNoise_m);
+  double there_n = 0.0;
+  for (const double x_m : {-0.04, -0.01}) {
+    there_n = impose(straight, x_m);
+    EXPECT_EQ(impose(steady, x_m), there_n);
+    impose(turning, x_m);
+  }
+  EXPECT_DOUBLE_EQ(impose(steady, -0.0102), there_n + 4.0e6 * (-0.0102 - -0.01));
+  impose(turning, -0.0102);
+  const double along_n = impose(straight, 0.0);
+  EXPECT_EQ(impose(steady, 0.0), along_n);
+  EXPECT_GT(impose(turning, 0.0), 1.1 * along_n);
+  // A longer one is a reversal where the branch ended.
+  EXPECT_EQ(impose(steady, -0.0004), impose(straight, -0.0004));
+  EXPECT_EQ(impose(steady, -0.03), impose(straight, -0.03));
+  // Kept by reset().
+  steady.reset();
+  straight.reset();
+  EXPECT_EQ(impose(steady, -0.04), impose(straight, -0.04));
+  EXPECT_EQ(impose(steady, -0.01), impose(straight, -0.01));
+  impose(steady, -0.0102);
+  EXPECT_EQ(impose(steady, 0.0), impose(straight, 0.0));
+}
+
 TEST(GiuffreMenegottoPinto, CurvatureFollowsThePlasticExcursion) {
   GiuffreMenegottoPinto spring{kColumn};
   const double turning_m = 0.04;

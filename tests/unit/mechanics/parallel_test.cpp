@@ -11,6 +11,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/elastic.hpp"
 #include "mechanics/laws/friction.hpp"
+#include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 #include "mechanics/laws/viscous.hpp"
 #include "tests/support/malloc_count.hpp"
 
@@ -25,6 +26,23 @@ Parallel beside(Laws... laws) {
 }
 
 const Friction kFriction{{.friction_force_n = 500.0, .presliding_displacement_m = 1.0e-3}};
+
+TEST(Parallel, TellsEachLawWhichReversalsAreNoise) {
+  const GiuffreMenegottoPinto steel{{.stiffness_n_per_m = 4.0e6, .yield_force_n = 4.0e4, .hardening_ratio = 0.03}};
+  const auto pull = [&](double noise_m, const std::vector<double>& path_m) {
+    Parallel law = beside(Elastic{1.0e5}, steel);
+    law.ignore_reversals_within(noise_m);
+    double force_n = 0.0;
+    for (const double x_m : path_m) {
+      force_n = law.trial(x_m, 0.0);
+      law.commit();
+    }
+    return force_n;
+  };
+  const double along_n = pull(0.0, {-0.04, -0.01, 0.0});
+  EXPECT_EQ(pull(3e-4, {-0.04, -0.01, -0.0102, 0.0}), along_n);
+  EXPECT_NE(pull(0.0, {-0.04, -0.01, -0.0102, 0.0}), along_n);  // control
+}
 
 TEST(Parallel, AddsSpringAndDashpot) {
   Parallel law = beside(Elastic{4.0e6}, Viscous{{.damping_n_s_per_m = 2.0e4}});
