@@ -59,9 +59,7 @@ std::vector<double> input_of(const Segment& segment, const DofRecording& dof) {
 double reversal_noise_m(double deviation_m, std::size_t samples) { return 2.0 * peak_of_noise(deviation_m, samples); }
 
 double reversal_noise_m(const std::vector<Motion>& noise) {
-  double squares = 0.0;
-  for (const Motion& at : noise) squares += at.displacement_m * at.displacement_m;
-  return noise.empty() ? 0.0 : reversal_noise_m(std::sqrt(squares / static_cast<double>(noise.size())), noise.size());
+  return noise.empty() ? 0.0 : reversal_noise_m(std::sqrt(mean_square(displacements_of(noise))), noise.size());
 }
 
 /// Smooths the measured displacement, and also over half the window: the difference shows what smoothing removes.
@@ -82,10 +80,7 @@ void smooth_input(Segment& segment, std::span<const double> displacement_m, std:
 
 /// Readings over the widest window that leaves nothing but noise.
 std::vector<double> without_noise(std::span<const double> readings) {
-  const std::vector<Motion> smooth = LocalPolynomial{widest_faithful_half_width(readings), 1.0}.motion(readings);
-  std::vector<double> values(smooth.size());
-  std::ranges::transform(smooth, values.begin(), &Motion::displacement_m);
-  return values;
+  return displacements_of(LocalPolynomial{widest_faithful_half_width(readings), 1.0}.motion(readings));
 }
 
 std::vector<Motion> smooth_motion(const FlatSmoother& smoother, std::vector<Motion> motion) {

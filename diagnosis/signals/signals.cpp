@@ -17,6 +17,12 @@ double mean_square(std::span<const double> values) noexcept {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0) / static_cast<double>(values.size());
 }
 
+std::vector<double> displacements_of(std::span<const Motion> motion) {
+  std::vector<double> displacement_m(motion.size());
+  std::ranges::transform(motion, displacement_m.begin(), &Motion::displacement_m);
+  return displacement_m;
+}
+
 double variance(std::span<const double> values) noexcept {
   if (values.empty()) return 0.0;
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

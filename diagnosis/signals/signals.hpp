@@ -26,6 +26,9 @@ struct GapSignals {
 /// Mean square about the mean.
 [[nodiscard]] double variance(std::span<const double> values) noexcept;
 
+/// One per sample.
+[[nodiscard]] std::vector<double> displacements_of(std::span<const Motion> motion);
+
 /// A reversal of the motion: it is found after the motion has come back by a threshold.
 struct Reversal {
   std::size_t sample = 0;  // of the extreme

@@ -15,12 +15,6 @@ namespace {
 
 double deviation(std::span<const double> values) { return std::sqrt(variance(values)); }
 
-std::vector<double> displacements(const std::vector<Motion>& motion) {
-  std::vector<double> values(motion.size());
-  std::ranges::transform(motion, values.begin(), &Motion::displacement_m);
-  return values;
-}
-
 std::string_view unit_of(Channel channel) { return channel == Channel::measured_force ? "N" : "m"; }
 
 /// Ratio of a signal to its limit; the smaller of input and output.
@@ -69,8 +63,8 @@ std::vector<Excitation> excitations_of(const IdentificationProblem& problem) {
     excitation.interface = name_of(fit.segment.interface);
     excitation.input = fit.segment.from;
     excitation.output = fit.segment.to;
-    excitation.motion_m = deviation(displacements(fit.segment.input));
-    excitation.motion_noise_m = deviation(displacements(fit.segment.noise));
+    excitation.motion_m = deviation(displacements_of(fit.segment.input));
+    excitation.motion_noise_m = deviation(displacements_of(fit.segment.noise));
     excitation.output_size = deviation({fit.measured.data(), static_cast<std::size_t>(fit.measured.size())});
     excitation.output_floor = fit.floor;
     excitations.push_back(std::move(excitation));

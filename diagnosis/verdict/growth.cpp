@@ -473,7 +473,7 @@ std::ptrdiff_t count_of_others(const IdentificationProblem& problem, const FitOu
 }
 
 /// Whether numbers of the model gave way to effects that are none, without these being decidedly better, and without
-/// others that were far off being slightly off now.
+/// several others that were far off being slightly off now.
 bool numbers_gave_way(const IdentificationProblem& problem, const FitOutcome& left, const FitOutcome& before) {
   if (pushes_numbers(problem, left.effects, before.effects)) return false;
   const std::ptrdiff_t more = count_of_others(problem, left) - count_of_others(problem, before);

@@ -154,12 +154,6 @@ std::vector<RestGap> gaps_at_rest(const FitSegment& fit, std::span<const double>
   return gaps;
 }
 
-std::vector<double> input_of(const FitSegment& fit) {
-  std::vector<double> input_m(fit.segment.input.size());
-  std::ranges::transform(fit.segment.input, input_m.begin(), &Motion::displacement_m);
-  return input_m;
-}
-
 bool is_nearer_to_none(double read, double claimed) { return std::abs(read) < std::abs(read - claimed); }
 
 /// Before any motion, at the place where the model is at rest, a bias is all that a sensor reads.
@@ -167,7 +161,7 @@ std::string bias_refuted(const Suspect& suspect, std::string_view name, std::str
   const double bias = suspect.parameter(name).value;
   for (const FitSegment& fit : suspect.problem.segments) {
     if (!suspect.ends_at(fit)) continue;
-    const std::vector<double> input_m = input_of(fit);
+    const std::vector<double> input_m = displacements_of(fit.segment.input);
     const std::vector<RestGap> gaps = gaps_at_rest(fit, input_m);
     const double judged_from_s = static_cast<double>(fit.segment.unjudged) * fit.segment.period_s;
     if (gaps.empty() || gaps.front().begin_s > judged_from_s) continue;
@@ -184,7 +178,7 @@ std::string drift_refuted(const Suspect& suspect, std::string_view name, std::st
   const double drift_per_s = suspect.parameter(name).value;
   for (const FitSegment& fit : suspect.problem.segments) {
     if (!suspect.ends_at(fit)) continue;
-    const std::vector<double> input_m = input_of(fit);
+    const std::vector<double> input_m = displacements_of(fit.segment.input);
     const std::vector<RestGap> gaps = gaps_at_rest(fit, input_m);
     const double here_m = reversal_threshold_m(input_m);
     const auto last = std::find_if(gaps.rbegin(), gaps.rend(), [&](const RestGap& gap) {
@@ -202,33 +196,36 @@ std::string drift_refuted(const Suspect& suspect, std::string_view name, std::st
   return {};
 }
 
-/// How late a channel is behind the one that it follows, whatever their gain: y = g (x - T x').
-double lateness_s(const FitSegment& fit) {
-  const auto size = static_cast<Eigen::Index>(fit.segment.input.size());
-  Eigen::MatrixX3d columns{size, 3};
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const Motion& motion = fit.segment.input[static_cast<std::size_t>(i)];
-    columns.row(i) << motion.displacement_m, motion.velocity_m_per_s, 1.0;
-  }
-  const Eigen::Map<const Eigen::VectorXd> read{fit.segment.measured.data(), size};
-  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(read);
+/// T of y = g (x - T x'): how late y is behind x, whatever their gain and zero.
+double lateness_s(const Eigen::VectorXd& x, const Eigen::VectorXd& rate, const Eigen::VectorXd& y) {
+  Eigen::MatrixX3d columns{x.size(), 3};
+  columns << x, rate, Eigen::VectorXd::Ones(x.size());
+  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(y);
   return -solution[1] / solution[0];
 }
 
-/// How early the measured force is before the one that the model has for the reading, whatever their gain:
-/// F = g F0 + T F0'.
-double force_leads_s(const FitSegment& fit) {
+/// How late a channel is behind the one that it follows.
+double reading_lateness_s(const FitSegment& fit) {
+  const auto size = static_cast<Eigen::Index>(fit.segment.input.size());
+  Eigen::VectorXd x{size};
+  Eigen::VectorXd rate{size};
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Motion& motion = fit.segment.input[static_cast<std::size_t>(i)];
+    x[i] = motion.displacement_m;
+    rate[i] = motion.velocity_m_per_s;
+  }
+  return lateness_s(x, rate, Eigen::Map<const Eigen::VectorXd>{fit.segment.measured.data(), size});
+}
+
+/// How late the measured force is behind the one that the model has for the reading.
+double force_lateness_s(const FitSegment& fit) {
   const Eigen::MatrixXd& directions = fit.numbers.directions;
   Eigen::VectorXd read = fit.measured;
   if (directions.cols() > 0) read += directions * fit.numbers.off;  // as it was before the numbers were free
   const Eigen::Index size = read.size() - 2;
-  Eigen::MatrixX3d columns{size, 3};
-  columns.col(0) = fit.baseline.segment(1, size);
-  columns.col(1) = (fit.baseline.tail(size) - fit.baseline.head(size)) /
-                   (2.0 * fit.segment.period_s * static_cast<double>(fit.averaged));
-  columns.col(2).setOnes();
-  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(read.segment(1, size));
-  return solution[1] / solution[0];
+  const double step_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  return lateness_s(fit.baseline.segment(1, size), (fit.baseline.tail(size) - fit.baseline.head(size)) / (2.0 * step_s),
+                    read.segment(1, size));
 }
 
 /// What a transducer that lags reads is late behind the command, as no actuator is early; and the force is early before
@@ -238,14 +235,14 @@ std::string transducer_lag_refuted(const Suspect& suspect) {
   const std::string claim = suspect.name() + " by " + report::quantity(lag_s, "s");
   for (const FitSegment& fit : suspect.problem.segments) {
     if (fit.segment.from == Channel::command_displacement && suspect.ends_at(fit)) {
-      const double late_s = lateness_s(fit);
+      const double late_s = reading_lateness_s(fit);
       if (is_nearer_to_none(late_s, lag_s)) {
         return fmt::format("{}: the reading comes {} after the command", claim, report::quantity(late_s, "s"));
       }
     }
     if (fit.segment.to == Channel::measured_force && fit.segment.touched_by(*suspect.effect.type) &&
         fit.baseline.squaredNorm() > 0.0) {
-      const double early_s = force_leads_s(fit);
+      const double early_s = -force_lateness_s(fit);
       if (is_nearer_to_none(early_s, lag_s)) {
         return fmt::format("{}: the force comes {} before what the model has for the reading", claim,
                            report::quantity(early_s, "s"));
@@ -279,7 +276,7 @@ std::string friction_refuted(const Suspect& suspect) {
   double stuck_m = 0.0;
   for (const FitSegment& fit : suspect.problem.segments) {
     if (!suspect.ends_at(fit)) continue;
-    const std::vector<double> input_m = input_of(fit);
+    const std::vector<double> input_m = displacements_of(fit.segment.input);
     double last_m = input_m.front();
     for (const Reversal& reversal : reversals_of(input_m, reversal_threshold_m(input_m))) {
       const double way_m = std::abs(reversal.displacement_m - last_m);

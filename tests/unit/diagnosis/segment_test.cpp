@@ -165,7 +165,7 @@ TEST(ModelledSegments, SteelDoesNotTurnInTheNoise) {
   EXPECT_GT(segment.reversal_noise_m, 0.0);
   Segment with_all = segment;
   with_all.reversal_noise_m = 0.0;
-  // 3e-5 m of noise, smoothed, times the stiffness: some 20 N of 14 kN.
+  // Noise times the stiffness is 40 N before it is smoothed.
   EXPECT_LT(left_by_steel(segment), 2e-3);
   EXPECT_GT(left_by_steel(with_all), 0.02);
 }
