@@ -262,6 +262,13 @@ void add_quasi_static_notes(const SiteModel& model, std::span<const Recording> r
   if (!left_out.empty()) {
     notes.push_back("Left out of the model there, because it needs time: " + report::joined(left_out) + ".");
   }
+  std::vector<std::string> not_tried;
+  for (const EffectType* formula : model.suspected) {
+    if (formula->traits.needs_time) not_tried.emplace_back(formula->name);
+  }
+  if (!not_tried.empty()) {
+    notes.push_back("Formulas that were not tried there, because they need time: " + report::joined(not_tried) + ".");
+  }
 }
 
 void add_continuation_notes(std::span<const Recording> recordings, std::size_t dof, std::vector<std::string>& notes) {

@@ -13,6 +13,7 @@
 #include "launch/commands.hpp"
 #include "launch/diagnosis_progress.hpp"
 #include "runtime/run_directory.hpp"
+#include "scenario/formula_file.hpp"
 
 namespace hybridtest {
 namespace {
@@ -23,6 +24,7 @@ struct DiagnoseOptions {
   std::vector<std::filesystem::path> recordings;
   std::vector<std::filesystem::path> held_out;
   std::filesystem::path scenario;
+  std::filesystem::path formulas;
   std::filesystem::path out;
   std::uint64_t seed = 1;
   std::size_t threads = 0;
@@ -47,7 +49,11 @@ int run_diagnosis(const DiagnoseOptions& options) {
   }
   std::vector<std::filesystem::path> files = options.recordings;
   files.insert(files.end(), options.held_out.begin(), options.held_out.end());
-  const SiteModelFile model = read_model_for(files, options.model, options.site);
+  SiteModelFile model = read_model_for(files, options.model, options.site);
+  if (!options.formulas.empty()) {
+    const std::vector<const EffectType*> formulas = read_formulas(options.formulas);
+    for (SiteModel& dof : model.dofs) dof.suspected = formulas;
+  }
   std::vector<Recording> recordings;
   for (const std::filesystem::path& file : options.recordings) {
     recordings.push_back(read_recording(file, RecordingRole::fit, options.site, time_base_of(model)));
@@ -104,6 +110,8 @@ void add_diagnose_command(CLI::App& app, CommandAction& action) {
       "--scenario", options->scenario,
       "Scenario with the mass, damping, stiffness and step to be checked; default: the scenario of the run\n"
       "directory");
+  command->add_option("--formulas", options->formulas,
+                      "YAML file with forces of the specimen, written as formulas, that are tried beside the library");
   command->add_option("--out", options->out, "Directory for diagnosis.html, diagnosis.json and augmented_model.yaml")
       ->required();
   command->add_option("--seed", options->seed, "Seed of the resampling for the confidence intervals")

@@ -51,6 +51,7 @@ struct SiteModel {
   DelaySetting compensator_delay = {};
   SensorNoise noise;
   std::vector<EffectSetting> effects;
+  std::vector<const EffectType*> suspected;  // formulas that a diagnosis tries beside the library
   // Names of StageSample::inputs, in their order. Empty: nothing is recorded beside the motion, as in a simulated rig.
   std::vector<std::string> inputs;
 };

@@ -23,6 +23,7 @@
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
 #include "plant/effects/parameter_limits.hpp"
+#include "plant/effects/recorded_input.hpp"
 
 namespace hybridtest {
 namespace {
@@ -433,11 +434,23 @@ const LawCandidate& law_candidate(const EffectType& replacement) {
   std::abort();
 }
 
-const SearchRange* range_of(const EffectType& effect, const EffectParameter& parameter) {
-  if (effect.replacement == nullptr) return search_range(effect, parameter);
+std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter) {
+  if (effect.formula != nullptr) {
+    // The user gives it in SI; what a rig takes for an input is none of it.
+    if (parameter.name == kNominalInput.name) return {};
+    return SearchRange{.interface = effect.interface,
+                       .effect = effect.name,
+                       .parameter = parameter.name,
+                       .low = parameter.low,
+                       .high = parameter.high};
+  }
+  if (effect.replacement == nullptr) {
+    const SearchRange* const range = search_range(effect, parameter);
+    return range == nullptr ? std::optional<SearchRange>{} : *range;
+  }
   const std::vector<SearchRange>& ranges = law_candidate(effect).ranges;
   const auto range = std::ranges::find(ranges, parameter.name, &SearchRange::parameter);
-  return range == ranges.end() ? nullptr : &*range;
+  return range == ranges.end() ? std::optional<SearchRange>{} : *range;
 }
 
 }  // namespace hybridtest

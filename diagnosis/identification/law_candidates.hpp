@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct LawCandidate {
 /// The entry of a replacement.
 [[nodiscard]] const LawCandidate& law_candidate(const EffectType& replacement);
 
-/// The search range of a parameter of an effect or of a law; nullptr: it is not searched.
-[[nodiscard]] const SearchRange* range_of(const EffectType& effect, const EffectParameter& parameter);
+/// The search range of a parameter of an effect, of a law or of a formula; nothing: it is not searched.
+[[nodiscard]] std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter);
 
 }  // namespace hybridtest

@@ -334,10 +334,10 @@ void estimate_parameters(const VariableProjection& projection, const Identificat
     const SearchedParameter& searched = plan.searched[i];
     ParameterEstimate& estimate = result[searched.effect][searched.parameter];
     const EffectType& type = *outcome.effects[searched.effect].type;
-    const SearchRange* const range = range_of(type, type.parameters[searched.parameter]);
+    const std::optional<SearchRange> range = range_of(type, type.parameters[searched.parameter]);
     const bool is_high = place > 1.0 - tuning::kResolution;
     estimate.at_bound = is_high || place < tuning::kResolution;
-    if (range == nullptr || !range->restriction.is_unseen_at_high) continue;
+    if (!range || !range->restriction.is_unseen_at_high) continue;
     estimate.at_least = is_high || shows_nothing_above(projection, places, solution.coefficients, i);
     if (!estimate.at_least) continue;
     estimate.at_bound = true;

@@ -72,6 +72,7 @@ std::optional<double> reference_of(const SiteModel& model, std::string_view inpu
   for (const EffectSetting& effect : model.effects) {
     if (effect.type->input != input) continue;
     const auto reference = std::ranges::find(effect.type->parameters, kReferenceInput.name, &EffectParameter::name);
+    if (reference == effect.type->parameters.end()) continue;  // a formula's force need not be absent anywhere
     return effect.values[static_cast<std::size_t>(reference - effect.type->parameters.begin())];
   }
   return {};

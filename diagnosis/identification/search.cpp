@@ -86,8 +86,8 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
 }  // namespace
 
 bool is_fixed(const IdentificationProblem& problem, const EffectType& effect, const EffectParameter& parameter) {
-  const SearchRange* const range = range_of(effect, parameter);
-  if (range == nullptr) return true;
+  const std::optional<SearchRange> range = range_of(effect, parameter);
+  if (!range) return true;
   if (range->restriction.limit == SearchLimit::own_bandwidth && !problem.model.has_bandwidth) return true;
   switch (range->restriction.beside) {
     case LawUse::any: return false;
@@ -167,10 +167,10 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
         neutral.values.push_back(left_out(problem, effect, j));
         continue;
       }
-      const SearchRange& range = *range_of(effect, parameter);
+      const SearchRange range = *range_of(effect, parameter);
       if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        const double unit = 0.5 * range.high * scale_of(problem, effect, range);
+        const double unit = 0.5 * std::max(range.high, -range.low) * scale_of(problem, effect, range);
         const double low = least_of(problem, effect, j, range);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral, is_of_model});
         // Without its stiffness a law has no force, nor has a model without what it has: neither is the baseline.
@@ -300,6 +300,8 @@ Projected VariableProjection::solve(const Eigen::VectorXd& places) const {
   }
   result.columns.rightCols(nuisance_.cols()) = nuisance_;
   bounds.resize(static_cast<std::size_t>(result.columns.cols()));
+  // A formula may have no value there.
+  if (!base.allFinite() || !result.columns.allFinite()) throw ConfigError{"the force is no number"};
   const Eigen::VectorXd right = measured_ - base;
   result.coefficients = bounded_least_squares(result.columns, right, bounds, result.held);
   result.residual = right - result.columns * result.coefficients;

@@ -185,7 +185,9 @@ bool InputTable::has(std::string_view name) const noexcept { return contains(nam
 
 bool Segment::touched_by(const EffectType& effect) const noexcept {
   if (!can_be_touched(*this, effect)) return false;
-  return effect.input.empty() || (inputs.has(effect.input) && !contains(inputs.at_reference, effect.input));
+  if (effect.input.empty()) return true;
+  // A formula need not be absent at the reference of its input.
+  return inputs.has(effect.input) && (effect.formula != nullptr || !contains(inputs.at_reference, effect.input));
 }
 
 bool Segment::touched_by(std::span<const EffectSetting> effects) const noexcept {
@@ -193,7 +195,7 @@ bool Segment::touched_by(std::span<const EffectSetting> effects) const noexcept 
 }
 
 bool Segment::is_reference_of(const EffectType& effect) const noexcept {
-  return can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
+  return effect.formula == nullptr && can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
 
 std::vector<Motion> motion_of_readings(const Segment& segment, std::span<const double> readings) {

@@ -40,6 +40,7 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
 Json cause_entry(const report::RankedCause& cause) {
   Json entry{{"interface", cause.interface}, {"effect", cause.effect}};
   if (!cause.input.empty()) entry["input"] = cause.input;
+  if (cause.is_formula) entry["formula"] = cause.equation;
   if (!cause.law.empty()) {
     entry["law"] = cause.law;
     entry["lost_stiffness"] = cause.lost_stiffness;

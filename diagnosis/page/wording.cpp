@@ -212,7 +212,7 @@ std::string law_in_words(const RankedCause& cause) {
 }
 
 std::string input_in_words(const RankedCause& cause) {
-  if (cause.input.empty() || cause.parameters.empty()) return {};
+  if (cause.input.empty() || cause.is_formula || cause.parameters.empty()) return {};
   const ReportedParameter& slope = cause.parameters.front();  // of what it does per unit of the input
   constexpr std::string_view kPerUnit = "per unit";
   std::string_view unit = slope.unit;

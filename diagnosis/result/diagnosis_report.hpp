@@ -100,7 +100,8 @@ struct RankedCause {
   std::string in_words{};             // of a law: what such a specimen does
   double lost_stiffness = 0.0;        // of a law: share of its stiffness that is gone by the end, 0 to 1
   std::string input{};                // the recorded input that it follows, `current_a`; empty: none
-  std::string equation{};             // one line, from the library
+  std::string equation{};             // one line
+  bool is_formula = false;            // of the user; else of the library
   double probability = 0.0;           // 0 to 1
   double share = 0.0;                 // of what all causes explain; 0 for an alternative
   bool is_cause = false;              // of the verdict; else an alternative

@@ -163,10 +163,32 @@ std::vector<std::string> missing_inputs(const SiteModelFile& model, const Record
   return {missing.begin(), missing.end()};
 }
 
+/// What is wrong with the formulas that are suspected.
+std::vector<ConfigIssue> formula_issues(const SiteModelFile& model, std::span<const Recording> recordings) {
+  std::vector<ConfigIssue> issues;
+  for (const EffectType* formula : model.dofs.front().suspected) {
+    const std::string_view input = formula->input;
+    const auto has_input = [&](const Recording& recording) { return recording.has_input(input); };
+    if (!input.empty() && std::ranges::none_of(recordings, has_input)) {
+      issues.push_back({.file = {},
+                        .what = fmt::format("the formula {} uses the input {}, and no recording has a column {}{}",
+                                            formula->name, input, kInputPrefix, input)});
+    }
+    const auto is_namesake = [&](const EffectSetting& effect) { return effect.type->name == formula->name; };
+    if (std::ranges::any_of(model.dofs,
+                            [&](const SiteModel& dof) { return std::ranges::any_of(dof.effects, is_namesake); })) {
+      issues.push_back({.file = {},
+                        .what = fmt::format("the model {} has a formula named {}; expected another name",
+                                            model.file.string(), formula->name)});
+    }
+  }
+  return issues;
+}
+
 }  // namespace
 
 void require_match(const SiteModelFile& model, std::span<const Recording> recordings) {
-  std::vector<ConfigIssue> issues;
+  std::vector<ConfigIssue> issues = formula_issues(model, recordings);
   for (const Recording& recording : recordings) {
     if (recording.dofs.size() != model.dofs.size()) {
       issues.push_back(

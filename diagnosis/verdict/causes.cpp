@@ -262,6 +262,7 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   cause.interface = name_of(effect.type->interface);
   cause.effect = effect.type->name;
   cause.equation = effect.type->equation;
+  cause.is_formula = effect.type->formula != nullptr;
   cause.input = effect.type->input;
   if (effect.type->replacement != nullptr) {
     cause.law = effect.type->replacement->law;

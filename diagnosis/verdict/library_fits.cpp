@@ -98,7 +98,7 @@ double free_parameters(const IdentificationProblem& problem, const FitOutcome& f
   for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
     const EffectParameter& parameter = effect.parameters[j];
     if (is_fixed(problem, effect, parameter)) continue;
-    const SearchRange& range = *range_of(effect, parameter);
+    const SearchRange range = *range_of(effect, parameter);
     if (!is_dispensable(left_out(problem, effect, j), range, fit.parameters[position][j])) free += 1.0;
   }
   return free;
@@ -342,6 +342,7 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
       if (effect.traits.takes_input && input.varies) add(with_input(effect, input.name));
     }
   }
+  std::ranges::for_each(problem.model.suspected, [&](const EffectType* formula) { add(*formula); });
   for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
     if (law.refines == nullptr && !law.is_special && touches_a_gap(problem, law.type)) effects.push_back(&law.type);
   }
@@ -566,8 +567,9 @@ namespace {
 Eigen::VectorXd direction_of(const IdentificationProblem& problem, const FitSegment& fit, const Eigen::VectorXd& here,
                              const std::vector<EffectSetting>& effects, std::size_t effect, std::size_t parameter) {
   const EffectType& type = *effects[effect].type;
-  const SearchRange* const range = search_range(type, type.parameters[parameter]);
-  if (range == nullptr || is_fixed(problem, type, type.parameters[parameter])) return {};
+  if (type.replacement != nullptr) return {};
+  const std::optional<SearchRange> range = range_of(type, type.parameters[parameter]);
+  if (!range || is_fixed(problem, type, type.parameters[parameter])) return {};
   const double value = effects[effect].values[parameter];
   const double size = problem.scales.of(range->scale) * std::max(std::abs(range->low), std::abs(range->high));
   const double step = tuning::kResolution * (value != 0.0 ? std::abs(value) : size);

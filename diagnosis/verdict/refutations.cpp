@@ -14,6 +14,7 @@
 #include <span>
 #include <string_view>
 
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/page/wording.hpp"
@@ -493,9 +494,11 @@ bool is_cut_off(const IdentificationProblem& problem, const FitOutcome& fit, std
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const EffectParameter& parameter = effect.parameters[i];
     const ParameterEstimate& estimate = fit.parameters[position][i];
-    const SearchRange* const range = search_range(effect, parameter);
-    if (!estimate.at_bound || estimate.at_least || range == nullptr) continue;
+    const std::optional<SearchRange> range = range_of(effect, parameter);
+    if (!estimate.at_bound || estimate.at_least || !range) continue;
     if (estimate.value == left_out(problem, effect, i)) continue;
+    // The user chose both ends.
+    if (effect.formula != nullptr && estimate.value != parameter.neutral) return true;
     const double scale = problem.scales.of(range->scale);
     const bool is_upper = estimate.value > 0.5 * scale * (range->low + range->high);
     const bool is_low_chosen = range->low < 0.0 && scale * range->low > parameter.low &&

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -102,6 +103,8 @@ struct LawReplacement {
   std::vector<LawParameter> (*written)(std::span<const double> values) = nullptr;
 };
 
+struct Formula;
+
 /// One entry of the effect library: what a scenario, the simulated rig, the diagnosis and an
 /// augmented model share of an effect.
 struct EffectType {
@@ -113,7 +116,7 @@ struct EffectType {
   std::span<const EffectParameter> parameters;
   /// @param values   one per parameter, in their order, within [low, high].
   /// null for what changes the coordinator's own model.
-  std::unique_ptr<Effect> (*make)(std::span<const double> values, double sample_period_s) = nullptr;
+  std::function<std::unique_ptr<Effect>(std::span<const double> values, double sample_period_s)> make{};
   /// For a sensor: an effect whose before() makes the true motion of a read one, to drive a specimen
   /// by what was measured; null where that is not possible (quantization) or has no meaning.
   std::unique_ptr<Effect> (*make_inverse)(std::span<const double> values, double sample_period_s) = nullptr;
@@ -121,6 +124,8 @@ struct EffectType {
   const LawReplacement* replacement = nullptr;
   /// The recorded input that it follows, `current_a`; empty in the library, and of effects that follow none.
   std::string_view input{};
+  /// Set for a force that a user wrote as a formula; the effect library has none of these.
+  const Formula* formula = nullptr;
 };
 
 /// Every effect there is, in the order of the interfaces.

@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "core/text/indented.hpp"
 #include "core/text/scalar.hpp"
+#include "plant/effects/recorded_input.hpp"
+#include "scenario/catalogue/formula.hpp"
 
 namespace hybridtest {
 namespace {
@@ -14,12 +17,31 @@ std::optional<double> fallback_of(const EffectParameter& parameter) {
   return parameter.fallback;
 }
 
+/// In the place of an effect's name: a force that the entry writes out.
+constexpr std::string_view kFormula = "formula";
+
 std::vector<std::string> effect_names(EffectInterface interface) {
   std::vector<std::string> names;
   for (const EffectType& type : effect_library()) {
     if (type.interface == interface) names.emplace_back(type.name);
   }
+  if (interface == EffectInterface::specimen) names.emplace_back(kFormula);
   return names;
+}
+
+EffectSetting read_formula_with_numbers(Section& section) {
+  EffectSetting setting;
+  setting.type = &read_formula(section, [&](Section& numbers, const std::string& name) {
+    setting.values.push_back(numbers.number(name, {.low = -kUnbounded, .high = kUnbounded}));
+    return FormulaNumber{.name = name};
+  });
+  // What could not be read has none.
+  setting.values.resize(setting.type->formula->numbers.size());
+  if (section.has("input")) {
+    const double nominal = section.number(kNominalInput.name, {.low = kNominalInput.low, .high = kNominalInput.high});
+    if (!setting.type->input.empty()) setting.values.push_back(nominal);
+  }
+  return setting;
 }
 
 /// The type that follows the input that the section names.
@@ -32,17 +54,26 @@ const EffectType* following_input(const EffectType& type, Section& section) {
   return &type;
 }
 
+EffectSetting read_numbers(const EffectType& type, Section& section) {
+  EffectSetting setting{.type = type.traits.takes_input ? following_input(type, section) : &type, .values = {}};
+  for (const EffectParameter& parameter : type.parameters) {
+    setting.values.push_back(
+        section.number(parameter.name, {.low = parameter.low, .high = parameter.high}, fallback_of(parameter)));
+  }
+  return setting;
+}
+
 ListedEffect read_effect(Section section, const std::vector<EffectInterface>& interfaces, int dofs) {
   std::vector<std::string> interface_names;
   for (const EffectInterface interface : interfaces) interface_names.emplace_back(name_of(interface));
   const EffectInterface interface = interfaces[section.choice("interface", interface_names)];
   const std::vector<std::string> names = effect_names(interface);
   ListedEffect effect;
-  effect.setting.type = find_effect(interface, names[section.choice("effect", names)]);
-  if (effect.setting.type->traits.takes_input) effect.setting.type = following_input(*effect.setting.type, section);
-  for (const EffectParameter& parameter : effect.setting.type->parameters) {
-    effect.setting.values.push_back(
-        section.number(parameter.name, {.low = parameter.low, .high = parameter.high}, fallback_of(parameter)));
+  const std::string& name = names[section.choice("effect", names)];
+  if (name == kFormula) {
+    effect.setting = read_formula_with_numbers(section);
+  } else {
+    effect.setting = read_numbers(*find_effect(interface, name), section);
   }
   if (dofs > 0 && section.has_optional("dof")) effect.dof = static_cast<int>(section.integer("dof", 1, dofs)) - 1;
   section.finish();
@@ -70,10 +101,14 @@ const std::vector<EffectInterface>& site_interfaces() {
 std::string written_effect(const ListedEffect& effect) {
   const EffectType& type = *effect.setting.type;
   std::string text = "  - interface: " + std::string{name_of(type.interface)} + "\n";
-  text += "    effect: " + std::string{type.name} + "\n";
-  if (!type.input.empty()) text += "    input: " + std::string{type.input} + "\n";
-  for (std::size_t i = 0; i < type.parameters.size(); ++i) {
-    text += "    " + std::string{type.parameters[i].name} + ": " + written_number(effect.setting.values[i]) + "\n";
+  text += "    effect: " + std::string{type.formula != nullptr ? kFormula : type.name} + "\n";
+  if (type.formula != nullptr) {
+    text += indented(written_formula(*type.formula, effect.setting.values), "    ", "    ");
+  } else {
+    if (!type.input.empty()) text += "    input: " + std::string{type.input} + "\n";
+    for (std::size_t i = 0; i < type.parameters.size(); ++i) {
+      text += "    " + std::string{type.parameters[i].name} + ": " + written_number(effect.setting.values[i]) + "\n";
+    }
   }
   if (effect.dof) text += "    dof: " + std::to_string(*effect.dof + 1) + "\n";
   return text;

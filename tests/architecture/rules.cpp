@@ -100,6 +100,7 @@ const std::vector<Library>& libraries() {
       {"cpp-httplib", {"httplib.h"}, {"report/live", "tests", "benchmarks"}},
       {"Ceres", {"ceres/"}, {"diagnosis/identification"}},
       {"Spectra", {"Spectra/"}, {"mechanics"}},
+      {"muParser", {"muParser"}, {"scenario/catalogue"}},
       {"spdlog", {"spdlog/"}, {"runtime", "launch"}},
       {"fmt", {"fmt/"}, {"launch", "runtime", "scenario", "report", "diagnosis", "validation", "tests", "benchmarks"}},
       {"CLI11", {"CLI/"}, {"launch", "runtime", "validation/design_motion/main.cpp", "benchmarks"}},

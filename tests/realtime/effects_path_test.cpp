@@ -10,6 +10,7 @@
 #include "mechanics/laws/elastic.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/servo_hydraulic.hpp"
+#include "scenario/catalogue/formula.hpp"
 #include "tests/realtime/forbidden_calls.hpp"
 
 /// A simulated rig runs in the same control path as a laboratory: its exchange follows the same rules with any effects.
@@ -91,6 +92,16 @@ TEST_F(EffectsPath, EffectMakesNoForbiddenCall) {
     const auto rig = rig_with({some_setting(type)});
     EXPECT_EQ(calls_of(*rig), ForbiddenCalls{}) << name_of(type.interface) << " " << type.name;
   }
+}
+
+TEST_F(EffectsPath, FormulaMakesNoForbiddenCall) {
+  const EffectType& type =
+      formula_effect({.name = "made",
+                      .added_force_n = "k * x + c * tanh(v / 0.1)^2 * (path > 0.1 ? F : peak + energy + cycles + t)",
+                      .input = {},
+                      .numbers = {{.name = "k"}, {.name = "c"}}});
+  const auto rig = rig_with({{.type = &type, .values = {3.0, 0.5}}});
+  EXPECT_EQ(calls_of(*rig), ForbiddenCalls{});
 }
 
 }  // namespace
