@@ -322,7 +322,8 @@ std::string relaxation_refuted(const Suspect& suspect) {
 std::string instant_refuted(const Suspect& suspect) {
   const ParameterEstimate& instant = suspect.parameter("instant_s");
   const double instant_s = instant.value;
-  if (half_interval_95(instant) >= instant_s) {
+  const double from_an_end_s = std::min(instant_s, suspect.problem.scales.duration_s - instant_s);
+  if (half_interval_95(instant) >= from_an_end_s) {
     return fmt::format("{}: the recordings do not tell when", suspect.name());
   }
   const double lost_ratio = suspect.parameter("lost_ratio").value;
@@ -414,9 +415,12 @@ const EffectParameter* absent_in_interval(const Suspect& suspect, HalfOf half_of
   }
   for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
     const EffectParameter& parameter = type.parameters[i];
-    const bool can_be_absent = std::isfinite(parameter.neutral) && std::abs(parameter.neutral) < kUnbounded;
-    if (!can_be_absent || (free > 1 && !parameter.is_linear) || is_fixed(suspect.problem, type, parameter)) continue;
-    if (std::abs(suspect.estimates[i].value - parameter.neutral) <= half_of(i)) return &parameter;
+    if (!std::isfinite(parameter.neutral) || (free > 1 && !parameter.is_linear)) continue;
+    if (is_fixed(suspect.problem, type, parameter)) continue;
+    // Where a life is endless, its inverse is zero: to first order that is in its interval where the life's own is as
+    // wide as the life.
+    const double absent = std::abs(parameter.neutral) < kUnbounded ? parameter.neutral : 0.0;
+    if (std::abs(suspect.estimates[i].value - absent) <= half_of(i)) return &parameter;
   }
   return nullptr;
 }

@@ -145,6 +145,15 @@ TEST(Refutation, IntervalThatHoldsNoEffect) {
   EXPECT_THAT(refutation(problem, fit_of(transfer_system, "bandwidth", {0.02, 0.1}, 0.02)), IsEmpty()) << "a shape";
 }
 
+/// A life of 2 m, known to 1 m: its inverse, which an endless life makes zero, is known to half of itself. Known to 3 m,
+/// it may be endless.
+TEST(Refutation, LifeThatMayBeEndless) {
+  const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "stiffness_degradation_with_peak", {2.0, 0.0}, 0.5)), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "stiffness_degradation_with_peak", {2.0, 0.0}, 1.5)),
+              HasSubstr("half_life_m"));
+}
+
 TEST(Refutation, ShapeThatMakesUpForTheSizeIsHeld) {
   // Of a tall column the load over the height is known to a hundredth, and each alone to a half.
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
@@ -341,6 +350,11 @@ TEST(Refutation, PartThatBrokeBeforeTheRecordingsShowIt) {
   EXPECT_THAT(refutation(problem, broken_at(0.005)), HasSubstr("do not show the part that broke at 5.00"));
   EXPECT_THAT(refutation(problem, broken_at(0.5)), IsEmpty());
   Candidate whenever = broken_at(0.5);
+  whenever.fit.parameters[0][1].beside_wrong_numbers = 0.5;
+  EXPECT_THAT(refutation(problem, whenever), HasSubstr("do not tell when"));
+  // The recording ends at 12 s: by its interval the part may as well never have broken.
+  whenever = broken_at(11.5);
+  EXPECT_THAT(refutation(problem, whenever), IsEmpty());
   whenever.fit.parameters[0][1].beside_wrong_numbers = 0.5;
   EXPECT_THAT(refutation(problem, whenever), HasSubstr("do not tell when"));
 }
