@@ -258,7 +258,9 @@ constexpr LawReplacement replacement(std::string_view law, std::string_view in_w
           .make = [](Values values) -> std::unique_ptr<Law> {
             // The stiffness scales the force: without it there is none.
             if (values[0] == 0.0) return nullptr;
-            if constexpr (std::is_constructible_v<Part, typename Part::Parameters, double>) {
+            if constexpr (std::is_same_v<Part, BoucWen>) {
+              return std::make_unique<Part>(kParameters(values), BoucWen::Integration::table);
+            } else if constexpr (std::is_constructible_v<Part, typename Part::Parameters, double>) {
               return std::make_unique<Part>(kParameters(values), tuning::kLawSubsteps);
             } else {
               return std::make_unique<Part>(kParameters(values));

@@ -522,6 +522,7 @@ Start continued(const VariableProjection& projection, std::vector<Start> tried) 
   std::vector<Start> found{tried.begin(),
                            tried.begin() + std::min(std::ssize(tried), std::ptrdiff_t{tuning::kRefinedStarts})};
   workers.for_each(found.size(), [&](std::size_t i) {
+    if (!std::isfinite(found[i].cost)) return;  // from a place without a force no way leads on
     found[i] = settle_instants(projection, refine(projection, settle_instants(projection, found[i])));
   });
   Start& best = *std::ranges::min_element(found, {}, &Start::cost);

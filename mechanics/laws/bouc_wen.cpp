@@ -9,26 +9,28 @@
 namespace hybridtest {
 namespace {
 
+constexpr double kSubstepsPerLength = 64.0;
 /// Where |w|^n has no fifth derivative at zero, substeps grow with the distance, from the power 10 / 3 of the usual
 /// one.
-constexpr double kFirstSubstepPower = 10.0 / 3.0;
+constexpr double kFirstSubstep = 1.0 / (1U << 20U);
 constexpr double kSubstepGrowth = 0.25;
 /// Enough for z to reach its limit to rounding (exp(-37)) from any state.
 constexpr int kSubstepsMax = 4096;
 
 }  // namespace
 
-BoucWen::BoucWen(const Parameters& parameters, double substeps_per_length)
-    : parameters_{checked(parameters)}, substeps_per_length_{substeps_per_length} {
+BoucWen::BoucWen(const Parameters& parameters, Integration integration) : parameters_{checked(parameters)} {
   expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
   const double sum = parameters.gamma_per_m + parameters.beta_per_m;
   ultimate_m_ = std::pow(parameters.ao / sum, 1.0 / parameters.n);
   unloading_ = (parameters.gamma_per_m - parameters.beta_per_m) / sum;
   unloading_root_ = std::pow(std::abs(unloading_), 0.2);
-  short_anywhere_ = 1.0 / (substeps_per_length * parameters.n * std::max(1.0, std::abs(unloading_)));
-  // 2^-20 where there are 64.
-  first_substep_ = std::exp2(-std::log2(substeps_per_length) * kFirstSubstepPower);
+  short_anywhere_ = 1.0 / (kSubstepsPerLength * parameters.n * std::max(1.0, std::abs(unloading_)));
   is_singular_at_zero_ = parameters.n < 5.0 && parameters.n != std::trunc(parameters.n);
+  if (integration == Integration::table && parameters.n != 1.0) {
+    loading_table_.emplace(parameters.n, 1.0);
+    unloading_table_.emplace(parameters.n, unloading_);
+  }
 }
 
 double BoucWen::initial_stiffness_n_per_m() const noexcept {
@@ -54,7 +56,8 @@ double BoucWen::slope(double w) const noexcept {
 }
 
 double BoucWen::carried_along(double w, double path) const noexcept {
-  return parameters_.n == 1.0 ? carried_exactly(w, path) : carried_by_substeps(w, path);
+  if (parameters_.n == 1.0) return carried_exactly(w, path);
+  return loading_table_ ? carried_by_table(w, path) : carried_by_substeps(w, path);
 }
 
 double BoucWen::carried_exactly(double w, double path) const noexcept {
@@ -67,6 +70,16 @@ double BoucWen::carried_exactly(double w, double path) const noexcept {
     w = 0.0;
   }
   return w - (1.0 - w) * std::expm1(-path);
+}
+
+double BoucWen::carried_by_table(double w, double path) const noexcept {
+  if (w < 0.0) {
+    const double to_zero = unloading_table_->path_to(-w);
+    if (path < to_zero) return -unloading_table_->at(to_zero - path);
+    path -= to_zero;
+    w = 0.0;
+  }
+  return loading_table_->at(loading_table_->path_to(w) + path);
 }
 
 double BoucWen::carried_by_substeps(double w, double path) const noexcept {
@@ -89,14 +102,14 @@ double BoucWen::substep(double w, double left) const noexcept {
   double step = left;
   if (left > short_anywhere_) {
     const double n = parameters_.n;
-    const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / substeps_per_length_);
+    const double largest = w < 0.0 ? -w : std::min(1.0, w + 1.0 / kSubstepsPerLength);
     // n * share is the derivative of the slope; its own derivatives grow n times each, so that a
     // small share still counts with the fifth root.
     const double root = (w < 0.0 ? unloading_root_ : 1.0) * power_of(largest, 0.2 * (n - 1.0));
     const double change = n * (root > 1.0 ? root * root * root * root * root : root);
-    step = std::min(left, 1.0 / (substeps_per_length_ * std::max(1.0, change)));
+    step = std::min(left, 1.0 / (kSubstepsPerLength * std::max(1.0, change)));
   }
-  return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), first_substep_)) : step;
+  return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), kFirstSubstep)) : step;
 }
 
 double BoucWen::runge_kutta_step(double w, double path) const noexcept {

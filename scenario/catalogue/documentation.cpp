@@ -11,6 +11,7 @@
 #include "scenario/catalogue/compensators.hpp"
 #include "scenario/catalogue/delay_estimators.hpp"
 #include "scenario/catalogue/force_compensators.hpp"
+#include "scenario/catalogue/formula.hpp"
 #include "scenario/catalogue/integrators.hpp"
 #include "scenario/catalogue/laws.hpp"
 #include "scenario/catalogue/parameter_table.hpp"
@@ -53,7 +54,11 @@ std::string effects_text() {
       out += "\n";
     }
   }
-  return out;
+  out += "specimen formula\n    a force that you write yourself   [docs/scenario.md, Formulas]\n    its variables:";
+  for (const FormulaVariable& variable : formula_variables()) {
+    out += "\n    " + text(variable.name) + ": " + text(variable.what);
+  }
+  return out + "\n";
 }
 
 std::string effects_markdown() {

@@ -76,7 +76,8 @@ class NonlinearViscousDamping final : public Effect {
     const double of_power = is_in_velocity ? 1.0 : b;
     const double of_first = is_in_velocity ? b : 1.0;
     double root = std::min(size / of_first, std::pow(size / of_power, 1.0 / power));
-    for (int i = 0; i < kNewtonSteps; ++i) {
+    // Held for long, the force decays to less than a number can tell.
+    for (int i = 0; i < kNewtonSteps && root > 0.0; ++i) {
       const double raised = of_power * std::pow(root, power);
       const double step = (of_first * root + raised - size) / (of_first + power * raised / root);
       root -= step;

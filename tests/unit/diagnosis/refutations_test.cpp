@@ -145,8 +145,8 @@ TEST(Refutation, IntervalThatHoldsNoEffect) {
   EXPECT_THAT(refutation(problem, fit_of(transfer_system, "bandwidth", {0.02, 0.1}, 0.02)), IsEmpty()) << "a shape";
 }
 
-/// A life of 2 m, known to 1 m: its inverse, which an endless life makes zero, is known to half of itself. Known to 3 m,
-/// it may be endless.
+/// A life of 2 m, known to 1 m: its inverse, which an endless life makes zero, is known to half of itself. Known to 3
+/// m, it may be endless.
 TEST(Refutation, LifeThatMayBeEndless) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   EXPECT_THAT(refutation(problem, fit_of(specimen, "stiffness_degradation_with_peak", {2.0, 0.0}, 0.5)), IsEmpty());

@@ -183,6 +183,33 @@ TEST(BoucWen, AgreesWithOpenSeesWithinItsStepError) {
   }
 }
 
+/// The bounds that bouc_wen.hpp gives, on an earthquake-like path with noise; the substeps are checked above.
+TEST(BoucWen, TableAgreesWithSubsteps) {
+  constexpr double kUltimate_m = 0.01;
+  for (const double n : {1.0, 1.001, 1.2, 1.5, 2.0, 3.0, 5.0, 7.3, 10.0, 30.0, 100.0}) {
+    for (const double unloading : {-20.0, -3.0, -0.5, 0.0, 0.5, 0.9}) {
+      const double sum = std::pow(kUltimate_m, -n);
+      const BoucWen::Parameters parameters{.stiffness_n_per_m = 1.0,
+                                           .alpha = 0.0,
+                                           .n = n,
+                                           .gamma_per_m = 0.5 * sum * (1.0 + unloading),
+                                           .beta_per_m = 0.5 * sum * (1.0 - unloading)};
+      BoucWen exact{parameters};
+      BoucWen tabulated{parameters, BoucWen::Integration::table};
+      Random random{3};
+      double worst_m = 0.0;
+      for (int i = 0; i < 4000; ++i) {
+        const double x = 0.03 * std::sin(0.013 * i) * std::sin(0.0021 * i) + 1e-4 * random.normal();
+        worst_m = std::max(worst_m, std::abs(impose(exact, x) - impose(tabulated, x)));
+      }
+      EXPECT_LE(worst_m, (n <= 10.0 ? 6e-6 : 2e-5) * kUltimate_m) << n << " " << unloading;
+      // To the limit and far beyond.
+      EXPECT_NEAR(tabulated.trial(1e3, 0.0), kUltimate_m, 1e-9 * kUltimate_m) << n;
+      EXPECT_NEAR(tabulated.trial(-1e3, 0.0), -kUltimate_m, 1e-9 * kUltimate_m) << n;
+    }
+  }
+}
+
 TEST(BoucWen, RejectsParametersOutOfRange) {
   const auto with = [](auto change) {
     BoucWen::Parameters parameters{

@@ -413,6 +413,18 @@ TEST(BracedDamper, RelaxesAsItsEquationSays) {
   }
 }
 
+/// Held still, the force becomes smaller than any number that is told from zero, and stays one.
+TEST(BracedDamper, HasNoForceWhenHeldForLong) {
+  for (const double exponent : {0.4, 1.0, 1.8}) {
+    const auto effect = made(kSpecimen, "nonlinear_viscous_damping", {3.0e4, exponent, 1e-5});
+    const auto forces = along(*effect, std::vector<double>(20000, 0.002));
+    EXPECT_GT(forces.front(), 0.0) << exponent;
+    // By the solution above, from a sudden motion on.
+    const double expected_n = exponent < 1.0 ? 3.0e4 * std::pow(1.5 * time_s(20000) / 1e-5, -1.0 / 1.5) : 0.0;
+    EXPECT_NEAR(forces.back(), expected_n, 0.01) << exponent;  // of 3e4 N; NaN is near nothing
+  }
+}
+
 /// On a brace that hardly gives way it is the damper by itself, but for the time of half a sample.
 TEST(BracedDamper, IsTheDamperOnARigidBrace) {
   const Driver driver = sine(0.01, 12.0);
