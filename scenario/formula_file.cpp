@@ -31,6 +31,9 @@ std::vector<const EffectType*> read_formulas(const std::filesystem::path& file) 
     if (std::ranges::find(formulas, formula.name, &EffectType::name) != formulas.end()) {
       entry.error("name", "two formulas have the name '" + std::string{formula.name} + "'");
     }
+    if (!entry.has("parameters")) {
+      entry.error("parameters", "missing; expected at least one, with the range in which it is looked for");
+    }
     entry.finish();
     formulas.push_back(&formula);
   }

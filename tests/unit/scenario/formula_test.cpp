@@ -216,6 +216,7 @@ TEST_F(FormulaText, FileGivesRangesToSearch) {
   EXPECT_THAT(error_of_file(head + "{k: 3}\n"), HasSubstr("formulas.yaml:4:"));
   EXPECT_THAT(error_of_file(head + "{k: {from: 2, to: 2}}\n"), HasSubstr("more than 'from'"));
   EXPECT_THAT(error_of_file(head + "{k: {from: 2}}\n"), HasSubstr("to"));
+  EXPECT_THAT(error_of_file("formulas:\n  - {name: mine, added_force_n: x}\n"), HasSubstr("expected at least one"));
   EXPECT_THAT(error_of_file(head + "{k: {from: 0, to: 2}}\n  - {name: mine, added_force_n: x}\n"),
               HasSubstr("two formulas have the name 'mine'"));
 }
