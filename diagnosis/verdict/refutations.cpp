@@ -415,14 +415,22 @@ const EffectParameter* absent_in_interval(const Suspect& suspect, HalfOf half_of
   }
   for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
     const EffectParameter& parameter = type.parameters[i];
-    if (!std::isfinite(parameter.neutral) || (free > 1 && !parameter.is_linear)) continue;
-    if (is_fixed(suspect.problem, type, parameter)) continue;
-    // Where a life is endless, its inverse is zero: to first order that is in its interval where the life's own is as
-    // wide as the life.
-    const double absent = std::abs(parameter.neutral) < kUnbounded ? parameter.neutral : 0.0;
-    if (std::abs(suspect.estimates[i].value - absent) <= half_of(i)) return &parameter;
+    const bool can_be_absent = std::isfinite(parameter.neutral) && std::abs(parameter.neutral) < kUnbounded;
+    if (!can_be_absent || (free > 1 && !parameter.is_linear) || is_fixed(suspect.problem, type, parameter)) continue;
+    if (std::abs(suspect.estimates[i].value - parameter.neutral) <= half_of(i)) return &parameter;
   }
   return nullptr;
+}
+
+/// Whether the life of something that degrades may be endless, by the interval that is reported. Its inverse is then
+/// zero: to first order that is in its interval where the life's own is as wide as the life.
+bool may_be_endless(const Suspect& suspect) {
+  if (suspect.effect.type->traits.family != EffectFamily::degradation) return false;
+  for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
+    const ParameterEstimate& life = suspect.estimates[i];
+    if (suspect.effect.type->parameters[i].neutral == kUnbounded && life.value <= half_interval_95(life)) return true;
+  }
+  return false;
 }
 
 /// An effect that may as well be absent is none. Asked of what it is proportional to, or of its only parameter. Where
@@ -473,7 +481,8 @@ bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& 
 bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const Suspect suspect{problem, fit, fit.effects[position], fit.parameters[position]};
   if (place_of(problem.model, *suspect.effect.type) != nullptr) return false;
-  return absent_in_interval(suspect, [&](std::size_t i) { return half_interval_95(suspect.estimates[i]); }) != nullptr;
+  const auto half_of = [&](std::size_t i) { return half_interval_95(suspect.estimates[i]); };
+  return absent_in_interval(suspect, half_of) != nullptr || may_be_endless(suspect);
 }
 
 bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
@@ -555,7 +564,7 @@ std::string contradiction(const Suspect& suspect) {
 
 bool is_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const Suspect suspect{problem, fit, fit.effects[position], fit.parameters[position]};
-  return !absence_not_excluded(suspect).empty() || !contradiction(suspect).empty();
+  return !absence_not_excluded(suspect).empty() || may_be_endless(suspect) || !contradiction(suspect).empty();
 }
 
 std::string refutation(const IdentificationProblem& problem, const Candidate& candidate) {
