@@ -185,9 +185,7 @@ bool InputTable::has(std::string_view name) const noexcept { return contains(nam
 
 bool Segment::touched_by(const EffectType& effect) const noexcept {
   if (!can_be_touched(*this, effect)) return false;
-  if (effect.input.empty()) return true;
-  // A formula need not be absent at the reference of its input.
-  return inputs.has(effect.input) && (effect.formula != nullptr || !contains(inputs.at_reference, effect.input));
+  return effect.input.empty() || (inputs.has(effect.input) && !is_reference_of(effect));
 }
 
 bool Segment::touched_by(std::span<const EffectSetting> effects) const noexcept {
@@ -195,6 +193,7 @@ bool Segment::touched_by(std::span<const EffectSetting> effects) const noexcept 
 }
 
 bool Segment::is_reference_of(const EffectType& effect) const noexcept {
+  // A formula need not be absent at the reference of its input.
   return effect.formula == nullptr && can_be_touched(*this, effect) && contains(inputs.at_reference, effect.input);
 }
 

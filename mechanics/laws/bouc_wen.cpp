@@ -5,6 +5,7 @@
 
 #include "core/parameters/parameter_checker.hpp"
 #include "mechanics/laws/power.hpp"
+#include "mechanics/laws/runge_kutta.hpp"
 
 namespace hybridtest {
 namespace {
@@ -86,7 +87,7 @@ double BoucWen::carried_by_substeps(double w, double path) const noexcept {
   double left = path;
   for (int i = 0; i < kSubstepsMax && left > 0.0; ++i) {
     double step = substep(w, left);
-    double next = runge_kutta_step(w, step);
+    double next = runge_kutta_step(w, step, [this](double at) { return slope(at); });
     if (next == w) break;         // at its limit: the rest of the way changes nothing
     if (w < 0.0 && next > 0.0) {  // the slope has a kink at zero: stop there
       step = std::min(step, path_to_zero(w));
@@ -110,14 +111,6 @@ double BoucWen::substep(double w, double left) const noexcept {
     step = std::min(left, 1.0 / (kSubstepsPerLength * std::max(1.0, change)));
   }
   return is_singular_at_zero_ ? std::min(step, std::max(kSubstepGrowth * std::abs(w), kFirstSubstep)) : step;
-}
-
-double BoucWen::runge_kutta_step(double w, double path) const noexcept {
-  const double k1 = slope(w);
-  const double k2 = slope(w + 0.5 * path * k1);
-  const double k3 = slope(w + 0.5 * path * k2);
-  const double k4 = slope(w + path * k3);
-  return w + path / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
 }
 
 /// ds = dw / slope(w) from w < 0 to 0, by Simpson's rule; at most one substep away.

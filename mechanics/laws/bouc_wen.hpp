@@ -71,7 +71,6 @@ class BoucWen final : public Law {
   [[nodiscard]] double carried_by_substeps(double w, double path) const noexcept;
   /// The next substep, at most what is left of the path.
   [[nodiscard]] double substep(double w, double left) const noexcept;
-  [[nodiscard]] double runge_kutta_step(double w, double path) const noexcept;
   [[nodiscard]] double path_to_zero(double w) const noexcept;
 
   Parameters parameters_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mechanics/laws/power.hpp"
+#include "mechanics/laws/runge_kutta.hpp"
 
 namespace hybridtest {
 
@@ -27,11 +28,7 @@ BoucWenTable::BoucWenTable(double exponent, double loading) : exponent_{exponent
     const double change = exponent_ * std::abs(loading_) * power_of(largest, exponent_ - 1.0);
     const double step =
         std::min(1.0 / (kNodesPerLength * std::max(1.0, change)), std::max(kStepGrowth * last.w, kFirstStep));
-    const double k1 = last.slope;
-    const double k2 = slope(last.w + 0.5 * step * k1);
-    const double k3 = slope(last.w + 0.5 * step * k2);
-    const double k4 = slope(last.w + step * k3);
-    const double w = last.w + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    const double w = runge_kutta_step(last.w, step, [this](double at) { return slope(at); });
     if (!(w > last.w)) break;  // nearer than rounding tells
     nodes_.push_back({.path = last.path + step, .w = w, .slope = slope(w)});
   }

@@ -178,9 +178,7 @@ class Trials {
     });
   }
   static bool has(std::size_t set, std::size_t number) { return ((set >> number) & 1U) != 0U; }
-  static bool is_bounded(const FormulaNumber& number) {
-    return number.low > -kUnbounded && number.high < kUnbounded && number.low < number.high;
-  }
+  static bool is_bounded(const FormulaNumber& number) { return number.low > -kUnbounded && number.high < kUnbounded; }
 
   /// Whether the two values of each trial agree; those that are no numbers say nothing.
   template <class Pair>
@@ -386,7 +384,7 @@ const EffectType& read_formula(config::Section& section,
 
 std::string written_formula(const Formula& formula, std::span<const double> values) {
   std::string lines = "name: " + formula.name + "\n";
-  lines += "added_force_n: \"" + formula.added_force_n + "\"\n";
+  lines += "added_force_n: " + written_text(formula.added_force_n) + "\n";
   if (!formula.input.empty()) lines += "input: " + formula.input + "\n";
   if (!formula.numbers.empty()) lines += "parameters:\n";
   for (std::size_t i = 0; i < formula.numbers.size(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/laws/runge_kutta.hpp"
+
 namespace hybridtest {
 
 /// Carries a hysteretic variable z, which dz = slope(z, direction) ds moves along a way s counted in its own
@@ -18,11 +20,7 @@ template <class Slope>
   const double substeps = std::clamp(std::ceil(std::abs(way) / substep), 1.0, kSubstepsMax);
   const double step = direction * std::min(std::abs(way) / substeps, substep);
   for (double i = 0.0; i < substeps; ++i) {
-    const double k1 = slope(z, direction);
-    const double k2 = slope(z + 0.5 * step * k1, direction);
-    const double k3 = slope(z + 0.5 * step * k2, direction);
-    const double k4 = slope(z + step * k3, direction);
-    z = std::clamp(z + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), -1.0, 1.0);
+    z = std::clamp(runge_kutta_step(z, step, [&](double at) { return slope(at, direction); }), -1.0, 1.0);
   }
   return z;
 }

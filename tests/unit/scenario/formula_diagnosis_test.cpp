@@ -1,6 +1,5 @@
 // Formulas that a user suspects, tried by the diagnosis beside its library.
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

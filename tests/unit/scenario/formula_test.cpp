@@ -2,7 +2,6 @@
 
 #include "scenario/catalogue/formula.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -142,23 +141,24 @@ class FormulaText : public testing::Test {
     return read_site_model(directory_ / "site.yaml");
   }
   std::string error_of(const std::string& effect) {
-    try {
-      static_cast<void>(read(effect));
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return {};
+    return error_from([&] { static_cast<void>(read(effect)); });
   }
   std::string error_of_file(const std::string& text) {
     std::ofstream{directory_ / "formulas.yaml"} << text;
+    return error_from([&] { static_cast<void>(read_formulas(directory_ / "formulas.yaml")); });
+  }
+  TemporaryDirectory directory_;
+
+ private:
+  template <class Read>
+  static std::string error_from(Read&& read) {
     try {
-      static_cast<void>(read_formulas(directory_ / "formulas.yaml"));
+      read();
     } catch (const ConfigError& error) {
       return error.what();
     }
     return {};
   }
-  TemporaryDirectory directory_;
 };
 
 TEST_F(FormulaText, IsReadAndWrittenAgain) {
