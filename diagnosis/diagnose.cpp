@@ -393,8 +393,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const FitOutcome all_causes = fit_of_all(problem, stages);
   settle_noise(problem, all_causes);
   if (!diagnosis.causes.empty()) {
-    report.interface_shrink = shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed,
-                                        with_the_same_noise(problem, diagnosis.causes));
+    report.interface_shrink =
+        shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed, problem.segments);
     if (held_out.empty()) {
       report.notes.emplace_back(
           "No recording was held out: the gap that remains is measured on the fitted recordings.");
@@ -417,6 +417,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   }
   put_causes_first(report.ranking);
   settle_set(report);
+  report.set_leaves_a_part =
+      report.verdict == Verdict::set && std::ranges::any_of(judgements, &Judgement::leaves_a_part);
   report.corrections = corrections_of(stages);
   report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
   add_traces(traces, parts, report.ranking);

@@ -17,6 +17,7 @@ inline constexpr Range kPositive{.low = 0.0, .low_open = true};
 inline constexpr Range kNotNegative{.low = 0.0};
 inline constexpr Range kZeroToOne{.low = 0.0, .high = 1.0};
 inline constexpr Range kZeroToBelowOne{.low = 0.0, .high = 1.0, .high_open = true};
+inline constexpr Range kBelowOneEitherWay{.low = -1.0, .high = 1.0, .low_open = true, .high_open = true};
 
 [[nodiscard]] bool contains(const Range& range, double value) noexcept;
 /// `0 to 10`, `more than 0, at most 2`, `0 to below 1`, `any`: for tables and for messages with a reason.

@@ -70,6 +70,9 @@ struct Searched {
 constexpr Searched kStiffness{"stiffness_n_per_m", "N/m", "before yielding", Scale::stiffness_n_per_m, 0.0, 5.0, 0.0};
 constexpr Searched kYield{"yield_displacement_m", "m", "strength over stiffness", Scale::displacement_m, 0.02, 1.5};
 constexpr Searched kHardening{"hardening_ratio", "", "stiffness after yielding over before", Scale::one, 0.0, 0.6};
+// A column under an axial load and a wall that rocks lose force after yielding.
+constexpr Searched kAfterYielding{"hardening_ratio", "",   "stiffness after yielding over before; negative: softens",
+                                  Scale::one,        -0.3, 0.6};
 constexpr Searched kCurvature{"r0", "", "R0, the larger the sharper the corner", Scale::one, 1.5, 25.0};
 constexpr Searched kExponent{"n", "", "the larger, the sharper the yielding", Scale::one, 1.0, 8.0};
 constexpr Searched kLoopShare{"loop_share", "", "beta over beta + gamma", Scale::one, 0.2, 1.0};
@@ -322,22 +325,22 @@ struct Table {
     laws.reserve(32);  // entries point at each other
     const std::string_view name = law_is_spring ? "yielding" : "hysteresis_law";
     add(name, kBilinear, "elastic to Fy, then with the stiffness b k", "Simo and Hughes (1998)",
-        {kStiffness, kYield, kHardening});
+        {kStiffness, kYield, kAfterYielding});
     const std::string_view form = "hysteresis_law";
     add(form, kLeadRubber, "F = kr x + Q z, Q = Q0 / (1 + s / L) after the plastic path s",
         "Kalpakidis and Constantinou (2009)", {kStiffness, kYield, kHardening, kHeating});
     refine({0.01});
     add(name, kGiuffre, "curved from k to b k at Fy", "Menegotto and Pinto (1973)",
-        {kStiffness, kYield, kHardening, kCurvature});
+        {kStiffness, kYield, kAfterYielding, kCurvature});
     add(name, kGiuffre, "curved from k to b k at Fy, which grows with the largest displacement",
-        "Filippou et al. (1983)", {kStiffness, kYield, kHardening, kCurvature, kIsotropic});
+        "Filippou et al. (1983)", {kStiffness, kYield, kAfterYielding, kCurvature, kIsotropic});
     refine({0.01});
     add(form, kRambergOsgood, "x / xy = F / Fy + (F / Fy)^n on the first branch", "Ramberg and Osgood (1943)",
         {kStiffness, kYield, kRoundness});
     add(form, kSelfCentring, "flag of height beta Fa above Fa", "Christopoulos et al. (2002)",
-        {kStiffness, kYield, kHardening, kFlag});
+        {kStiffness, kYield, kAfterYielding, kFlag});
     add(form, kNonlinearElastic, "elastic to Fa, then elastic with the stiffness b k", "Christopoulos et al. (2002)",
-        {kStiffness, kYield, kHardening});
+        {kStiffness, kYield, kAfterYielding});
     add(form, kTakeda, "unloads with k (xy / xmax)^alpha", "Takeda, Sozen and Nielsen (1970)",
         {kStiffness, kYield, kHardening, kUnloading});
     add(form, kTakedaCracked, "cracks, yields, unloads with k (xy / xmax)^alpha", "Takeda, Sozen and Nielsen (1970)",
@@ -384,7 +387,7 @@ struct Table {
       list.push_back({.name = one.name,
                       .unit = one.unit,
                       .what = one.what,
-                      .low = 0.0,
+                      .low = one.low < 0.0 ? -kUnbounded : 0.0,
                       .high = kUnbounded,
                       .neutral = one.neutral,
                       .is_linear = list.empty()});

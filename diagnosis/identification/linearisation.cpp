@@ -9,6 +9,7 @@ namespace hybridtest {
 Linearisation linearise(const VariableProjection& projection, const Eigen::VectorXd& places,
                         const Projected& solution) {
   const auto searched = places.size();
+  const std::vector<SearchedParameter>& parameters = projection.plan().searched;
   Linearisation result;
   result.columns.resize(projection.rows(), searched + solution.columns.cols());
   const Eigen::VectorXd& coefficients = solution.coefficients;
@@ -18,7 +19,8 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
     result.columns.col(i) = projection.slope(places, coefficients, i, here);
   });
   for (Eigen::Index i = 0; i < searched; ++i) {
-    const bool at_bound = places[i] < tuning::kResolution || places[i] > 1.0 - tuning::kResolution;
+    const SearchedParameter& parameter = parameters[static_cast<std::size_t>(i)];
+    const bool at_bound = parameter.is_low_end(places[i]) || parameter.is_high_end(places[i]);
     if (!at_bound) result.free.push_back(static_cast<std::size_t>(i));
   }
   result.columns.rightCols(solution.columns.cols()) = solution.columns;
@@ -28,7 +30,6 @@ Linearisation linearise(const VariableProjection& projection, const Eigen::Vecto
     const bool is_of_model = i < linear.size() && linear[i].is_of_model;
     if (!solution.held[i] || is_of_model) result.free.push_back(static_cast<std::size_t>(searched) + i);
   }
-  const std::vector<SearchedParameter>& parameters = projection.plan().searched;
   for (std::size_t i = 0; i < result.free.size(); ++i) {
     const bool is_instant = result.free[i] < parameters.size() && parameters[result.free[i]].is_instant;
     if (!is_instant) result.held_out_with.push_back(static_cast<Eigen::Index>(i));

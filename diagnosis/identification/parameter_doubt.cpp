@@ -260,10 +260,7 @@ std::optional<FreeParameter> free_parameter(const SearchPlan& plan, const Eigen:
   if (index < plan.searched.size()) {
     const SearchedParameter& searched = plan.searched[index];
     const double place = places[static_cast<Eigen::Index>(index)];
-    const double per_place = (searched.at(std::min(1.0, place + tuning::kResolution)) -
-                              searched.at(std::max(0.0, place - tuning::kResolution))) /
-                             (2.0 * tuning::kResolution);
-    return FreeParameter{searched.effect, searched.parameter, std::abs(per_place)};
+    return FreeParameter{searched.effect, searched.parameter, std::abs(searched.slope_at(place))};
   }
   if (index - plan.searched.size() >= plan.linear.size()) return {};
   const LinearParameter& parameter = plan.linear[index - plan.searched.size()];
@@ -335,8 +332,8 @@ void estimate_parameters(const VariableProjection& projection, const Identificat
     ParameterEstimate& estimate = result[searched.effect][searched.parameter];
     const EffectType& type = *outcome.effects[searched.effect].type;
     const std::optional<SearchRange> range = range_of(type, type.parameters[searched.parameter]);
-    const bool is_high = place > 1.0 - tuning::kResolution;
-    estimate.at_bound = is_high || place < tuning::kResolution;
+    const bool is_high = searched.is_high_end(place);
+    estimate.at_bound = is_high || searched.is_low_end(place);
     if (!range || !range->restriction.is_unseen_at_high) continue;
     estimate.at_least = is_high || shows_nothing_above(projection, places, solution.coefficients, i);
     if (!estimate.at_least) continue;

@@ -294,6 +294,16 @@ double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_
   return median / std::pow(1.0 - 2.0 / (9.0 * draws), 3);
 }
 
+/// What a remainder has where the motion hardly moves [rms]; nothing where it moves all the time.
+std::optional<double> still_noise(const FitSegment& fit, const Eigen::VectorXd& remainder) {
+  const auto span_of = [](const Eigen::VectorXd& values) {
+    return std::span{values.data(), static_cast<std::size_t>(values.size())};
+  };
+  const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  const Eigen::VectorXd place_m = places_m(fit);
+  return noise_while_still({period_s, span_of(place_m), span_of(fit.measured), span_of(remainder)});
+}
+
 /// Root mean square of the noise in a remainder. Noise is as large in every phase of the motion and all the time; a
 /// part of the specimen that the features do not hold is not. So the typical group of samples counts: by place and
 /// direction of the motion, and by time.
@@ -350,7 +360,8 @@ double share_answered(const Eigen::VectorXd& displacement, const Eigen::VectorXd
 }
 
 /// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
-void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
+/// @param form_is_right   of the model that leaves it, with what was found.
+void take_noise(FitSegment& fit, const Eigen::VectorXd& residual, bool form_is_right) {
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
   // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the
@@ -358,14 +369,22 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual) {
   const bool is_noise = !fit.segment.is_quasi_static && parts.repeatable < parts.total - parts.repeatable;
   const double independent = independent_samples(parts.remainder);
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
-  double deviation = is_noise ? noise_level(fit, parts.remainder, independent) : 0.0;
+  const std::optional<double> still = still_noise(fit, parts.remainder);
+  double deviation = 0.0;
+  if (is_noise) deviation = noise_level(fit, parts.remainder, independent);
+  // Noise does not wait for the motion, as what a form misses does; of slow noise a short stretch shows a part.
+  if (!form_is_right && still) deviation = std::min(deviation, tuning::kNearFloor * *still);
   deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));
-  // What smoothing does to the prediction is no noise and comes on top.
-  const double told = std::max(fit.channel_floor, std::hypot(deviation, fit.smoothing_floor));
-  // All noise is left: where less is, the model makes less of the noise of its input than the one at hand would.
-  fit.floor = std::min(told, root_mean_square(residual));
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
-  fit.sample_floor = std::sqrt(fit.floor * fit.floor + averaged_away);
+  const auto floor_with = [&](double noise) {
+    // What smoothing does to the prediction is no noise and comes on top.
+    const double told = std::max(fit.channel_floor, std::hypot(noise, fit.smoothing_floor));
+    // All noise is left: where less is, the model makes less of the noise of its input than the one at hand would.
+    return std::min(told, root_mean_square(residual));
+  };
+  fit.floor = floor_with(deviation);
+  fit.sample_floor = std::sqrt(std::pow(fit.floor, 2) + averaged_away);
+  fit.still_floor = still ? fit.sample_floor : std::sqrt(std::pow(floor_with(0.0), 2) + averaged_away);
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.independent = independent;
@@ -474,19 +493,25 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   workers.for_each(fits.size(), [&](std::size_t i) { fits[i] = prepare(problem, std::move(segments[i]), found); });
   workers.for_each(fits.size(), [&](std::size_t i) {
     relate_channels(fits, fits[i]);
-    take_noise(fits[i], fits[i].measured - fits[i].baseline);
+    take_noise(fits[i], fits[i].measured - fits[i].baseline, true);
   });
   mark_suspects(fits);
   return problem;
 }
 
+bool are_numbers(std::span<const EffectSetting> effects) noexcept {
+  return std::ranges::all_of(
+      effects, [](const EffectSetting& effect) { return effect.type->traits.number != ModelNumber::none; });
+}
+
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
+  const bool form_is_right = are_numbers(best.effects);
   problem.workers.for_each(problem.segments.size(), [&](std::size_t i) {
     FitSegment& fit = problem.segments[i];
     const Eigen::VectorXd& change = best.segments[i].change;
     Eigen::VectorXd residual = fit.measured - fit.baseline;
     if (change.size() > 0) residual -= change;
-    take_noise(fit, residual);
+    take_noise(fit, residual, form_is_right);
   });
 }
 

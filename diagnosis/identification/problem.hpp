@@ -80,6 +80,9 @@ struct FitSegment {
   // noise and hum, which only a residual shows.
   double floor = 0.0;
   double sample_floor = 0.0;
+  // As sample_floor, with coloured noise and hum only if they are seen where the motion hardly moves: what the causes
+  // have wrong in their form is no part of them.
+  double still_floor = 0.0;
   // Of them what the channels show: white noise, steps of converters, and smoothing; the last alone.
   double channel_floor = 0.0;
   double channel_sample_floor = 0.0;
@@ -136,9 +139,14 @@ struct FoundEffect {
 [[nodiscard]] IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> segments,
                                                  std::span<const FoundEffect> found = {}, const Workers& workers = {});
 
+/// Whether all are numbers of the model: its form is right then. That of an effect or a law is never quite that of the
+/// specimen.
+[[nodiscard]] bool are_numbers(std::span<const EffectSetting> effects) noexcept;
+
 /// Takes floors, weights and numbers of independent samples from the residuals of the best fit at hand: of what the
 /// discrepancy term leaves of them on held-out cycles, which no function of the motion explains. Until then the noise
-/// under a gap is not known.
+/// under a gap is not known. Beside an effect or a law, noise is at most twice what is there where the motion hardly
+/// moves: what their form misses is not.
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 
 /// The same problem with the gap of one channel to explain. The other segments stay: an effect of a displacement sensor

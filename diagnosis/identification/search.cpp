@@ -79,6 +79,7 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
       break;
   }
   result.is_instant = range.scale == ParameterScale::duration_s;
+  result.is_time_from_none = range.scale == ParameterScale::time_s && result.low == 0.0;
   result.logarithmic = result.low > 0.0 && result.high > tuning::kLogarithmicFactor * result.low;
   return result;
 }
@@ -147,6 +148,18 @@ double SearchedParameter::at(double place) const noexcept {
 double SearchedParameter::place_of(double value) const noexcept {
   const double inside = std::clamp(value, low, high);
   return logarithmic ? std::log(inside / low) / std::log(high / low) : (inside - low) / (high - low);
+}
+
+bool SearchedParameter::is_low_end(double place) const noexcept {
+  return place < (is_time_from_none ? tuning::kResolution * tuning::kResolution : tuning::kResolution);
+}
+
+bool SearchedParameter::is_high_end(double place) const noexcept { return place > 1.0 - tuning::kResolution; }
+
+double SearchedParameter::slope_at(double place) const noexcept {
+  const double before = std::max(0.0, place - tuning::kResolution);
+  const double after = std::min(1.0, place + tuning::kResolution);
+  return (at(after) - at(before)) / (after - before);
 }
 
 SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,

@@ -19,9 +19,15 @@ struct SearchedParameter {
   bool logarithmic = false;
   // A time in the recording: it acts in one place only, so derivatives far from it are zero.
   bool is_instant = false;
+  // A time from none on: a lag or a skew may be far shorter than the range is long.
+  bool is_time_from_none = false;
 
   [[nodiscard]] double at(double place) const noexcept;
   [[nodiscard]] double place_of(double value) const noexcept;
+  [[nodiscard]] bool is_low_end(double place) const noexcept;
+  [[nodiscard]] bool is_high_end(double place) const noexcept;
+  /// Change of the value with the place, between places inside the range.
+  [[nodiscard]] double slope_at(double place) const noexcept;
 };
 
 /// A parameter that the prediction is linear in.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
@@ -28,6 +29,17 @@ std::vector<std::size_t> repeated(std::span<const double> input_m, std::size_t l
     if (std::abs(input_m[i] - input_m[i - lag]) <= tolerance_m) samples.push_back(i);
   }
   return samples;
+}
+
+/// Mean square of what a line over the input leaves, of as many degrees of freedom.
+double variance_beside_line(std::span<const double> input_m, std::span<const double> residual) {
+  const auto count = static_cast<double>(residual.size());
+  const double mean_m = std::accumulate(input_m.begin(), input_m.end(), 0.0) / count;
+  double product = 0.0;
+  for (std::size_t i = 0; i < residual.size(); ++i) product += (input_m[i] - mean_m) * residual[i] / count;
+  const double spread = variance(input_m);
+  const double by_line = spread > 0.0 ? product * product / spread : 0.0;
+  return (variance(residual) - by_line) * count / (count - 2.0);
 }
 
 /// The lag of whole cycles at which the input repeats best; 0 if there are no cycles.
@@ -102,6 +114,17 @@ std::optional<RepeatabilityFloor> floor_at_rest(const GapSignals& signals) {
   }
   if (count == 0) return {};
   return RepeatabilityFloor{std::sqrt(squares / static_cast<double>(count)), FloorSource::rest};
+}
+
+std::optional<double> noise_while_still(const GapSignals& signals) {
+  std::vector<double> variances;
+  for (const RestStretch& still : rest_stretches(signals.input_m, signals.period_s, std::sqrt(tuning::kHardlyLeft))) {
+    if (still.count <= 2) return {};
+    variances.push_back(variance_beside_line(signals.input_m.subspan(still.begin, still.count),
+                                             signals.residual.subspan(still.begin, still.count)));
+  }
+  if (variances.size() < tuning::kSpectrumAverages) return {};
+  return std::sqrt(upper_median(std::move(variances)));
 }
 
 RepeatabilityFloor floor_of_high_frequencies(const GapSignals& signals) {

@@ -32,6 +32,11 @@ struct RepeatabilityFloor {
 /// Of the times at rest (rest_stretches()): the residual's spread around its mean in each. Nothing without any.
 [[nodiscard]] std::optional<RepeatabilityFloor> floor_at_rest(const GapSignals& signals);
 
+/// Of the times in which the motion stays within a tenth of its range, as where it turns slowly: what a model has wrong
+/// changes little there, and noise is as large as elsewhere [rms]. In each the spread around a line over the input; the
+/// median of them. Nothing with fewer than a spectrum is averaged over.
+[[nodiscard]] std::optional<double> noise_while_still(const GapSignals& signals);
+
 /// Of the fastest fluctuation, second differences, as if it were white: a lower limit to the floor, an upper one
 /// to white noise. @param signals   at least three samples.
 [[nodiscard]] RepeatabilityFloor floor_of_high_frequencies(const GapSignals& signals);

@@ -151,6 +151,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                                 {"what_to_do", finding.what_to_do}});
   }
   json["verdict"] = report::name_of(report.verdict);
+  if (report.set_leaves_a_part) json["leaves_a_part"] = true;
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
   for (const report::RankedCause& cause : report.ranking) {

@@ -174,7 +174,9 @@ std::string set_sentence(const DiagnosisReport& report) {
   if (!others.empty()) {
     text += (others.size() > 1 ? "; further causes are " : "; a further cause is ") + placed(report, others);
   }
-  return text + removal(report);
+  text += removal(report);
+  return report.set_leaves_a_part ? text + remainder(report) + " No effect in the library explains what is left."
+                                  : text;
 }
 
 }  // namespace

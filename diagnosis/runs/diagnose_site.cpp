@@ -297,7 +297,8 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
 
 std::string summary_of(const SiteDiagnosis& site) {
   const report::DiagnosisReport& report = site.diagnosis.report;
-  std::string text = fmt::format("{}: {}\n", report::name_of(report.verdict), in_words(report.verdict));
+  std::string text = fmt::format("{}: {}{}\n", report::name_of(report.verdict), in_words(report.verdict),
+                                 report.set_leaves_a_part ? "; none explains all of the gap" : "");
   if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
   for (const report::InterfaceGap& gap : report.where) {
     if (!gap.is_judged) {

@@ -90,9 +90,9 @@ double span_of(std::span<const double> values) {
   return *high - *low;
 }
 
-std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s) {
+std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s, double share_of_span) {
   const auto length = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(tuning::kRestLength_s / period_s)));
-  const double allowed_m = tuning::kRestSpan * span_of(motion_m);
+  const double allowed_m = share_of_span * span_of(motion_m);
   std::vector<RestStretch> found;
   for (std::size_t begin = 0; begin + length <= motion_m.size(); begin += length) {
     if (span_of(motion_m.subspan(begin, length)) <= allowed_m) found.push_back({begin, length});

@@ -53,8 +53,10 @@ struct RestStretch {
   std::size_t count = 0;
 };
 
-/// Stretches of 0.2 s, side by side, in which the motion stays within a thousandth of its whole span.
-[[nodiscard]] std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s);
+/// Stretches of 0.2 s, side by side, in which the motion stays within this share of its whole span; within a thousandth
+/// it rests.
+[[nodiscard]] std::vector<RestStretch> rest_stretches(std::span<const double> motion_m, double period_s,
+                                                      double share_of_span = tuning::kRestSpan);
 
 /// Largest minus smallest value; 0 of none.
 [[nodiscard]] double span_of(std::span<const double> values);

@@ -161,6 +161,7 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.verdict = Verdict::unknown;
   }
   if (judgement.verdict == Verdict::unknown) return is_clear ? judgement : Judgement{};
+  judgement.leaves_a_part = judgement.verdict == Verdict::partial;
   // A set says less than a name, and may leave what hardly matters.
   judgement.may_be_set = judgement.verdict == Verdict::named || judgement.gap_left <= tuning::kHardlyLeft;
   // Where a search ran into its limit, something else may be meant.

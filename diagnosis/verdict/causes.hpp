@@ -30,6 +30,7 @@ struct Judgement {
   std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
   bool may_be_set = false;     // what is left allows one, and no search ran into its limit
+  bool leaves_a_part = false;  // more is left than a name allows
   double gap_left = 0.0;       // share of the repeatable gap that the chosen effects leave
 
   [[nodiscard]] bool is_correction(std::size_t chosen) const;

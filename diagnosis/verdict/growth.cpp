@@ -6,6 +6,7 @@
 #include <typeinfo>
 #include <utility>
 
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
@@ -217,6 +218,17 @@ std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem
   return effects;
 }
 
+/// A law in the place of one that has all of its parameters, and as they are there; nothing where it lacks one.
+std::optional<EffectSetting> simplified(const EffectType& simpler, const EffectSetting& law) {
+  EffectSetting result{.type = &simpler, .values = {}};
+  for (const EffectParameter& parameter : simpler.parameters) {
+    const auto same = std::ranges::find(law.type->parameters, parameter.name, &EffectParameter::name);
+    if (same == law.type->parameters.end()) return {};
+    result.values.push_back(law.values[static_cast<std::size_t>(same - law.type->parameters.begin())]);
+  }
+  return result;
+}
+
 /// A candidate in the place of one effect, and what was found beside that one; by itself, and with the numbers of the
 /// model that it needed. The numbers of a law that another law replaces go with it. In the place of a law the numbers
 /// of the model's own are free, too: the law has taken up what they are off. None where the candidate is found already.
@@ -328,6 +340,14 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
     if (!is_of_law_too && !starts.empty()) ++others;
     for (std::vector<EffectSetting>& start : starts) tried.push_back({candidate.type, std::move(start), {}});
+  }
+  // Beside what was found the simpler law may do, which by itself took that up and may be refuted.
+  for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
+    std::optional<EffectSetting> simpler = is_law ? simplified(law.type, effects[position]) : std::nullopt;
+    if (!simpler || law.type.parameters.size() == effects[position].values.size()) continue;
+    std::vector<EffectSetting> start = without(effects, position);
+    start.insert(start.begin(), *std::move(simpler));
+    tried.push_back({&law.type, std::move(start), {}});
   }
   problem.workers.for_each(tried.size(), [&](std::size_t i) {
     auto& [type, start, fitted] = tried[i];

@@ -45,14 +45,21 @@ Growth with_its_numbers(const IdentificationProblem& problem, const Identificati
   return growth;
 }
 
+/// Laws of one name, of which one has a loop of its own.
+bool are_the_same_law(const EffectType& one, const EffectType& other) {
+  return one.replacement != nullptr && other.replacement != nullptr && one.replacement->law == other.replacement->law;
+}
+
 /// Whether this candidate is grown: the first one is, and one that scores nearly as well; where a sensor's effect
-/// leads, also one of a stage that leaves not much more. The same under another name is not.
+/// leads, also one of a stage that leaves not much more; and the law that leads without its loop, which another effect
+/// may make. The same under another name is not.
 bool may_lead(const IdentificationProblem& problem, const Selection& selection, std::size_t position) {
   if (position == 0) return true;
   const Candidate& first = selection.library.front();
   const Candidate& candidate = selection.library[position];
   if (are_alike(first.fit, candidate.fit)) return false;
   if (candidate.score > first.score - tuning::kFarBehind) return true;
+  if (are_the_same_law(*candidate.type, *first.type)) return true;
   return is_of_sensor(*first.type) && !is_of_sensor(*candidate.type) &&
          tuning::kAnotherEffectLeaves * gap_energy(problem, candidate.fit).excess() <
              gap_energy(problem, first.fit).excess();
@@ -201,11 +208,12 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
   std::vector<double> scores = scores_of(selection.library);
   for (const auto& leader : leaders) {
     // What stands beside the best, or beside which the best stands, is not in its place, and does not count against it;
-    // nor does what was dropped from what was found with it.
+    // nor does what was dropped from what was found with it, nor the same law with or without a loop of its own.
     const EffectType* const type = selection.library[leader.first].type;
     const bool is_there = holds(leader.second.fit.effects, type);
     const bool is_instead = is_there && !holds(best->second.fit.effects, type) &&
-                            !holds(leader.second.fit.effects, selection.library[best->first].type);
+                            !holds(leader.second.fit.effects, selection.library[best->first].type) &&
+                            !are_the_same_law(*type, *selection.library[best->first].type);
     if (leader.first != best->first && !is_instead) {
       scores[leader.first] = -std::numeric_limits<double>::infinity();
       continue;

@@ -144,11 +144,12 @@ double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit
 }
 
 /// A friction that slides only after a displacement that is not small, beside a spring: together they are a specimen
-/// that yields and hardens, and that is its name.
+/// that yields and hardens, and that is its name; or softens, where a negative spring takes a tenth of the friction and
+/// more. Beside another law it has none.
 bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
-  if (!problem.law_is_spring) return false;
+  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
+  if (!problem.law_is_spring || std::ranges::any_of(fit.effects, is_law)) return false;
   return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
-    if (effect.type->replacement != nullptr) return false;
     const std::ptrdiff_t position = &effect - fit.effects.data();
     if (slides_as_in_model(problem, fit, static_cast<std::size_t>(position))) return false;
     const auto at = [&](std::string_view name) {
@@ -160,7 +161,10 @@ bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
     const double presliding_m = at("presliding_displacement_m");
     if (!(presliding_m > tuning::kPreslidingMax * problem.scales.displacement_m)) return false;
     const double spring_n_per_m = spring_beside(problem, fit);
-    return spring_n_per_m > tuning::kHardeningMin * (spring_n_per_m + at("friction_force_n") / presliding_m);
+    const double friction_n = at("friction_force_n");
+    const double taken_n = -spring_n_per_m * problem.scales.displacement_m;
+    return spring_n_per_m > tuning::kHardeningMin * (spring_n_per_m + friction_n / presliding_m) ||
+           taken_n > std::sqrt(tuning::kHardlyLeft) * friction_n;
   });
 }
 

@@ -116,14 +116,25 @@ void put_in_place(Candidate law, double probability, Selection& selection, Growt
   selection.alike.clear();
 }
 
+/// Whether a law was found and another effect of the specimen beside it.
+bool is_law_with_another(const FitOutcome& fit) {
+  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
+  const auto is_another = [&](const EffectSetting& effect) {
+    return !is_law(effect) && effect.type->interface == EffectInterface::specimen;
+  };
+  return std::ranges::any_of(fit.effects, is_law) && std::ranges::any_of(fit.effects, is_another);
+}
+
 /// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
-/// itself. Nothing is looked for beside it: what it leaves is told as left.
+/// itself. Nothing is looked for beside it: what it leaves is told as left. Where a law and another effect explain it
+/// together, as a hysteresis and a damper: the device that is both, if it is better.
 void try_special_laws(const IdentificationProblem& problem, const IdentificationProblem& coarse, Selection& selection,
                       const PartProgress& progress, Growth& growth) {
-  if (!gap_energy(problem, growth.fit).is_clear()) return;
+  const bool is_left = gap_energy(problem, growth.fit).is_clear();
+  if (!is_left && !is_law_with_another(growth.fit)) return;
   std::vector<Candidate> laws = fit_special_laws(problem, coarse, progress);
   const double before = score_of(problem, growth.fit);
-  if (laws.empty() || laws.front().score <= before + decisive_gain(problem)) return;
+  if (laws.empty() || laws.front().score <= before + (is_left ? decisive_gain(problem) : 0.0)) return;
   std::vector<double> scores = scores_of(laws);
   scores.push_back(before);
   const double probability = softmax(scores).front();

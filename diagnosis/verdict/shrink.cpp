@@ -50,6 +50,13 @@ std::vector<double> predicted_with(const SiteModel& model, std::span<const Effec
   return predicted;
 }
 
+/// Beside numbers of the model alone, whose form is right, what repeats in no function of the motion is noise. The form
+/// of an effect or of a law is never quite that of the specimen: beside one, what it misses would pass for noise,
+/// unless it is there as well where the motion hardly moves.
+double settled_floor(std::span<const EffectSetting> causes, const FitSegment& fit) {
+  return are_numbers(causes) ? fit.sample_floor : fit.still_floor;
+}
+
 /// Residual that a correct model leaves [standard deviation]. Coloured noise and hum of the force show only in a
 /// residual, so that they are taken from the fitted segments; those of the motion where the actuator's channel tells
 /// them.
@@ -60,7 +67,7 @@ double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, c
   double alike = 0.0;
   for (const FitSegment& fit : fitted) {
     if (fit.segment.from != segment.from || fit.segment.to != segment.to) continue;
-    energy += fit.sample_floor * fit.sample_floor;
+    energy += std::pow(settled_floor(causes, fit), 2);
     alike += 1.0;
   }
   const double floor =

@@ -58,13 +58,6 @@ void tell_held_out_noise(const SiteModel& completed, const std::vector<Stage>& s
   }
 }
 
-std::span<const FitSegment> with_the_same_noise(const IdentificationProblem& settled,
-                                                std::span<const EffectSetting> causes) {
-  const auto is_number = [](const EffectSetting& cause) { return cause.type->traits.number != ModelNumber::none; };
-  if (!std::ranges::all_of(causes, is_number)) return {};
-  return settled.segments;
-}
-
 namespace {
 
 /// Of each kind of segment that the causes act on.
@@ -84,7 +77,7 @@ std::vector<report::Shrink> shrinks(const SiteModel& model, std::span<const Effe
 std::vector<report::Shrink> left_by_all(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
                                         const std::vector<Stage>& stages, const Stage& stage) {
   const std::vector<EffectSetting> causes = causes_of(stages, {});
-  return shrinks(model, causes, at_suspects(stage.problem, held_out), with_the_same_noise(stage.problem, causes), seed);
+  return shrinks(model, causes, at_suspects(stage.problem, held_out), stage.problem.segments, seed);
 }
 
 /// Of all kinds of segments together, each by its gap before.

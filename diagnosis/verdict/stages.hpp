@@ -43,12 +43,6 @@ struct Stage {
 /// @param completed   the model with all causes.
 void tell_held_out_noise(const SiteModel& completed, const std::vector<Stage>& stages, std::vector<Segment>& held_out);
 
-/// Whose settled noise held-out recordings have, too. Beside numbers of the model alone, whose form is right, what
-/// repeats in no function of the motion is noise. The form of an effect or of a law is never quite that of the
-/// specimen: beside one, what it misses would pass for noise, and only what the channels show counts.
-[[nodiscard]] std::span<const FitSegment> with_the_same_noise(const IdentificationProblem& settled,
-                                                              std::span<const EffectSetting> causes);
-
 /// The verdicts after the check on held-out recordings, each stage's beside the causes of the others.
 /// @param notes   says which causes did not hold.
 void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,

@@ -60,18 +60,20 @@ SimulatedRig::SimulatedRig(std::vector<std::unique_ptr<TransferSystem>> transfer
   std::uint64_t stream = noise.first_stream;
   for (std::size_t i = 0; i < transfer_systems.size(); ++i, stream += 2) {
     Effects& of = effects[i];
-    actuators_.push_back({.network = NetworkStage{std::move(of.network)},
-                          .compensator = CompensatorStage{nullptr, std::move(of.compensator)},
-                          .transfer = TransferStage{std::move(transfer_systems[i]), std::move(of.transfer_system),
-                                                    std::move(of.displacement_sensor)},
-                          .specimen_effects = std::move(of.specimen),
-                          .force_sensor_effects = std::move(of.force_sensor),
-                          .displacement_sensor = NoisySensor{displacement_noise_m, Random{noise.seed, stream},
-                                                             coloured(noise.displacement_coloured_noise_m,
-                                                                      noise.displacement_correlation_time_s, stream)},
-                          .force_sensor = NoisySensor{
-                              force_noise_n, Random{noise.seed, stream + 1},
-                              coloured(noise.force_coloured_noise_n, noise.force_correlation_time_s, stream + 1)}});
+    actuators_.push_back(
+        {.network = NetworkStage{std::move(of.network)},
+         .compensator = CompensatorStage{nullptr, std::move(of.compensator)},
+         .transfer = TransferStage{std::move(transfer_systems[i]), std::move(of.transfer_system),
+                                   std::move(of.displacement_sensor)},
+         .specimen_effects = std::move(of.specimen),
+         .force_sensor_effects = std::move(of.force_sensor),
+         .displacement_sensor =
+             NoisySensor{displacement_noise_m, Random{noise.seed, stream},
+                         coloured(noise.displacement_coloured_noise_m, noise.displacement_correlation_time_s, stream)},
+         .force_sensor =
+             NoisySensor{force_noise_n, Random{noise.seed, stream + 1},
+                         coloured(noise.force_coloured_noise_n, noise.force_correlation_time_s, stream + 1)},
+         .differences = BackwardDifferences{control_period_s_}});
   }
   displacement_m_ = velocity_m_per_s_ = force_n_ = SiteVector::Zero(dofs);
 }
@@ -86,6 +88,7 @@ void SimulatedRig::connect() {
     actuator.force_sensor_effects.reset();
     actuator.displacement_sensor.reset();
     actuator.force_sensor.reset();
+    actuator.differences.reset();
     actuator.motion = {};
   }
   force_n_.setZero();
@@ -134,7 +137,6 @@ bool SimulatedRig::is_usable(const SiteVector& command_m) const noexcept {
 
 void SimulatedRig::move(Actuator& actuator, const StageSample& command, bool is_armed) noexcept {
   StageSample sample = command;
-  const Motion before = actuator.motion;
   if (is_armed) {
     sample.motion.displacement_m = actuator.network.step(sample);
     sample.motion.displacement_m = actuator.compensator.step(sample);
@@ -142,10 +144,7 @@ void SimulatedRig::move(Actuator& actuator, const StageSample& command, bool is_
   } else {
     actuator.read_m = actuator.transfer.read(sample);
   }
-  Motion& motion = actuator.motion;
-  motion.displacement_m = actuator.transfer.displacement_m();
-  motion.velocity_m_per_s = (motion.displacement_m - before.displacement_m) / control_period_s_;
-  motion.acceleration_m_per_s2 = (motion.velocity_m_per_s - before.velocity_m_per_s) / control_period_s_;
+  actuator.motion = actuator.differences.moved_to(actuator.transfer.displacement_m());
 }
 
 /// The specimen couples its degrees of freedom, the effects on it do not.

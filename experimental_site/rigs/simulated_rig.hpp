@@ -7,6 +7,7 @@
 
 #include "core/time.hpp"
 #include "experimental_site/rigs/rig.hpp"
+#include "plant/backward_differences.hpp"
 #include "plant/sensors/noisy_sensor.hpp"
 #include "plant/site_model.hpp"
 #include "plant/site_stages.hpp"
@@ -18,7 +19,7 @@ namespace hybridtest {
 /// A simulated laboratory. Each actuator moves one degree of freedom of the specimen through its
 /// transfer system; displacement and force are measured with noise. Effects of the library act at
 /// their interface; those of network and compensator act on the command before the transfer system.
-/// Velocity and acceleration of an actuator are backward differences of its displacement.
+/// Velocity and acceleration of an actuator are second-order backward differences of its displacement.
 ///
 /// After stop_motion() the rig holds its position and still measures. connect() resets everything,
 /// noise included, so that a run can be repeated; arm() needs a connect() after the last
@@ -68,6 +69,7 @@ class SimulatedRig final : public Rig {
     StageEffects force_sensor_effects;
     NoisySensor displacement_sensor;
     NoisySensor force_sensor;
+    BackwardDifferences differences;
     Motion motion{};
     Motion given{};  // to the specimen, changed by its effects
     double read_m = 0.0;

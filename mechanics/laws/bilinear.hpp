@@ -14,7 +14,8 @@ namespace hybridtest {
 ///
 /// with the plastic displacement xp as its only history (Simo and Hughes, Computational
 /// Inelasticity, 1998, section 1.4). The return to the yield surface is exact for any increment
-/// of displacement. The same as Steel01 of OpenSees without isotropic hardening.
+/// of displacement. The same as Steel01 of OpenSees without isotropic hardening. A negative b softens
+/// after yielding, as a column does under an axial load: b k is then what the load takes.
 class Bilinear final : public Law {
  public:
   struct Parameters {
@@ -26,7 +27,8 @@ class Bilinear final : public Law {
       archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "before yielding"});
       archive.required("yield_force_n", yield_force_n, {kPositive});
       archive.required("hardening_ratio", hardening_ratio,
-                       {kZeroToBelowOne, "stiffness after yielding over stiffness before"});
+                       {kBelowOneEitherWay,
+                        "stiffness after yielding over stiffness before; negative: softens, as under an axial load"});
     }
   };
 

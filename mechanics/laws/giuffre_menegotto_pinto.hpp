@@ -41,7 +41,8 @@ class GiuffreMenegottoPinto final : public Law {
       archive.required("stiffness_n_per_m", stiffness_n_per_m, {kPositive, "before yielding"});
       archive.required("yield_force_n", yield_force_n, {kPositive});
       archive.required("hardening_ratio", hardening_ratio,
-                       {kZeroToBelowOne, "stiffness after yielding over stiffness before"});
+                       {kBelowOneEitherWay,
+                        "stiffness after yielding over stiffness before; negative: softens, as under an axial load"});
       archive.optional("r0", r0, {{.low = 0.0, .high = 100.0, .low_open = true}, "R0, curvature of the first branch"});
       archive.optional("cr1", cr1, {kZeroToBelowOne, "cR1, loss of curvature"});
       archive.optional("cr2", cr2, {kPositive, "cR2, displacement of half that loss"});

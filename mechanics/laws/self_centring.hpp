@@ -13,8 +13,8 @@ namespace hybridtest {
 /// on the positive side, with the slip xs >= 0 as its only history; the negative side is alike. The lower limit ends
 /// where xs is zero: then the spring is elastic through the origin, and nothing remains without force. It unloads with
 /// k over a drop of beta Fa and follows the lower line of the flag back. The return to the limits is exact for any
-/// increment. SelfCentering of OpenSees (without its slip and bearing) keeps the limits of the last step instead and
-/// agrees for small steps.
+/// increment. A negative b is a wall or a column that rocks: its own weight pushes it on. SelfCentering of OpenSees
+/// (without its slip and bearing) keeps the limits of the last step instead and agrees for small steps.
 class SelfCentring final : public Law {
  public:
   struct Parameters {
@@ -28,7 +28,8 @@ class SelfCentring final : public Law {
       archive.required("activation_force_n", activation_force_n,
                        {kPositive, "where the gap opens or the alloy transforms"});
       archive.required("hardening_ratio", hardening_ratio,
-                       {kZeroToBelowOne, "stiffness after activation over stiffness before"});
+                       {kBelowOneEitherWay,
+                        "stiffness after activation over stiffness before; negative: softens, as a wall that rocks"});
       archive.required("flag_ratio", flag_ratio,
                        {kZeroToOne, "beta, height of the flag over the activation force; 0: no energy is dissipated"});
     }

@@ -20,7 +20,9 @@ set laws [dict create \
   pinching [list IMKPinching 4.0e6 {*}$side {*}$side {*}$deterioration 0.3 0.4] \
   takeda {Hysteretic 40.0e3 0.01 48.0e3 0.05 62.0e3 0.12 -40.0e3 -0.01 -48.0e3 -0.05 -62.0e3 -0.12 1.0 1.0 0.0 0.0 0.4} \
   self_centring {SelfCentering 4.0e6 0.2e6 40.0e3 0.7} \
-  giuffre_menegotto_pinto {Steel02 40.0e3 4.0e6 0.03 18.0 0.925 0.15 0.05 1.5 0.03 2.5}]
+  giuffre_menegotto_pinto {Steel02 40.0e3 4.0e6 0.03 18.0 0.925 0.15 0.05 1.5 0.03 2.5} \
+  softening_bilinear {Steel01 40.0e3 4.0e6 -0.05} \
+  softening_giuffre_menegotto_pinto {Steel02 40.0e3 4.0e6 -0.05 18.0 0.925 0.15}]
 
 lassign $argv law steps_per_sample directory
 model testUniaxial 1

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -146,6 +147,23 @@ SiteDiagnosis diagnosed(const std::filesystem::path& run, const std::filesystem:
   SiteDiagnosis diagnosis = diagnose_site(model, recordings, {});
   add_response(diagnosis, model, run, {}, run / "scenario.yaml", {});
   return diagnosis;
+}
+
+/// The force of a simulated damper is as old as the displacement beside it.
+TEST_F(DiagnosisLoop, StrongDamperIsNotLate) {
+  constexpr double kDamping_n_s_per_m = 300.0e3;
+  const std::string damper = fmt::format(
+      ", effects: [{{interface: specimen, effect: viscous_damping, damping_n_s_per_m: {}}}]", kDamping_n_s_per_m);
+  simulate("real", {in_rig(kModel + kNoise + damper)});
+  const std::filesystem::path model_file = directory_ / "model.yaml";
+  std::ofstream{model_file} << "{" << kModel << "}\n";
+  const SiteDiagnosis diagnosis = diagnosed(directory_ / "real", model_file);
+  std::vector<std::string> causes;
+  for (const report::RankedCause& cause : diagnosis.diagnosis.report.ranking) {
+    if (cause.is_cause) causes.push_back(cause.effect);
+  }
+  EXPECT_THAT(causes, testing::ElementsAre("viscous_damping"));
+  EXPECT_TRUE(diagnosis.diagnosis.report.corrections.empty());
 }
 
 TEST_F(DiagnosisLoop, ModelWithoutCompensatorTakesThatOfTheRun) {

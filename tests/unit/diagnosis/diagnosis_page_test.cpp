@@ -248,6 +248,14 @@ TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {
   EXPECT_THAT(page, HasSubstr("repeat at half the rate"));
 }
 
+TEST(DiagnosisPage, SetThatLeavesAPartSaysSo) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::set;
+  EXPECT_THAT(verdict_sentence(report), Not(HasSubstr("No effect in the library explains what is left.")));
+  report.set_leaves_a_part = true;
+  EXPECT_THAT(verdict_sentence(report), HasSubstr("No effect in the library explains what is left."));
+}
+
 TEST(DiagnosisPage, CauseThatMayBeAbsentIsSaidToBeInTheFirstSentence) {
   DiagnosisReport report = example();
   report.verdict = Verdict::partial;

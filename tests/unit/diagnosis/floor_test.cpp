@@ -50,6 +50,21 @@ TEST(Floor, RepeatedRecordingsGiveTheirNoise) {
       << "not a repetition";
 }
 
+TEST(Floor, NoiseIsSeenWhereTheMotionTurnsSlowly) {
+  const auto motion = sampled(kSamples, [](double t) { return sine(0.5, t); });
+  const MadeNoise coloured{.correlation = 1.0 - kMadePeriod_s / 0.02};
+  const auto noise = made_noise(coloured, kSamples, kNoise, kMadePeriod_s, 1);
+  // A gap that is cubic in the displacement and a hundred times as large.
+  std::vector<double> residual = noise;
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += 100.0 * kNoise * std::pow(motion[i], 3);
+  const auto still = noise_while_still({kMadePeriod_s, motion, residual, residual});
+  ASSERT_TRUE(still.has_value());
+  // In a stretch of 0.2 s five samples are independent, and mean and slope take two.
+  EXPECT_NEAR(*still, kNoise, 0.4 * kNoise);
+  const auto fast = sampled(kSamples, [](double t) { return sine(4.0, t); });
+  EXPECT_FALSE(noise_while_still({kMadePeriod_s, fast, noise, noise}).has_value()) << "nowhere for 0.2 s";
+}
+
 TEST(Floor, EqualsNoiseAtRestAndHighFrequencies) {
   const auto motion = sampled(kSamples, [](double t) { return t > 8.0 && t < 12.0 ? sine(0.25, t - 8.0) : 0.0; });
   const auto residual = repeatable_gap(motion, 1);

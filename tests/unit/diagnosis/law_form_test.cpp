@@ -131,6 +131,111 @@ TEST(LawForm, YieldingUnderAnElasticModelIsOneCause) {
   }
 }
 
+/// Elastic, perfectly plastic under an axial load P at the height h: bilinear with k - P / h before and -P / h after
+/// yielding. Beside a spring of any stiffness nothing else can be told, and nothing else is.
+TEST(LawForm, YieldingUnderAnAxialLoadSoftens) {
+  constexpr double kLoadOverHeight_n_per_m = 0.05 * kMadeStiffness_n_per_m;
+  constexpr double kBefore_n_per_m = kMadeStiffness_n_per_m - kLoadOverHeight_n_per_m;
+  Bilinear column{{kMadeStiffness_n_per_m, kYield_n, 0.0}};
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double force_n = column.trial(made_motion_m(time_s), 0.0);
+    column.commit();
+    return force_n - kLoadOverHeight_n_per_m * made_motion_m(time_s);
+  });
+  for (const double share : {0.1, 1.0}) {
+    SCOPED_TRACE(share);
+    const Diagnosis diagnosis = diagnosis_of(elastic_model(share * kMadeStiffness_n_per_m), recording);
+    EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+    const report::RankedCause& cause = only_cause(diagnosis);
+    EXPECT_EQ(cause.effect, "yielding");
+    EXPECT_EQ(cause.law, "bilinear");
+    EXPECT_NEAR(value_of(cause, "stiffness_n_per_m"), kBefore_n_per_m, 1e-3 * kBefore_n_per_m);
+    EXPECT_NEAR(value_of(cause, "hardening_ratio"), -kLoadOverHeight_n_per_m / kBefore_n_per_m, 1e-3);
+  }
+}
+
+/// A wall that rocks: what its weight takes beyond the uplift is a negative hardening.
+TEST(LawForm, WallThatRocksSoftens) {
+  SelfCentring wall{{kMadeStiffness_n_per_m, kYield_n, -0.05, 0.1}};
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording_of(wall));
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  const report::RankedCause& cause = only_cause(diagnosis);
+  EXPECT_EQ(cause.law, "self_centring");
+  EXPECT_NEAR(value_of(cause, "hardening_ratio"), -0.05, 1e-3);  // as in YieldingUnderAnElasticModelIsOneCause
+  EXPECT_NEAR(value_of(cause, "flag_ratio"), 0.1, 1e-3);
+}
+
+/// A wall that rocks on a joint that rubs: the loop is that of the friction, and the law has none.
+TEST(LawForm, FrictionBesideAWallThatRocksIsACauseOfItsOwn) {
+  constexpr double kFriction_n = 2e3;
+  constexpr double kPresliding_m = 3e-4;
+  SelfCentring wall{{kMadeStiffness_n_per_m, kYield_n, -0.05, 0.0}};
+  double slip_m = 0.0;
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double displacement_m = made_motion_m(time_s);
+    const double stretch_m = std::clamp(displacement_m - slip_m, -kPresliding_m, kPresliding_m);
+    slip_m = displacement_m - stretch_m;
+    const double of_wall_n = wall.trial(displacement_m, 0.0);
+    wall.commit();
+    return of_wall_n + kFriction_n * stretch_m / kPresliding_m;
+  });
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  ASSERT_EQ(std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause), 2);
+  EXPECT_EQ(diagnosis.report.ranking[0].law, "self_centring");
+  EXPECT_NEAR(value_of(diagnosis.report.ranking[0], "hardening_ratio"), -0.05, 1e-3);
+  EXPECT_EQ(value_of(diagnosis.report.ranking[0], "flag_ratio"), 0.0);
+  EXPECT_EQ(diagnosis.report.ranking[1].effect, "coulomb_friction");
+  EXPECT_NEAR(value_of(diagnosis.report.ranking[1], "friction_force_n"), kFriction_n, 0.01 * kFriction_n);
+}
+
+/// Two sliders in a row, the weaker on the flatter dish: a friction, and a law that yields beside it.
+TEST(LawForm, TwoSlidersInARowAreAFrictionAndALawThatYields) {
+  Bilinear second{{kMadeStiffness_n_per_m, kYield_n, 0.15}};
+  constexpr double kFriction_n = 5e3;
+  constexpr double kPresliding_m = 2e-4;
+  double slip_m = 0.0;
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double displacement_m = made_motion_m(time_s);
+    const double stretch_m = std::clamp(displacement_m - slip_m, -kPresliding_m, kPresliding_m);
+    slip_m = displacement_m - stretch_m;
+    const double of_second_n = second.trial(displacement_m, 0.0);
+    second.commit();
+    return of_second_n + kFriction_n * stretch_m / kPresliding_m;
+  });
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
+  std::vector<std::string> causes;
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (cause.is_cause) causes.push_back(cause.effect);
+  }
+  std::ranges::sort(causes);
+  EXPECT_EQ(causes, (std::vector<std::string>{"coulomb_friction", "yielding"}));
+}
+
+/// A brace that hardens with its path and is stronger in compression, the more the further it went. What bilinear and
+/// other laws leave of it is a fifteenth of the force, and no function of the motion; but it is not there where the
+/// motion turns.
+TEST(LawForm, WhatALawLeavesIsNoNoise) {
+  double slip_m = 0.0;
+  double path_m = 0.0;
+  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
+    const double displacement_m = made_motion_m(time_s);
+    const double trial_n = kMadeStiffness_n_per_m * (displacement_m - slip_m);
+    const double asymmetry = trial_n < 0.0 ? 1.0 + 3.0 * std::abs(displacement_m) : 1.0;
+    const double strength_n = 10e3 * (1.0 - 0.4 * std::expm1(-path_m / 0.05)) * asymmetry;
+    const double beyond_m = std::max(0.0, std::abs(trial_n) - strength_n) / kMadeStiffness_n_per_m;
+    slip_m += std::copysign(beyond_m, trial_n);
+    path_m += beyond_m;
+    return kMadeStiffness_n_per_m * (displacement_m - slip_m + 0.03 * displacement_m);
+  });
+  const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
+  EXPECT_EQ(diagnosis.report.verdict, Verdict::set);
+  EXPECT_TRUE(diagnosis.report.set_leaves_a_part);
+  ASSERT_TRUE(diagnosis.report.interface_shrink);
+  EXPECT_LT(diagnosis.report.interface_shrink->floor_nrmse, 0.1 * diagnosis.report.interface_shrink->nrmse_after);
+}
+
 TEST(LawForm, WrongStrengthAloneIsNoMissingEffect) {
   const auto real = real_bilinear();
   SiteModel model = made_model();

@@ -11,6 +11,7 @@ namespace hybridtest {
 namespace {
 
 using testing::ElementsAre;
+using testing::UnorderedElementsAre;
 
 /// What a load cell reads of a spring's force behind T^2 q r'' + T r' + r = F, integrated in steps of a twentieth of a
 /// sample (semi-implicit Euler).
@@ -79,6 +80,26 @@ TEST(LateForce, IsASkewHoweverLate) {
   ASSERT_THAT(causes_of(diagnosis), ElementsAre("time_skew"));
   // 20 N of noise beside a force that changes by 400 kN/s: 1 us of 6000 readings.
   EXPECT_NEAR(find_parameter(diagnosis.report.ranking.front(), "skew_s")->value, kSkew_s, 1e-5);
+}
+
+/// A fifth of a sample, as between the channels of a converter that reads one after the other. So short a lag is the
+/// same.
+TEST(LateForce, HasAnIntervalHoweverShort) {
+  constexpr double kSkew_s = 0.0004;
+  const auto read_n = [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t - kSkew_s); };
+  const Diagnosis diagnosis = diagnosis_of(made_model(), made_recording(made_motion_m, read_n));
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::set);
+  ASSERT_THAT(causes_of(diagnosis), UnorderedElementsAre("lag", "time_skew"));
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (!cause.is_cause) continue;
+    const report::ReportedParameter& late =
+        *find_parameter(cause, cause.effect == "lag" ? "time_constant_s" : "skew_s");
+    EXPECT_FALSE(late.is_at_bound);
+    ASSERT_TRUE(late.ci95);
+    EXPECT_LT(late.ci95->low, kSkew_s);
+    EXPECT_GT(late.ci95->high, kSkew_s);
+    EXPECT_NEAR(late.value, kSkew_s, 1e-5);  // as above
+  }
 }
 
 TEST(BesselFilter, IsASetWithATimeSkew) {

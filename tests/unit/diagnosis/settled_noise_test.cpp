@@ -177,6 +177,22 @@ TEST(SettledNoise, HeldOutRecordingHasColouredNoiseToo) {
   EXPECT_NEAR(left.nrmse_after, left.floor_nrmse, 0.25 * left.floor_nrmse);
 }
 
+/// Whatever the form of the law misses hardly changes while the motion turns; noise does.
+TEST(SettledNoise, HeldOutRecordingHasColouredNoiseBesideALawToo) {
+  const NamedLaw& bilinear = kLaws[1];
+  constexpr MadeNoise kColoured{.correlation = 0.9};
+  std::array recordings{noisy_recording(bilinear, {}, kColoured, 1), noisy_recording(bilinear, {}, kColoured, 2)};
+  recordings[1].file = "held_out.csv";
+  recordings[1].role = RecordingRole::held_out;
+  const Diagnosis diagnosis = diagnose(made_model(), recordings, {});
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  EXPECT_EQ(diagnosis.report.ranking.front().law, "bilinear");
+  ASSERT_TRUE(diagnosis.report.interface_shrink.has_value());
+  const report::Shrink& left = *diagnosis.report.interface_shrink;
+  // The noise is correlated over some 20 samples; the stretches have some 100 each, and their means are taken off.
+  EXPECT_NEAR(left.nrmse_after, left.floor_nrmse, 0.25 * left.floor_nrmse);
+}
+
 /// Friction that changes with the place looks like noise to whatever holds velocity, displacement and path alone. It is
 /// not there while the command rests; the noise is, also where that of the transducer hides the rest.
 TEST(SettledNoise, FrictionThatChangesWithThePlaceIsNoNoise) {

@@ -31,6 +31,22 @@ TEST(Bilinear, FollowsItsBackboneAndUnloadsElastically) {
   EXPECT_EQ(spring.initial_stiffness_n_per_m(), 4.0e6);
 }
 
+/// An elastic, perfectly plastic column of height h under an axial load P that it is not modelled with:
+/// F = G(x) - P / h x is bilinear with k - P / h before and -P / h after yielding.
+TEST(Bilinear, NegativeHardeningIsAnAxialLoad) {
+  constexpr double kLoadOverHeight_n_per_m = 0.2e6;
+  Bilinear column{{.stiffness_n_per_m = 4.0e6, .yield_force_n = 4.0e4, .hardening_ratio = 0.0}};
+  constexpr double kUnderLoad_n_per_m = 4.0e6 - kLoadOverHeight_n_per_m;
+  Bilinear softening{{.stiffness_n_per_m = kUnderLoad_n_per_m,
+                      .yield_force_n = kUnderLoad_n_per_m * kYield_m,
+                      .hardening_ratio = -kLoadOverHeight_n_per_m / kUnderLoad_n_per_m}};
+  for (int i = 0; i < 2000; ++i) {
+    const double displacement_m = 5e-5 * i * std::sin(0.05 * i);
+    const double expected_n = impose(column, displacement_m) - kLoadOverHeight_n_per_m * displacement_m;
+    ASSERT_NEAR(impose(softening, displacement_m), expected_n, 1e-10 * 4.0e4);  // rounding only
+  }
+}
+
 TEST(Bilinear, MonotonicMotionIsIndependentOfStepCount) {
   Bilinear in_one{kColumn};
   Bilinear in_many{kColumn};
@@ -100,7 +116,8 @@ TEST(Bilinear, RejectsParametersOutOfRange) {
   EXPECT_THROW(with([](auto& p) { p.stiffness_n_per_m = 0.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.yield_force_n = -1.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.hardening_ratio = 1.0; }), ConfigError);
-  EXPECT_THROW(with([](auto& p) { p.hardening_ratio = -0.01; }), ConfigError);
+  EXPECT_NO_THROW(with([](auto& p) { p.hardening_ratio = -0.99; }));
+  EXPECT_THROW(with([](auto& p) { p.hardening_ratio = -1.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.yield_force_n = std::nan(""); }), ConfigError);
 }
 

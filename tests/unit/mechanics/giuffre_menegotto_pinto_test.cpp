@@ -137,6 +137,7 @@ TEST(GiuffreMenegottoPinto, RejectsParametersOutOfRange) {
   EXPECT_THROW(with([](auto& p) { p.stiffness_n_per_m = -1.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.yield_force_n = 0.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.hardening_ratio = 1.0; }), ConfigError);
+  EXPECT_THROW(with([](auto& p) { p.hardening_ratio = -1.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.r0 = 0.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.cr1 = 1.0; }), ConfigError);
   EXPECT_THROW(with([](auto& p) { p.cr2 = 0.0; }), ConfigError);

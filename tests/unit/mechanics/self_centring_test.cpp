@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "core/config_error.hpp"
@@ -48,6 +49,17 @@ TEST(SelfCentring, NothingRemainsWithoutForce) {
 TEST(SelfCentring, ReloadsWithinTheFlagElastically) {
   EXPECT_NEAR(force_after({0.030, 0.0125, 0.015}), 2.4e4, kRounding_n);
   EXPECT_NEAR(force_after({0.030, 0.0125, 0.030}), 4.8e4, kRounding_n);
+}
+
+/// What a wall that rocks loses of its force goes with the displacement of its weight.
+TEST(SelfCentring, NegativeHardeningIsAWallThatRocks) {
+  SelfCentring wall{{.stiffness_n_per_m = 4.0e6, .activation_force_n = 4.0e4, .hardening_ratio = -0.05}};
+  for (const double displacement_m : {0.005, 0.01, 0.02, 0.06, 0.02, -0.005, -0.06}) {
+    const double size_m = std::abs(displacement_m);
+    const double expected_n = size_m <= 0.01 ? 4.0e6 * size_m : 4.0e4 - 0.05 * 4.0e6 * (size_m - 0.01);
+    EXPECT_NEAR(wall.trial(displacement_m, 0.0), std::copysign(expected_n, displacement_m), kRounding_n);
+    wall.commit();
+  }
 }
 
 TEST(SelfCentring, ACycleDissipatesItsFlag) {

@@ -11,6 +11,7 @@
 #include "core/time.hpp"
 #include "experimental_site/rigs/simulated_rig.hpp"
 #include "mechanics/laws/elastic.hpp"
+#include "plant/backward_differences.hpp"
 #include "plant/specimens/law_specimen.hpp"
 #include "plant/transfer_systems/delay.hpp"
 #include "plant/transfer_systems/second_order.hpp"
@@ -127,17 +128,14 @@ TEST(SiteStages, StagesTogetherEqualTheRig) {
   TransferStage transfer{model, kPeriod_s};
   SpecimenStage specimen{model, kPeriod_s};
   RigFeedback feedback{.displacement_m = SiteVector::Zero(1), .force_n = SiteVector::Zero(1)};
-  Motion motion;
+  BackwardDifferences differences{kPeriod_s};
   for (int i = 0; i < 500; ++i) {
     ActuatorCommand asked;
     asked.time_s = kPeriod_s * i;
     asked.displacement_m = SiteVector::Constant(1, 0.02 * std::sin(0.03 * i));
     ASSERT_EQ(rig.exchange(asked, feedback), RigStatus::healthy);
     EXPECT_EQ(feedback.displacement_m[0], transfer.step(command(asked.displacement_m[0])));
-    const Motion before = motion;
-    motion.displacement_m = transfer.displacement_m();
-    motion.velocity_m_per_s = (motion.displacement_m - before.displacement_m) / kPeriod_s;
-    motion.acceleration_m_per_s2 = (motion.velocity_m_per_s - before.velocity_m_per_s) / kPeriod_s;
+    const Motion motion = differences.moved_to(transfer.displacement_m());
     EXPECT_EQ(feedback.force_n[0], specimen.step({.motion = motion, .time_s = asked.time_s}));
   }
 }
