@@ -22,9 +22,12 @@ class BackwardDifferences {
   [[nodiscard]] Motion moved_to(double displacement_m) noexcept {
     const auto [x1, x2, x3] = before_m_;
     before_m_ = {displacement_m, x1, x2};
+    // By the steps, so that what stands still has no velocity at all: a power of it below one would be a force.
+    const double step_m = displacement_m - x1;
+    const double step_before_m = x1 - x2;
     return {.displacement_m = displacement_m,
-            .velocity_m_per_s = (3.0 * displacement_m - 4.0 * x1 + x2) / (2.0 * period_s_),
-            .acceleration_m_per_s2 = (2.0 * displacement_m - 5.0 * x1 + 4.0 * x2 - x3) / (period_s_ * period_s_)};
+            .velocity_m_per_s = (3.0 * step_m - step_before_m) / (2.0 * period_s_),
+            .acceleration_m_per_s2 = (2.0 * step_m - 3.0 * step_before_m + (x2 - x3)) / (period_s_ * period_s_)};
   }
   void reset() noexcept { before_m_ = {}; }
 

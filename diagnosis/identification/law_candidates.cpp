@@ -439,6 +439,10 @@ const LawCandidate& law_candidate(const EffectType& replacement) {
   std::abort();
 }
 
+bool are_the_same_law(const EffectType& one, const EffectType& other) noexcept {
+  return one.replacement != nullptr && other.replacement != nullptr && one.replacement->law == other.replacement->law;
+}
+
 std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter) {
   if (effect.formula != nullptr) {
     // The user gives it in SI; what a rig takes for an input is none of it.

@@ -35,6 +35,9 @@ struct LawCandidate {
 /// The entry of a replacement.
 [[nodiscard]] const LawCandidate& law_candidate(const EffectType& replacement);
 
+/// Whether both are laws, and of one name: one has parameters that the other has not.
+[[nodiscard]] bool are_the_same_law(const EffectType& one, const EffectType& other) noexcept;
+
 /// The search range of a parameter of an effect, of a law or of a formula; nothing: it is not searched.
 [[nodiscard]] std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter);
 

@@ -294,22 +294,22 @@ double median_energy(const Eigen::VectorXd& values, const std::vector<std::size_
   return median / std::pow(1.0 - 2.0 / (9.0 * draws), 3);
 }
 
-/// What a remainder has where the motion hardly moves [rms]; nothing where it moves all the time.
-std::optional<double> still_noise(const FitSegment& fit, const Eigen::VectorXd& remainder) {
+/// A remainder as the gap at an input, which outlives the signals.
+GapSignals signals_of(const FitSegment& fit, const Eigen::VectorXd& input_m, const Eigen::VectorXd& remainder) {
   const auto span_of = [](const Eigen::VectorXd& values) {
     return std::span{values.data(), static_cast<std::size_t>(values.size())};
   };
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
-  const Eigen::VectorXd place_m = places_m(fit);
-  return noise_while_still({period_s, span_of(place_m), span_of(fit.measured), span_of(remainder)});
+  return {period_s, span_of(input_m), span_of(fit.measured), span_of(remainder)};
 }
 
 /// Root mean square of the noise in a remainder. Noise is as large in every phase of the motion and all the time; a
 /// part of the specimen that the features do not hold is not. So the typical group of samples counts: by place and
 /// direction of the motion, and by time.
-double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, double independent) {
+/// @param place_m   see places_m().
+double noise_level(const FitSegment& fit, const Eigen::VectorXd& place_m, const Eigen::VectorXd& remainder,
+                   double independent) {
   constexpr std::size_t kGroups = tuning::kNoiseGroups;
-  const Eigen::VectorXd place_m = places_m(fit);
   const auto size = static_cast<std::size_t>(remainder.size());
   std::vector<std::size_t> order(size);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -327,16 +327,14 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& remainder, doub
   double level = std::min(
       {root_mean_square(remainder), std::sqrt(typical), tuning::kNoiseShareMax * root_mean_square(fit.measured)});
   // Where cycles repeat, what does not repeat is seen.
-  const auto span_of = [size](const Eigen::VectorXd& values) { return std::span{values.data(), size}; };
-  const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
-  if (const auto cycles = floor_of_cycles({period_s, span_of(place_m), span_of(fit.measured), span_of(remainder)}))
-    level = std::min(level, cycles->rms);
-  if (const auto fast = noise_by_spectrum(span_of(fit.measured), span_of(remainder), period_s)) {
+  const GapSignals signals = signals_of(fit, place_m, remainder);
+  if (const auto cycles = floor_of_cycles(signals)) level = std::min(level, cycles->rms);
+  if (const auto fast = noise_by_spectrum(signals.measured, signals.residual, signals.period_s)) {
     level = std::min(level, *fast);
   }
   // Noise is there at rest as well. Jumps of a friction that passes from place to place look like noise, and are not.
   const Eigen::VectorXd& told_m = fit.command_m.size() > 0 ? fit.command_m : place_m;
-  if (const auto rest = floor_at_rest({period_s, span_of(told_m), span_of(fit.measured), span_of(remainder)})) {
+  if (const auto rest = floor_at_rest(signals_of(fit, told_m, remainder))) {
     level = std::min(level, tuning::kNearFloor * rest->rms);
   }
   return level;
@@ -369,9 +367,13 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual, bool form_is_r
   const bool is_noise = !fit.segment.is_quasi_static && parts.repeatable < parts.total - parts.repeatable;
   const double independent = independent_samples(parts.remainder);
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
-  const std::optional<double> still = still_noise(fit, parts.remainder);
   double deviation = 0.0;
-  if (is_noise) deviation = noise_level(fit, parts.remainder, independent);
+  std::optional<double> still;
+  if (is_noise) {
+    const Eigen::VectorXd place_m = places_m(fit);
+    deviation = noise_level(fit, place_m, parts.remainder, independent);
+    still = noise_while_still(signals_of(fit, place_m, parts.remainder));
+  }
   // Noise does not wait for the motion, as what a form misses does; of slow noise a short stretch shows a part.
   if (!form_is_right && still) deviation = std::min(deviation, tuning::kNearFloor * *still);
   deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));

@@ -218,8 +218,9 @@ std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem
   return effects;
 }
 
-/// A law in the place of one that has all of its parameters, and as they are there; nothing where it lacks one.
+/// A law in the place of one that has all of its parameters and more, and as they are there; else nothing.
 std::optional<EffectSetting> simplified(const EffectType& simpler, const EffectSetting& law) {
+  if (law.type->replacement == nullptr || simpler.parameters.size() >= law.values.size()) return {};
   EffectSetting result{.type = &simpler, .values = {}};
   for (const EffectParameter& parameter : simpler.parameters) {
     const auto same = std::ranges::find(law.type->parameters, parameter.name, &EffectParameter::name);
@@ -343,8 +344,8 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
   }
   // Beside what was found the simpler law may do, which by itself took that up and may be refuted.
   for (const LawCandidate& law : law_candidates(problem.law_is_spring)) {
-    std::optional<EffectSetting> simpler = is_law ? simplified(law.type, effects[position]) : std::nullopt;
-    if (!simpler || law.type.parameters.size() == effects[position].values.size()) continue;
+    std::optional<EffectSetting> simpler = simplified(law.type, effects[position]);
+    if (!simpler) continue;
     std::vector<EffectSetting> start = without(effects, position);
     start.insert(start.begin(), *std::move(simpler));
     tried.push_back({&law.type, std::move(start), {}});

@@ -45,11 +45,6 @@ Growth with_its_numbers(const IdentificationProblem& problem, const Identificati
   return growth;
 }
 
-/// Laws of one name, of which one has a loop of its own.
-bool are_the_same_law(const EffectType& one, const EffectType& other) {
-  return one.replacement != nullptr && other.replacement != nullptr && one.replacement->law == other.replacement->law;
-}
-
 /// Whether this candidate is grown: the first one is, and one that scores nearly as well; where a sensor's effect
 /// leads, also one of a stage that leaves not much more; and the law that leads without its loop, which another effect
 /// may make. The same under another name is not.

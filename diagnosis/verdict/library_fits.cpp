@@ -383,7 +383,7 @@ void refine_laws(const IdentificationProblem& coarse, std::vector<Candidate>& ca
         fit_together(coarse, &law.type, {start_from(law, simpler->fit.effects.front())}, refit_effects);
     if (!found) continue;
     // The same law with more of its parameters is no further candidate.
-    if (law.type.replacement->law != law.refines->replacement->law) {
+    if (!are_the_same_law(law.type, *law.refines)) {
       candidates.push_back(std::move(*found));
     } else if (found->score > simpler->score) {
       *simpler = std::move(*found);

@@ -12,6 +12,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/bouc_wen_baber_noori.hpp"
 #include "mechanics/laws/elastic.hpp"
+#include "mechanics/laws/friction.hpp"
 #include "mechanics/laws/peak_oriented.hpp"
 #include "mechanics/laws/self_centring.hpp"
 #include "mechanics/laws/takeda.hpp"
@@ -37,6 +38,16 @@ Recording recording_of(Law& law) {
   return made_recording(made_motion_m, [&](double time_s) {
     const double force_n = law.trial(made_motion_m(time_s), 0.0);
     law.commit();
+    return force_n;
+  });
+}
+
+/// Likewise with a friction beside it.
+Recording recording_of(Law& law, Friction friction) {
+  return made_recording(made_motion_m, [&](double time_s) {
+    const double force_n = law.trial(made_motion_m(time_s), 0.0) + friction.trial(made_motion_m(time_s), 0.0);
+    law.commit();
+    friction.commit();
     return force_n;
   });
 }
@@ -168,17 +179,8 @@ TEST(LawForm, WallThatRocksSoftens) {
 /// A wall that rocks on a joint that rubs: the loop is that of the friction, and the law has none.
 TEST(LawForm, FrictionBesideAWallThatRocksIsACauseOfItsOwn) {
   constexpr double kFriction_n = 2e3;
-  constexpr double kPresliding_m = 3e-4;
   SelfCentring wall{{kMadeStiffness_n_per_m, kYield_n, -0.05, 0.0}};
-  double slip_m = 0.0;
-  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
-    const double displacement_m = made_motion_m(time_s);
-    const double stretch_m = std::clamp(displacement_m - slip_m, -kPresliding_m, kPresliding_m);
-    slip_m = displacement_m - stretch_m;
-    const double of_wall_n = wall.trial(displacement_m, 0.0);
-    wall.commit();
-    return of_wall_n + kFriction_n * stretch_m / kPresliding_m;
-  });
+  const Recording recording = recording_of(wall, Friction{{kFriction_n, 3e-4}});
   const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
   EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
   ASSERT_EQ(std::ranges::count_if(diagnosis.report.ranking, &report::RankedCause::is_cause), 2);
@@ -192,25 +194,10 @@ TEST(LawForm, FrictionBesideAWallThatRocksIsACauseOfItsOwn) {
 /// Two sliders in a row, the weaker on the flatter dish: a friction, and a law that yields beside it.
 TEST(LawForm, TwoSlidersInARowAreAFrictionAndALawThatYields) {
   Bilinear second{{kMadeStiffness_n_per_m, kYield_n, 0.15}};
-  constexpr double kFriction_n = 5e3;
-  constexpr double kPresliding_m = 2e-4;
-  double slip_m = 0.0;
-  const Recording recording = made_recording(made_motion_m, [&](double time_s) {
-    const double displacement_m = made_motion_m(time_s);
-    const double stretch_m = std::clamp(displacement_m - slip_m, -kPresliding_m, kPresliding_m);
-    slip_m = displacement_m - stretch_m;
-    const double of_second_n = second.trial(displacement_m, 0.0);
-    second.commit();
-    return of_second_n + kFriction_n * stretch_m / kPresliding_m;
-  });
+  const Recording recording = recording_of(second, Friction{{5e3, 2e-4}});
   const Diagnosis diagnosis = diagnosis_of(elastic_model(kMadeStiffness_n_per_m), recording);
   EXPECT_EQ(diagnosis.report.verdict, Verdict::named);
-  std::vector<std::string> causes;
-  for (const report::RankedCause& cause : diagnosis.report.ranking) {
-    if (cause.is_cause) causes.push_back(cause.effect);
-  }
-  std::ranges::sort(causes);
-  EXPECT_EQ(causes, (std::vector<std::string>{"coulomb_friction", "yielding"}));
+  EXPECT_EQ(causes_of(diagnosis), (std::vector<std::string>{"coulomb_friction", "yielding"}));
 }
 
 /// A brace that hardens with its path and is stronger in compression, the more the further it went. What bilinear and

@@ -67,7 +67,9 @@ Parameters deteriorating() {
 // OpenSees takes the energy of an excursion up to the step before zero force: with the 1000 steps per sample of these
 // files that leaves 2e-4 N, with 100 it leaves 1.3e-2 N. The digits of the files leave 5e-5 N.
 constexpr double kDeteriorationTolerance = 5e-9;  // measured 3.6e-9
-constexpr double kDigitsTolerance = 1.3e-9;       // 5e-5 N of the smallest peak, 39 kN; measured 1.28e-9
+constexpr double kDigitsTolerance = 1.2e-9;       // measured 9.3e-10
+// The curved law that softens has the smallest peak, 39 kN.
+constexpr double kSofteningTolerance = 1.3e-9;  // measured 1.28e-9
 // SelfCentering overshoots the lower line by up to one step: 10000 steps per sample leave 2.5e-5, 1000 ten times that.
 constexpr double kStepTolerance = 3e-5;  // measured 2.8e-5
 // SingleFPSimple2d tilts weight and friction with the dish: friction coefficient times slope, 0.08 * 0.05 m / 20 m.
@@ -118,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         material<SelfCentring>("self_centring", kSelfCentring, kStepTolerance),
         material<GiuffreMenegottoPinto>("giuffre_menegotto_pinto", kIsotropic, kDigitsTolerance),
         material<Bilinear>("softening_bilinear", kSoftening, kDigitsTolerance),
-        material<GiuffreMenegottoPinto>("softening_giuffre_menegotto_pinto", kCurvedSoftening, kDigitsTolerance),
+        material<GiuffreMenegottoPinto>("softening_giuffre_menegotto_pinto", kCurvedSoftening, kSofteningTolerance),
         material<FrictionPendulum>("friction_pendulum", kPendulum, kDishTolerance),
         material<Viscous>("viscous", {.damping_n_s_per_m = 2.0e5, .exponent = 0.5}, kDigitsTolerance)),
     [](const auto& instance) { return instance.param.name; });
