@@ -579,24 +579,59 @@ bool is_model_number(const IdentificationProblem& problem, const EffectType& typ
 
 namespace {
 
+/// The prediction beside a law other than the model's own.
+Eigen::VectorXd predict_with_law(const IdentificationProblem& problem, const FitSegment& segment,
+                                 std::span<const EffectSetting> added, std::function<std::unique_ptr<Law>()> make_law) {
+  SiteModel model = problem.model;
+  model.make_law = std::move(make_law);
+  return segment.average(predict(model, segment.segment, added));
+}
+
 Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem, const FitSegment& segment,
                                            std::span<const EffectSetting> added) {
   if (!segment.segment.touched_by(added)) return segment.baseline;
   if (segment.law == nullptr) return segment.average(predict(problem.model, segment.segment, added));
-  SiteModel remembered = problem.model;
-  remembered.make_law = [&] { return from_memory(problem.model.make_law, segment.law); };
-  return segment.average(predict(remembered, segment.segment, added));
+  return predict_with_law(problem, segment, added, [&] { return from_memory(problem.model.make_law, segment.law); });
 }
+
+/// Beside the free numbers that suit it.
+Eigen::VectorXd beside_numbers(const IdentificationProblem& problem, const FitSegment& segment,
+                               Eigen::VectorXd predicted) {
+  problem.progress.alive();
+  const Eigen::MatrixXd& directions = segment.numbers.directions;
+  if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));
+  return predicted;
+}
+
+bool is_replacement(const EffectSetting& effect) noexcept { return effect.type->replacement != nullptr; }
 
 }  // namespace
 
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                         std::span<const EffectSetting> added) {
-  problem.progress.alive();
-  Eigen::VectorXd predicted = predict_with_right_numbers(problem, segment, added);
-  const Eigen::MatrixXd& directions = segment.numbers.directions;
-  if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));
-  return predicted;
+  return beside_numbers(problem, segment, predict_with_right_numbers(problem, segment, added));
+}
+
+Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
+                        std::span<const EffectSetting> added, std::size_t position, LawMemories& memories) {
+  const auto replacement = std::ranges::find_if(added, is_replacement);
+  const bool is_of_use = replacement != added.end() && replacement->values[0] != 0.0 &&
+                         segment.segment.touched_by(*replacement->type) &&
+                         std::ranges::none_of(problem.model.effects, is_replacement);
+  if (!is_of_use) return predict(problem, segment, added);
+  std::vector<EffectSetting> others{added.begin(), added.end()};
+  others.erase(others.begin() + (replacement - added.begin()));
+  if (const auto memory = memories.find(*replacement, position)) {
+    return beside_numbers(problem, segment,
+                          predict_with_law(problem, segment, others, [&] { return remembered(*replacement, memory); }));
+  }
+  const auto memory = std::make_shared<LawMemory>();
+  Eigen::VectorXd predicted = predict_with_law(problem, segment, others, [&] {
+    *memory = {};  // the law may be made more than once, to ask for its stiffness
+    return remembering(*replacement, *memory);
+  });
+  memories.keep(*replacement, position, memory);
+  return beside_numbers(problem, segment, std::move(predicted));
 }
 
 double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,

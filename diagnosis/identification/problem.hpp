@@ -166,6 +166,10 @@ void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
 /// segment.
 [[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                                       std::span<const EffectSetting> added);
+/// Likewise, with what a replacement among them gave before. @param position   of the segment, in the memories.
+[[nodiscard]] Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
+                                      std::span<const EffectSetting> added, std::size_t position,
+                                      LawMemories& memories);
 
 /// What noise of the input does to that prediction [mean square]: that which another channel tells, or a draw of white
 /// noise, to first order. A damping makes much of it, and a lag takes it away: neither says anything about them. What

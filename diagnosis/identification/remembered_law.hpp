@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "mechanics/laws/law.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 
@@ -24,5 +28,35 @@ struct LawMemory {
 /// Steps are tried once and committed, as a stage does.
 [[nodiscard]] std::unique_ptr<Law> from_memory(std::function<std::unique_ptr<Law>()> make,
                                                std::shared_ptr<const LawMemory> memory);
+
+/// Likewise of the law of a replacement, whose size scales its force: what is stored is of unit size.
+[[nodiscard]] std::unique_ptr<Law> remembering(const EffectSetting& replacement, LawMemory& of_unit);
+[[nodiscard]] std::unique_ptr<Law> remembered(const EffectSetting& replacement,
+                                              std::shared_ptr<const LawMemory> of_unit);
+
+/// What replacements gave along the paths of segments, for all sizes of the same shape: those used last. For any
+/// threads.
+class LawMemories {
+ public:
+  explicit LawMemories(std::size_t most) : most_{most} {}
+
+  /// null: not there.
+  [[nodiscard]] std::shared_ptr<const LawMemory> find(const EffectSetting& replacement, std::size_t segment);
+  void keep(const EffectSetting& replacement, std::size_t segment, std::shared_ptr<LawMemory> memory);
+
+ private:
+  struct Entry {
+    EffectSetting unit;
+    std::size_t segment = 0;
+    std::shared_ptr<LawMemory> memory;
+    std::uint64_t last_use = 0;
+  };
+  [[nodiscard]] std::vector<Entry>::iterator entry_of(const EffectSetting& replacement, std::size_t segment);
+
+  std::mutex mutex_;
+  std::size_t most_;
+  std::vector<Entry> entries_;
+  std::uint64_t uses_ = 0;
+};
 
 }  // namespace hybridtest

@@ -249,7 +249,11 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& columns, const Eige
 }  // namespace
 
 VariableProjection::VariableProjection(const IdentificationProblem& problem, SearchPlan plan, bool with_nuisance)
-    : problem_{problem}, plan_{std::move(plan)}, first_rows_{0} {
+    : problem_{problem},
+      plan_{std::move(plan)},
+      first_rows_{0},
+      // The shape at a point, and those at its neighbours for the slopes.
+      laws_{problem.segments.size() * (plan_.searched.size() + 2)} {
   Eigen::Index nuisances = 0;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
     const FitSegment& fit = problem.segments[i];
@@ -290,7 +294,8 @@ Eigen::VectorXd VariableProjection::stacked(const std::vector<EffectSetting>& ef
   Eigen::VectorXd values(rows());
   for (std::size_t i = 0; i < touched_.size(); ++i) {
     const FitSegment& fit = problem_.segments[touched_[i]];
-    values.segment(first_rows_[i], fit.measured.size()) = fit.weight * predict(problem_, fit, effects);
+    values.segment(first_rows_[i], fit.measured.size()) =
+        fit.weight * predict(problem_, fit, effects, touched_[i], laws_);
   }
   return values;
 }

@@ -127,6 +127,7 @@ class VariableProjection {
   Eigen::VectorXd measured_;
   Eigen::VectorXd baseline_;
   Eigen::MatrixXd nuisance_;
+  mutable LawMemories laws_;
 };
 
 /// Places of the searched parameters with the least squared residual: from the best few of several

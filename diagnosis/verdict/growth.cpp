@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <typeinfo>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
+#include "diagnosis/verdict/typical_recording.hpp"
 
 namespace hybridtest {
 
@@ -48,58 +48,6 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   std::vector<EffectSetting> rest = effects;
   rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(position));
   return rest;
-}
-
-namespace {
-
-/// The median; the fallback if there are no values.
-double median(std::vector<double> values, double fallback) {
-  if (values.empty()) return fallback;
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
-/// Energy above the floor of each recording: of all its suspect segments, or of those that one effect acts on.
-std::map<std::size_t, double> excess_of_recordings(const IdentificationProblem& problem, const FitOutcome& outcome,
-                                                   const EffectType* effect = nullptr) {
-  std::map<std::size_t, GapEnergy> sums;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    const FitSegment& fit = problem.segments[i];
-    if (!fit.is_suspect || (effect != nullptr && !fit.segment.touched_by(*effect))) continue;
-    sums[fit.segment.recording] += gap_energy(fit, outcome.segments[i]);
-  }
-  std::map<std::size_t, double> excess;
-  for (const auto& [recording, sum] : sums) excess[recording] = sum.excess();
-  return excess;
-}
-
-/// What a further effect changes in a typical (median) recording, so that a single unusual recording does not
-/// decide.
-struct Typical {
-  double leaves = 1.0;    // share of the gap that remained before it
-  double explains = 0.0;  // of the whole gap where it acts
-};
-
-Typical typical(const IdentificationProblem& problem, const FitOutcome& by_numbers, const FitOutcome& without,
-                const Candidate& further) {
-  const FitOutcome& with = further.fit;
-  const std::map<std::size_t, double> total = excess_of_recordings(problem, by_numbers, further.type);
-  const std::map<std::size_t, double> before = excess_of_recordings(problem, without);
-  const std::map<std::size_t, double> left = excess_of_recordings(problem, with);
-  std::vector<double> leaves;
-  std::vector<double> explains;
-  for (const auto& [recording, energy] : total) {
-    if (before.at(recording) > 0.0) leaves.push_back(left.at(recording) / before.at(recording));
-    if (energy > 0.0) explains.push_back((before.at(recording) - left.at(recording)) / energy);
-  }
-  return {.leaves = median(std::move(leaves), 1.0), .explains = median(std::move(explains), 0.0)};
-}
-
-}  // namespace
-
-bool is_number(const IdentificationProblem& problem, const EffectType& type) {
-  return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
 }
 
 bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
@@ -153,6 +101,28 @@ bool makes_needless(const IdentificationProblem& problem, const FitOutcome& fit,
   return false;
 }
 
+/// The numbers of the model behind the effects that are there.
+std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem, std::vector<EffectSetting> effects) {
+  for (const EffectSetting& number : numbers_of(problem)) {
+    if (!holds(effects, number.type)) effects.push_back(number);
+  }
+  return effects;
+}
+
+/// Without one effect. Where that is decidedly worse, the numbers of the model, in whose doubt the effect stands, may
+/// be what it stood for.
+FitOutcome without_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position,
+                            FitOutcome rest) {
+  if (held_out_score(problem, fit) - held_out_score(problem, rest) < decisive_gain(problem)) return rest;
+  std::vector<EffectSetting> start = with_all_numbers(problem, without(fit.effects, position));
+  const bool has_law =
+      std::ranges::any_of(start, [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
+  if (has_law) std::erase_if(start, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
+  if (start.size() <= rest.effects.size()) return rest;
+  FitOutcome by_numbers = refit_effects(problem, start, false);
+  return held_out_score(problem, by_numbers) > held_out_score(problem, rest) ? by_numbers : rest;
+}
+
 }  // namespace
 
 void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit) {
@@ -163,7 +133,8 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
       const EffectType& type = *fit.effects[i].type;
       const bool is_needed =
           !is_needless(problem, fit, i) && earns_its_place(problem, by_numbers, rest, {.type = &type, .fit = fit});
-      if (!is_needed && !makes_needless(problem, fit, i, rest)) rests[i] = std::move(rest);
+      if (is_needed || makes_needless(problem, fit, i, rest)) return;
+      rests[i] = is_number(problem, type) ? std::move(rest) : without_needless(problem, fit, i, std::move(rest));
     });
     std::erase(rests, std::nullopt);
     if (rests.empty()) return;
@@ -208,14 +179,6 @@ std::optional<std::pair<const Candidate*, double>> first_that_earns(const Identi
   }
   scores[place] += expected(problem, *chosen->type);
   return std::pair{chosen, softmax(std::move(scores))[place]};
-}
-
-/// The numbers of the model behind the effects that are there.
-std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem, std::vector<EffectSetting> effects) {
-  for (const EffectSetting& number : numbers_of(problem)) {
-    if (!holds(effects, number.type)) effects.push_back(number);
-  }
-  return effects;
 }
 
 /// A law in the place of one that has all of its parameters and more, and as they are there; else nothing.

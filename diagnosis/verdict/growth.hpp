@@ -41,9 +41,6 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
 /// Effects without one of them.
 [[nodiscard]] std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position);
 
-/// A number of the model, or the damping that every model leaves out.
-[[nodiscard]] bool is_number(const IdentificationProblem& problem, const EffectType& type);
-
 /// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
 [[nodiscard]] bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share);
 

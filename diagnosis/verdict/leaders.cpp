@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {

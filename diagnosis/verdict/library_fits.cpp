@@ -13,6 +13,7 @@
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/refutations.hpp"
+#include "diagnosis/verdict/typical_recording.hpp"
 
 namespace hybridtest {
 
@@ -291,6 +292,10 @@ std::vector<std::size_t> longest_first(const IdentificationProblem& problem,
 }
 
 }  // namespace
+
+bool is_number(const IdentificationProblem& problem, const EffectType& type) {
+  return is_model_number(problem, type) || type.traits.number == ModelNumber::damping;
+}
 
 bool is_of_law(const EffectType& effect) noexcept {
   const ModelNumber number = effect.traits.number;
@@ -664,10 +669,17 @@ std::vector<Candidate> fit_beside(const IdentificationProblem& problem, const Id
         }
       },
       counted(progress.part(tuning::kPairsScreened, tuning::kPairsSearched), "effects searched together"));
-  // Candidates with a much lower score on the coarse record than one that may be the cause are dropped.
+  // Candidates with a much lower score on the coarse record than one that may be the cause are dropped, and those that
+  // are far from being accepted there: the lower rate changes little of what a candidate leaves.
   promising = best_first(std::move(together));
   const double best = best_to_believe(coarse, promising);
-  std::erase_if(promising, [best](const Candidate& candidate) { return candidate.score < best - tuning::kFarBehind; });
+  const FitOutcome without = refit_effects(coarse, base, false);
+  std::erase_if(promising, [&](const Candidate& candidate) {
+    if (candidate.score < best - tuning::kFarBehind) return true;
+    if (is_number(problem, *candidate.type))
+      return held_out_score(coarse, candidate.fit) < held_out_score(coarse, without);
+    return typical(coarse, without, without, candidate).leaves > 0.5 * (1.0 + tuning::kAnotherEffectLeaves);
+  });
   std::vector<std::optional<Candidate>> refitted(promising.size());
   fit_each(
       coarse.workers, promising.size(),

@@ -116,6 +116,9 @@ void score_again(const IdentificationProblem& problem, std::vector<Candidate>& c
 
 [[nodiscard]] bool is_of_sensor(const EffectType& effect) noexcept;
 
+/// A number of the model, or the damping that every model leaves out.
+[[nodiscard]] bool is_number(const IdentificationProblem& problem, const EffectType& type);
+
 /// A stiffness or strength of the specimen's law. A law in place of the specimen's own has its own.
 [[nodiscard]] bool is_of_law(const EffectType& effect) noexcept;
 

@@ -9,15 +9,36 @@
 namespace hybridtest {
 namespace {
 
-/// A step that crosses the whole loop 60 times; beyond, z has long reached its limit.
-constexpr int kPinchSubstepsMax = 8192;
+/// Half-loops over which z has long reached its limit, whatever it was; of a longer way only the end matters.
+constexpr double kHalfLoops = 120.0;
+/// Of one way. Where it pinches most, z takes 25 times as many substeps as elsewhere.
+constexpr int kPinchSubstepsMax = 1 << 15;
+/// Half-widths beyond which pinching is less than exp(-16) = 1e-7, and less than rounding.
+constexpr double kPinchedReach = 4.0;
+constexpr double kPinchedAtAll = 6.0;
+/// A share that is small enough for three terms of its series: the fourth is below 1e-12.
+constexpr double kSmallShare = 1e-3;
+
+/// exp(-x)
+double decay(double x) noexcept {
+  return std::abs(x) < kSmallShare ? 1.0 - x * (1.0 - x / 2.0 * (1.0 - x / 3.0)) : std::exp(-x);
+}
+
+/// (1 + x)^-m
+double inverse_power(double x, double m) noexcept {
+  if (x == 0.0) return 1.0;
+  if (std::abs(x) >= kSmallShare) return power_of(1.0 + x, -m);
+  return 1.0 - m * x * (1.0 - (m + 1.0) / 2.0 * x * (1.0 - (m + 2.0) / 3.0 * x));
+}
 
 }  // namespace
 
 BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters, double substeps_per_length)
     : parameters_{checked(parameters)}, substeps_per_length_{substeps_per_length} {
   expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
-  virgin_.length_m = length_m(at_energy(0.0));
+  Degraded& virgin = virgin_.degraded;
+  virgin.ultimate_m = power_of(parameters.ao / (parameters.gamma_per_m + parameters.beta_per_m), 1.0 / parameters.n);
+  virgin = at_energy(0.0, virgin);
   reset();
 }
 
@@ -32,34 +53,46 @@ double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s
     trial_.displacement_m = trial_.hysteretic_m = increment_m;
     return increment_m;
   }
-  const double length_m = committed_.length_m;
-  const double substeps = std::ceil(std::abs(increment_m) / length_m * substeps_per_length_);
-  const int count = static_cast<int>(std::clamp(substeps, 1.0, static_cast<double>(kPinchSubstepsMax)));
-  // Of a longer way only the end matters.
-  const double way_m = substeps > kPinchSubstepsMax
-                           ? std::copysign(length_m / substeps_per_length_ * kPinchSubstepsMax, increment_m)
-                           : increment_m;
-  for (int i = 0; i < count && way_m != 0.0; ++i) advance(trial_, way_m / count);
+  const double direction = increment_m < 0.0 ? -1.0 : 1.0;
+  const Degraded& now = trial_.degraded;
+  double left_m = std::min(std::abs(increment_m), kHalfLoops * now.softness * now.ultimate_m / parameters_.ao);
+  for (int i = 0; i < kPinchSubstepsMax && left_m > 0.0; ++i) {
+    const double most_m = substep_m(trial_, direction);
+    const double step_m = left_m <= most_m ? left_m : left_m / std::ceil(left_m / most_m);
+    advance(trial_, direction * step_m);
+    left_m -= step_m;
+  }
   trial_.displacement_m = displacement_m;
   return parameters_.stiffness_n_per_m *
          (parameters_.alpha * displacement_m + (1.0 - parameters_.alpha) * trial_.hysteretic_m);
 }
 
-BoucWenBaberNoori::Degraded BoucWenBaberNoori::at_energy(double energy_j) const noexcept {
+// From substep to substep the energy changes by little: powers and exponentials follow from what they were.
+BoucWenBaberNoori::Degraded BoucWenBaberNoori::at_energy(double energy_j, const Degraded& before) const noexcept {
   const Parameters& p = parameters_;
-  Degraded degraded;
+  Degraded degraded = before;
+  degraded.energy_j = energy_j;
   degraded.strength = 1.0 + p.strength_degradation_per_j * energy_j;
   degraded.softness = 1.0 + p.stiffness_degradation_per_j * energy_j;
-  degraded.ultimate_m = power_of(p.ao / (degraded.strength * (p.gamma_per_m + p.beta_per_m)), 1.0 / p.n);
+  degraded.ultimate_m *= inverse_power(degraded.strength / before.strength - 1.0, 1.0 / p.n);
   if (p.pinching == 0.0) return degraded;
-  degraded.pinching = p.pinching * -std::expm1(-p.pinching_rate_per_j * energy_j);
+  degraded.to_pinch *= decay(p.pinching_rate_per_j * (energy_j - before.energy_j));
+  degraded.pinching = p.pinching * (1.0 - degraded.to_pinch);
   degraded.width_m = (p.pinching_width_m + p.width_rate_m_per_j * energy_j) * (p.width_share + degraded.pinching);
   return degraded;
 }
 
-double BoucWenBaberNoori::length_m(const Degraded& degraded) const noexcept {
-  const double to_ultimate_m = degraded.ultimate_m / parameters_.ao;
-  return parameters_.pinching > 0.0 ? std::min(to_ultimate_m, degraded.width_m) : to_ultimate_m;
+double BoucWenBaberNoori::substep_m(const State& state, double direction) const noexcept {
+  const Degraded& degraded = state.degraded;
+  // Nowhere does z move faster.
+  const double way_over_z = degraded.softness / parameters_.ao;
+  const double usual_m = degraded.ultimate_m / substeps_per_length_;
+  if (parameters_.pinching == 0.0) return way_over_z * usual_m;
+  const double pinched_m = degraded.width_m / substeps_per_length_;
+  if (pinched_m >= usual_m) return way_over_z * usual_m;
+  const double level_m = parameters_.pinching_level * degraded.ultimate_m;
+  const double outside_m = std::abs(state.hysteretic_m * direction - level_m) - kPinchedReach * degraded.width_m;
+  return way_over_z * std::clamp(outside_m, pinched_m, usual_m);
 }
 
 double BoucWenBaberNoori::slope(double hysteretic_m, double direction, const Degraded& degraded) const noexcept {
@@ -68,6 +101,7 @@ double BoucWenBaberNoori::slope(double hysteretic_m, double direction, const Deg
   const double slope = (p.ao - degraded.strength * loading * power_of(std::abs(hysteretic_m), p.n)) / degraded.softness;
   if (p.pinching == 0.0) return slope;
   const double from_slip = (hysteretic_m * direction - p.pinching_level * degraded.ultimate_m) / degraded.width_m;
+  if (std::abs(from_slip) > kPinchedAtAll) return slope;
   return slope * (1.0 - degraded.pinching * std::exp(-from_slip * from_slip));
 }
 
@@ -78,14 +112,13 @@ void BoucWenBaberNoori::advance(State& state, double increment_m) const noexcept
   const double e = state.energy_j;
   const double half_m = 0.5 * increment_m;
   // Within a substep the energy that z gives back can be more than there is.
-  const Degraded degraded = at_energy(std::max(0.0, e + half_m * power * z));
-  const double k1 = slope(z, direction, degraded);
+  state.degraded = at_energy(std::max(0.0, e + half_m * power * z), state.degraded);
+  const double k1 = slope(z, direction, state.degraded);
   const double z2 = z + half_m * k1;
-  const double k2 = slope(z2, direction, degraded);
-  const double k3 = slope(z + increment_m * (2.0 * k2 - k1), direction, degraded);
+  const double k2 = slope(z2, direction, state.degraded);
+  const double k3 = slope(z + increment_m * (2.0 * k2 - k1), direction, state.degraded);
   state.hysteretic_m = z + increment_m / 6.0 * (k1 + 4.0 * k2 + k3);
   state.energy_j = std::max(0.0, e + increment_m / 6.0 * power * (z + 4.0 * z2 + state.hysteretic_m));
-  state.length_m = length_m(degraded);
 }
 
 }  // namespace hybridtest

@@ -16,8 +16,9 @@ namespace hybridtest {
 ///     zu^n = Ao / ((1 + d_nu e) (gamma + beta)),  the limit of |z|
 ///
 /// Rate-independent: between two exchanges x is taken to move one way, and the equation is integrated
-/// along that way by Kutta's method of third order in substeps of about a 64th of zu and of zeta2, each with
-/// what the energy in its middle leaves, to about 1e-5 of zu (at the kink where z changes sign).
+/// along that way in substeps over which z changes by a 64th of zu, and of zeta2 where it pinches, each with what the
+/// energy in its middle leaves, to about 2e-5 of zu (at the kink where z changes sign). Kutta's method of third order,
+/// and the midpoint rule for substeps of at most a quarter of that length.
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {
@@ -55,7 +56,7 @@ class BoucWenBaberNoori final : public Law {
     }
   };
 
-  /// @param substeps_per_length   of zu and of zeta2. The error grows with its square: about 1e-5 of zu with 64, 6e-4
+  /// @param substeps_per_length   of zu and of zeta2. The error falls with its square: about 2e-5 of zu with 64, 6e-4
   ///                              with 8, enough for a search.
   /// @throws ConfigError for values outside these ranges.
   explicit BoucWenBaberNoori(const Parameters& parameters, double substeps_per_length = 64.0);
@@ -67,24 +68,26 @@ class BoucWenBaberNoori final : public Law {
   [[nodiscard]] double initial_stiffness_n_per_m() const noexcept override;
 
  private:
+  /// What depends on the energy alone.
+  struct Degraded {
+    double energy_j = 0.0;
+    double strength = 1.0;    // 1 + d_nu e
+    double softness = 1.0;    // 1 + d_eta e
+    double ultimate_m = 0.0;  // zu
+    double to_pinch = 1.0;    // exp(-p e)
+    double pinching = 0.0;    // zeta1
+    double width_m = 0.0;     // zeta2
+  };
   struct State {
     double displacement_m = 0.0;
     double hysteretic_m = 0.0;  // z
     double energy_j = 0.0;      // e
-    double length_m = 0.0;      // over which the slope changed last
-  };
-  /// What depends on the energy alone.
-  struct Degraded {
-    double strength = 1.0;    // 1 + d_nu e
-    double softness = 1.0;    // 1 + d_eta e
-    double ultimate_m = 0.0;  // zu
-    double pinching = 0.0;    // zeta1
-    double width_m = 0.0;     // zeta2
+    Degraded degraded;          // in the middle of the last substep
   };
 
-  [[nodiscard]] Degraded at_energy(double energy_j) const noexcept;
-  /// Over which the slope changes.
-  [[nodiscard]] double length_m(const Degraded& degraded) const noexcept;
+  [[nodiscard]] Degraded at_energy(double energy_j, const Degraded& before) const noexcept;
+  /// Of the next substep at most, moving towards `direction` [m].
+  [[nodiscard]] double substep_m(const State& state, double direction) const noexcept;
   /// dz / dx, moving towards `direction` (-1 or 1).
   [[nodiscard]] double slope(double hysteretic_m, double direction, const Degraded& degraded) const noexcept;
   void advance(State& state, double increment_m) const noexcept;

@@ -41,6 +41,14 @@ TEST(CarryingOver, DropsCauseThatDoesNotReduceTheGap) {
   EXPECT_EQ(carried_over(Verdict::unknown, removing({-0.4, 0.2}, 0.015)), Verdict::unknown);
 }
 
+TEST(CarryingOver, DropsCauseThatActsWhereThereIsNoGap) {
+  for (const Verdict verdict : {Verdict::named, Verdict::set}) {
+    EXPECT_EQ(carried_over(verdict, removing({-0.2, -0.05}, 0.009)), Verdict::none)
+        << "certainly further from the model";
+    EXPECT_EQ(carried_over(verdict, removing({-0.2, 0.05}, 0.009)), verdict) << "control: not certainly";
+  }
+}
+
 TEST(CarryingOver, PartThatLeavesMostOfTheGapIsNone) {
   const Shrink likely_more = removing({-0.13, 0.715});
   EXPECT_EQ(carried_over(Verdict::set, likely_more), Verdict::set) << "not certainly";
