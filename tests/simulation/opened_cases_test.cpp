@@ -186,5 +186,15 @@ TEST(OpenedCase, StrokeThatEndsInACushionIsALimit) {
   EXPECT_THAT(causes_of_case(1672258536, 191), Contains("transfer_system.stroke_limit"));
 }
 
+/// A stiffness that is lost in the first large motion and one that is wrong differ in one block alone. The fading was
+/// dropped, as it may be none by its interval, and nothing stood in its place: `unknown`.
+TEST(OpenedCase, WrongStiffnessTakesThePlaceOfAFadingThatMayBeNone) {
+  EXPECT_THAT(causes_of_case(2103849539, 4), Contains("specimen.stiffness_error"));
+}
+
+/// Right but for noise, of which the held-out recording has as much as its floor says: a set stayed that took it
+/// certainly further from the model.
+TEST(OpenedCase, RightModelHasNoSet) { EXPECT_THAT(causes_of_case(2103849539, 145), IsEmpty()); }
+
 }  // namespace
 }  // namespace hybridtest

@@ -88,22 +88,6 @@ TEST(Exchange, LoadIsNotThreeNumbersOfTheLaw) {
               kLoadOverHeight_n_per_m, (1.0 - kSofter) * kMadeStiffness_n_per_m);
 }
 
-/// Nearly all stiffness is lost within the first cycles, and then stays: but for one block, a wrong stiffness does the
-/// same. The interval of the displacement over which it fades then holds that it does not fade at all.
-TEST(Exchange, WrongStiffnessTakesThePlaceOfAFadingThatMayBeNone) {
-  constexpr double kScale_m = 0.1;
-  double peak_m = 0.0;
-  const Diagnosis diagnosis = diagnosis_with(made_model(), [&](double t) {
-    peak_m = std::max(peak_m, std::abs(made_motion_m(t)));
-    return kMadeStiffness_n_per_m * std::exp(-peak_m / kScale_m) * made_motion_m(t) +
-           kDamping_n_s_per_m * made_velocity_m_per_s(t);
-  });
-  EXPECT_NE(diagnosis.report.verdict, Verdict::unknown);
-  EXPECT_THAT(causes_of(diagnosis), testing::Contains("viscous_damping"));
-  EXPECT_THAT(causes_of(diagnosis),
-              testing::Contains(testing::AnyOf("stiffness_error", "stiffness_degradation_with_peak")));
-}
-
 report::RankedCause cause_with(const char* effect, double share, bool is_indistinguishable) {
   report::RankedCause cause;
   cause.effect = effect;
