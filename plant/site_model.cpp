@@ -50,9 +50,7 @@ StageEffects effects_at(const SiteModel& model, EffectInterface interface, doubl
 }
 
 std::unique_ptr<Law> law_of(const SiteModel& model) {
-  const auto replaced =
-      std::ranges::find_if(model.effects.rbegin(), model.effects.rend(),
-                           [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
+  const auto replaced = std::ranges::find_if(model.effects.rbegin(), model.effects.rend(), replaces_law);
   std::unique_ptr<Law> law;
   if (replaced != model.effects.rend()) {
     law = replaced->type->replacement->make(replaced->values);

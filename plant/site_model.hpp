@@ -21,6 +21,11 @@ struct EffectSetting {
   std::vector<double> values;  // one per parameter, in their order
 };
 
+/// Whether it puts another law in the place of the specimen's own.
+[[nodiscard]] inline bool replaces_law(const EffectSetting& effect) noexcept {
+  return effect.type->replacement != nullptr;
+}
+
 struct SensorNoise {
   double displacement_noise_m = 0.0;  // [m] standard deviation, not negative
   double force_noise_n = 0.0;         // [N] standard deviation, not negative

@@ -595,43 +595,39 @@ Eigen::VectorXd predict_with_right_numbers(const IdentificationProblem& problem,
 }
 
 /// Beside the free numbers that suit it.
-Eigen::VectorXd beside_numbers(const IdentificationProblem& problem, const FitSegment& segment,
-                               Eigen::VectorXd predicted) {
-  problem.progress.alive();
+Eigen::VectorXd beside_numbers(const FitSegment& segment, Eigen::VectorXd predicted) {
   const Eigen::MatrixXd& directions = segment.numbers.directions;
   if (directions.cols() > 0) predicted -= directions * (directions.transpose() * (predicted - segment.baseline));
   return predicted;
 }
 
-bool is_replacement(const EffectSetting& effect) noexcept { return effect.type->replacement != nullptr; }
-
 }  // namespace
 
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                         std::span<const EffectSetting> added) {
-  return beside_numbers(problem, segment, predict_with_right_numbers(problem, segment, added));
+  problem.progress.alive();
+  return beside_numbers(segment, predict_with_right_numbers(problem, segment, added));
 }
 
 Eigen::VectorXd predict(const IdentificationProblem& problem, const FitSegment& segment,
                         std::span<const EffectSetting> added, std::size_t position, LawMemories& memories) {
-  const auto replacement = std::ranges::find_if(added, is_replacement);
+  const auto replacement = std::ranges::find_if(added, replaces_law);
   const bool is_of_use = replacement != added.end() && replacement->values[0] != 0.0 &&
                          segment.segment.touched_by(*replacement->type) &&
-                         std::ranges::none_of(problem.model.effects, is_replacement);
+                         std::ranges::none_of(problem.model.effects, replaces_law);
   if (!is_of_use) return predict(problem, segment, added);
   std::vector<EffectSetting> others{added.begin(), added.end()};
   others.erase(others.begin() + (replacement - added.begin()));
-  if (const auto memory = memories.find(*replacement, position)) {
-    return beside_numbers(problem, segment,
-                          predict_with_law(problem, segment, others, [&] { return remembered(*replacement, memory); }));
-  }
-  const auto memory = std::make_shared<LawMemory>();
+  problem.progress.alive();
+  const std::shared_ptr<const LawMemory> known = memories.find(*replacement, position);
+  const auto made = std::make_shared<LawMemory>();
   Eigen::VectorXd predicted = predict_with_law(problem, segment, others, [&] {
-    *memory = {};  // the law may be made more than once, to ask for its stiffness
-    return remembering(*replacement, *memory);
+    if (known != nullptr) return remembered(*replacement, known);
+    *made = {};  // the law may be made more than once, to ask for its stiffness
+    return remembering(*replacement, *made);
   });
-  memories.keep(*replacement, position, memory);
-  return beside_numbers(problem, segment, std::move(predicted));
+  if (known == nullptr) memories.keep(*replacement, position, made);
+  return beside_numbers(segment, std::move(predicted));
 }
 
 double noise_of_input(const IdentificationProblem& problem, const FitSegment& segment,

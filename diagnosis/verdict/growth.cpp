@@ -101,10 +101,11 @@ bool makes_needless(const IdentificationProblem& problem, const FitOutcome& fit,
   return false;
 }
 
-/// The numbers of the model behind the effects that are there.
+/// The numbers of the model behind the effects that are there; of its law only where no other one is in its place.
 std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem, std::vector<EffectSetting> effects) {
+  const bool has_other_law = std::ranges::any_of(effects, replaces_law);
   for (const EffectSetting& number : numbers_of(problem)) {
-    if (!holds(effects, number.type)) effects.push_back(number);
+    if (!holds(effects, number.type) && !(has_other_law && is_of_law(*number.type))) effects.push_back(number);
   }
   return effects;
 }
@@ -114,11 +115,8 @@ std::vector<EffectSetting> with_all_numbers(const IdentificationProblem& problem
 FitOutcome without_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position,
                             FitOutcome rest) {
   if (held_out_score(problem, fit) - held_out_score(problem, rest) < decisive_gain(problem)) return rest;
-  std::vector<EffectSetting> start = with_all_numbers(problem, without(fit.effects, position));
-  const bool has_law =
-      std::ranges::any_of(start, [](const EffectSetting& effect) { return effect.type->replacement != nullptr; });
-  if (has_law) std::erase_if(start, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
-  if (start.size() <= rest.effects.size()) return rest;
+  const std::vector<EffectSetting> start = with_all_numbers(problem, without(fit.effects, position));
+  if (start.size() == rest.effects.size()) return rest;
   FitOutcome by_numbers = refit_effects(problem, start, false);
   return held_out_score(problem, by_numbers) > held_out_score(problem, rest) ? by_numbers : rest;
 }
@@ -200,9 +198,8 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
                                                      const std::vector<EffectSetting>& effects, std::size_t position,
                                                      const Candidate& candidate) {
   const auto is_found = [&](const EffectType* type) { return holds(effects, type); };
-  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
   std::vector<EffectSetting> rest = without(effects, position);
-  const bool law_stays = std::ranges::any_of(rest, is_law);
+  const bool law_stays = std::ranges::any_of(rest, replaces_law);
   const bool is_another_law = candidate.type->replacement != nullptr;
   if (is_found(candidate.type) || (law_stays && (is_another_law || is_of_law(*candidate.type)))) return {};
   if (is_another_law) std::erase_if(rest, [](const EffectSetting& effect) { return is_of_law(*effect.type); });
@@ -210,7 +207,7 @@ std::vector<std::vector<EffectSetting>> with_instead(const IdentificationProblem
   std::erase_if(instead, [&](const EffectSetting& e) { return e.type != candidate.type && is_found(e.type); });
   instead.insert(instead.end(), rest.begin(), rest.end());
   std::vector<std::vector<EffectSetting>> starts{instead};
-  if (is_law(effects[position]) && !is_another_law) {
+  if (replaces_law(effects[position]) && !is_another_law) {
     std::vector<EffectSetting> with_numbers = with_all_numbers(problem, instead);
     if (with_numbers.size() > instead.size()) starts.push_back(std::move(with_numbers));
   }
@@ -277,7 +274,7 @@ struct Instead {
 /// effect beside which they are slightly off is decidedly better.
 void exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
-  const bool is_law = effects[position].type->replacement != nullptr;
+  const bool is_law = replaces_law(effects[position]);
   const double own = score_of(problem, growth.fit) + expected(problem, *effects[position].type);
   std::vector<double> scores{own};
   std::optional<Candidate> best;

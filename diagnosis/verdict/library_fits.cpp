@@ -148,8 +148,7 @@ double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit
 /// that yields and hardens, and that is its name; or softens, where a negative spring takes a tenth of the friction and
 /// more. Beside another law it has none.
 bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
-  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
-  if (!problem.law_is_spring || std::ranges::any_of(fit.effects, is_law)) return false;
+  if (!problem.law_is_spring || std::ranges::any_of(fit.effects, replaces_law)) return false;
   return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
     const std::ptrdiff_t position = &effect - fit.effects.data();
     if (slides_as_in_model(problem, fit, static_cast<std::size_t>(position))) return false;

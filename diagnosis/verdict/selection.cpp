@@ -118,11 +118,10 @@ void put_in_place(Candidate law, double probability, Selection& selection, Growt
 
 /// Whether a law was found and another effect of the specimen beside it.
 bool is_law_with_another(const FitOutcome& fit) {
-  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
   const auto is_another = [&](const EffectSetting& effect) {
-    return !is_law(effect) && effect.type->interface == EffectInterface::specimen;
+    return !replaces_law(effect) && effect.type->interface == EffectInterface::specimen;
   };
-  return std::ranges::any_of(fit.effects, is_law) && std::ranges::any_of(fit.effects, is_another);
+  return std::ranges::any_of(fit.effects, replaces_law) && std::ranges::any_of(fit.effects, is_another);
 }
 
 /// Where what was found leaves something to explain: the law of a special device instead, if it is decidedly better by
@@ -176,13 +175,12 @@ void try_fluid_damper(const IdentificationProblem& problem, const Identification
 /// Whether effects beside the model's law make another one of it: they go with the amplitude, or with what the specimen
 /// went through.
 bool bends_the_law(const IdentificationProblem& problem, const FitOutcome& fit) {
-  const auto is_law = [](const EffectSetting& effect) { return effect.type->replacement != nullptr; };
   const auto bends = [&](const EffectSetting& effect) {
     const EffectFamily family = effect.type->traits.family;
     const bool is_of_history = family == EffectFamily::amplitude || family == EffectFamily::degradation;
     return effect.type->interface == EffectInterface::specimen && is_of_history && !is_number(problem, *effect.type);
   };
-  return std::ranges::none_of(fit.effects, is_law) && std::ranges::any_of(fit.effects, bends);
+  return std::ranges::none_of(fit.effects, replaces_law) && std::ranges::any_of(fit.effects, bends);
 }
 
 /// Where what was found leaves more than a part allows: the best law of those that leave a part at most, and predict

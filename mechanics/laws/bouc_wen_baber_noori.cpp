@@ -9,36 +9,21 @@
 namespace hybridtest {
 namespace {
 
-/// Half-loops over which z has long reached its limit, whatever it was; of a longer way only the end matters.
-constexpr double kHalfLoops = 120.0;
-/// Of one way. Where it pinches most, z takes 25 times as many substeps as elsewhere.
+/// Way in units of zu after which z has long reached its limit, whatever it was: of a longer one only the end matters.
+constexpr double kLongWay = 128.0;
+/// Of one way: where it hardly pinches, a long one takes kLongWay times substeps_per_length.
 constexpr int kPinchSubstepsMax = 1 << 15;
-/// Half-widths beyond which pinching is less than exp(-16) = 1e-7, and less than rounding.
+/// Distance from the middle of the pinched range over zeta2 beyond which pinching is less than exp(-16) = 1e-7, and
+/// less than rounding.
 constexpr double kPinchedReach = 4.0;
 constexpr double kPinchedAtAll = 6.0;
-/// A share that is small enough for three terms of its series: the fourth is below 1e-12.
-constexpr double kSmallShare = 1e-3;
-
-/// exp(-x)
-double decay(double x) noexcept {
-  return std::abs(x) < kSmallShare ? 1.0 - x * (1.0 - x / 2.0 * (1.0 - x / 3.0)) : std::exp(-x);
-}
-
-/// (1 + x)^-m
-double inverse_power(double x, double m) noexcept {
-  if (x == 0.0) return 1.0;
-  if (std::abs(x) >= kSmallShare) return power_of(1.0 + x, -m);
-  return 1.0 - m * x * (1.0 - (m + 1.0) / 2.0 * x * (1.0 - (m + 2.0) / 3.0 * x));
-}
 
 }  // namespace
 
 BoucWenBaberNoori::BoucWenBaberNoori(const Parameters& parameters, double substeps_per_length)
     : parameters_{checked(parameters)}, substeps_per_length_{substeps_per_length} {
   expect_in_range("gamma_per_m", parameters.gamma_per_m, {.low = -parameters.beta_per_m, .low_open = true});
-  Degraded& virgin = virgin_.degraded;
-  virgin.ultimate_m = power_of(parameters.ao / (parameters.gamma_per_m + parameters.beta_per_m), 1.0 / parameters.n);
-  virgin = at_energy(0.0, virgin);
+  virgin_.degraded = at_energy(0.0);
   reset();
 }
 
@@ -55,7 +40,7 @@ double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s
   }
   const double direction = increment_m < 0.0 ? -1.0 : 1.0;
   const Degraded& now = trial_.degraded;
-  double left_m = std::min(std::abs(increment_m), kHalfLoops * now.softness * now.ultimate_m / parameters_.ao);
+  double left_m = std::min(std::abs(increment_m), kLongWay * now.softness * now.ultimate_m / parameters_.ao);
   for (int i = 0; i < kPinchSubstepsMax && left_m > 0.0; ++i) {
     const double most_m = substep_m(trial_, direction);
     const double step_m = left_m <= most_m ? left_m : left_m / std::ceil(left_m / most_m);
@@ -67,17 +52,14 @@ double BoucWenBaberNoori::trial(double displacement_m, double /*velocity_m_per_s
          (parameters_.alpha * displacement_m + (1.0 - parameters_.alpha) * trial_.hysteretic_m);
 }
 
-// From substep to substep the energy changes by little: powers and exponentials follow from what they were.
-BoucWenBaberNoori::Degraded BoucWenBaberNoori::at_energy(double energy_j, const Degraded& before) const noexcept {
+BoucWenBaberNoori::Degraded BoucWenBaberNoori::at_energy(double energy_j) const noexcept {
   const Parameters& p = parameters_;
-  Degraded degraded = before;
-  degraded.energy_j = energy_j;
+  Degraded degraded;
   degraded.strength = 1.0 + p.strength_degradation_per_j * energy_j;
   degraded.softness = 1.0 + p.stiffness_degradation_per_j * energy_j;
-  degraded.ultimate_m *= inverse_power(degraded.strength / before.strength - 1.0, 1.0 / p.n);
+  degraded.ultimate_m = power_of(p.ao / (degraded.strength * (p.gamma_per_m + p.beta_per_m)), 1.0 / p.n);
   if (p.pinching == 0.0) return degraded;
-  degraded.to_pinch *= decay(p.pinching_rate_per_j * (energy_j - before.energy_j));
-  degraded.pinching = p.pinching * (1.0 - degraded.to_pinch);
+  degraded.pinching = p.pinching * -std::expm1(-p.pinching_rate_per_j * energy_j);
   degraded.width_m = (p.pinching_width_m + p.width_rate_m_per_j * energy_j) * (p.width_share + degraded.pinching);
   return degraded;
 }
@@ -112,7 +94,7 @@ void BoucWenBaberNoori::advance(State& state, double increment_m) const noexcept
   const double e = state.energy_j;
   const double half_m = 0.5 * increment_m;
   // Within a substep the energy that z gives back can be more than there is.
-  state.degraded = at_energy(std::max(0.0, e + half_m * power * z), state.degraded);
+  state.degraded = at_energy(std::max(0.0, e + half_m * power * z));
   const double k1 = slope(z, direction, state.degraded);
   const double z2 = z + half_m * k1;
   const double k2 = slope(z2, direction, state.degraded);

@@ -16,9 +16,9 @@ namespace hybridtest {
 ///     zu^n = Ao / ((1 + d_nu e) (gamma + beta)),  the limit of |z|
 ///
 /// Rate-independent: between two exchanges x is taken to move one way, and the equation is integrated
-/// along that way in substeps over which z changes by a 64th of zu, and of zeta2 where it pinches, each with what the
-/// energy in its middle leaves, to about 2e-5 of zu (at the kink where z changes sign). Kutta's method of third order,
-/// and the midpoint rule for substeps of at most a quarter of that length.
+/// along that way by Kutta's method of third order, in substeps over which z changes by a 64th of zu, and of zeta2 near
+/// the pinched range, each with what the energy in its middle leaves, to about 2e-5 of zu (at the kink where z changes
+/// sign).
 class BoucWenBaberNoori final : public Law {
  public:
   struct Parameters {
@@ -70,11 +70,9 @@ class BoucWenBaberNoori final : public Law {
  private:
   /// What depends on the energy alone.
   struct Degraded {
-    double energy_j = 0.0;
     double strength = 1.0;    // 1 + d_nu e
     double softness = 1.0;    // 1 + d_eta e
     double ultimate_m = 0.0;  // zu
-    double to_pinch = 1.0;    // exp(-p e)
     double pinching = 0.0;    // zeta1
     double width_m = 0.0;     // zeta2
   };
@@ -85,7 +83,7 @@ class BoucWenBaberNoori final : public Law {
     Degraded degraded;          // in the middle of the last substep
   };
 
-  [[nodiscard]] Degraded at_energy(double energy_j, const Degraded& before) const noexcept;
+  [[nodiscard]] Degraded at_energy(double energy_j) const noexcept;
   /// Of the next substep at most, moving towards `direction` [m].
   [[nodiscard]] double substep_m(const State& state, double direction) const noexcept;
   /// dz / dx, moving towards `direction` (-1 or 1).
