@@ -91,7 +91,8 @@ std::vector<RankedCause> rank(const Stage& stage, double part) {
       cause.lost_stiffness = stiffness_lost_in(stage.problem, selection.chosen.effects[i]);
       cause.share = part * selection.shares[i];
       cause.probability = tuning::kAnswerRight * selection.chosen_probabilities[i];
-      cause.is_indistinguishable = is_set && std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
+      cause.is_indistinguishable = judgement.indistinguishable.size() > 1 &&
+                                   std::ranges::any_of(judgement.indistinguishable, [&](std::size_t member) {
                                      return selection.library[member].type == selection.chosen.effects[i].type;
                                    });
       if (is_in_doubt(selection.chosen.effects, judgement, i)) {
@@ -458,6 +459,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   add_input_notes(problem, recordings, report.notes);
   add_notes(diagnosis, segments);
   add_findings(findings, report);
+  add_findings(check_sampling(model, diagnosis.causes, recordings, settings.dof), report);
   return diagnosis;
 }
 

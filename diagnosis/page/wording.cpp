@@ -120,13 +120,13 @@ std::string remainder(const DiagnosisReport& report) {
                      shrink.nrmse_after / shrink.floor_nrmse);
 }
 
-/// Of a smaller cause, which effect it is.
+/// Of a cause that is named or told in part, which effect it is.
 std::string in_doubt(const DiagnosisReport& report) {
   std::vector<const RankedCause*> alike;
   for (const RankedCause& cause : report.ranking) {
     if (cause.is_indistinguishable) alike.push_back(&cause);
   }
-  if (report.verdict != Verdict::named || alike.size() < 2) return {};
+  if (report.verdict == Verdict::set || alike.size() < 2) return {};
   return fmt::format(" These recordings cannot distinguish {}.", as_alternatives(alike, in_words(alike)));
 }
 

@@ -295,15 +295,19 @@ double samples_per_cycle_of_fast_part(std::span<const double> values, double per
   return std::numeric_limits<double>::infinity();
 }
 
-std::optional<Words> sampled_too_slowly(const Followed& pair, bool needs_derivatives) {
-  if (pair.is_quasi_static || pair.values.size() < tuning::kLocaliseSamplesMin) return {};
-  const double samples = samples_per_cycle_of_fast_part(pair.values, pair.period_s);
-  const double enough = needs_derivatives ? tuning::kSamplesPerCycle : tuning::kSamplesPerCycleMin;
+/// @param needs_derivatives   who needs derivatives of the motion; empty: nobody does.
+std::optional<Words> sampled_too_slowly(std::span<const double> values, double period_s,
+                                        std::string_view needs_derivatives) {
+  if (values.size() < tuning::kLocaliseSamplesMin) return {};
+  const double samples = samples_per_cycle_of_fast_part(values, period_s);
+  const double enough = needs_derivatives.empty() ? tuning::kSamplesPerCycleMin : tuning::kSamplesPerCycle;
   if (samples >= enough) return {};
+  const std::string why =
+      needs_derivatives.empty() ? "" : fmt::format(", and {} derivatives of the motion", needs_derivatives);
   return Words{fmt::format("is sampled too slowly: a tenth of its energy has fewer than {:.1f} samples per cycle{}",
-                           samples, needs_derivatives ? ", and the model needs derivatives of the motion" : ""),
+                           samples, why),
                fmt::format("Record at {:.0f} Hz or more; with this recording, damping and mass come out wrong.",
-                           std::ceil(tuning::kSamplesPerCycle / (samples * pair.period_s)))};
+                           std::ceil(tuning::kSamplesPerCycle / (samples * period_s)))};
 }
 
 /// A shift of the predicted force by less than a sample that explains most of the gap.
@@ -320,9 +324,9 @@ std::optional<Words> shifted_within_a_sample(const Followed& pair) {
                "Sample both channels at once, or several times faster."};
 }
 
-/// Whether a force of the model follows velocity or acceleration.
-bool needs_derivatives(const SiteModel& model) {
-  return std::ranges::any_of(model.effects,
+/// Whether a force of them follows velocity or acceleration.
+bool needs_derivatives(std::span<const EffectSetting> effects) {
+  return std::ranges::any_of(effects,
                              [](const EffectSetting& effect) { return effect.type->traits.follows_derivatives; });
 }
 
@@ -381,7 +385,10 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
     return add_to(name_of(segment.interface), words, is_unusable);
   };
   if (add(frozen(pair), true) || add(reversed(pair), true) || add(unrelated(pair), true)) return;
-  add(sampled_too_slowly(pair, pair.is_force() && needs_derivatives(model)), false);
+  if (!pair.is_quasi_static) {
+    const bool is_of_derivatives = pair.is_force() && needs_derivatives(model.effects);
+    add(sampled_too_slowly(pair.values, pair.period_s, is_of_derivatives ? "the model needs" : ""), false);
+  }
   add(shifted_within_a_sample(pair), false);
 }
 
@@ -402,6 +409,27 @@ std::vector<ChannelFinding> check_channels(const SiteModel& model, std::span<con
     // A force is judged by the measured displacement.
     if (is_unusable(findings, i, Channel::measured_displacement)) continue;
     check_channel_of(model, recordings, i, dof, Channel::measured_force, findings);
+  }
+  return findings;
+}
+
+std::vector<ChannelFinding> check_sampling(const SiteModel& model, std::span<const EffectSetting> causes,
+                                           std::span<const Recording> recordings, std::size_t dof) {
+  std::vector<ChannelFinding> findings;
+  if (needs_derivatives(model.effects) || !needs_derivatives(causes)) return findings;
+  constexpr Channel kForce = Channel::measured_force;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Recording& recording = recordings[i];
+    if (recording.is_quasi_static || recording.dofs.size() <= dof) continue;
+    const std::vector<double>& force_n = recording.dofs[dof].of(kForce);
+    const auto words = sampled_too_slowly(force_n, recording.sample_period_s, "the causes need");
+    if (!words) continue;
+    findings.push_back({.said = {.recording = recording.file,
+                                 .interface = std::string{name_of(EffectInterface::specimen)},
+                                 .what = std::string{column_name(kForce)} + " " + words->what,
+                                 .what_to_do = words->what_to_do},
+                        .recording = i,
+                        .channel = kForce});
   }
   return findings;
 }

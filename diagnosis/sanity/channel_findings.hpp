@@ -34,6 +34,12 @@ struct ChannelFinding {
 [[nodiscard]] std::vector<ChannelFinding> check_channels(const SiteModel& model, std::span<const Recording> recordings,
                                                          std::size_t dof);
 
+/// What is to be said of the sampling once the causes are known: a recording whose force has fewer than ten samples
+/// per cycle in a tenth of its energy, where a cause follows velocity or acceleration and nothing in the model does
+/// (check_channels() says it of such a model).
+[[nodiscard]] std::vector<ChannelFinding> check_sampling(const SiteModel& model, std::span<const EffectSetting> causes,
+                                                         std::span<const Recording> recordings, std::size_t dof);
+
 /// The recordings without their unusable channels; `recordings` itself where there are none.
 /// @param copy   holds them.
 [[nodiscard]] std::span<const Recording> usable_part(std::span<const Recording> recordings, std::size_t dof,

@@ -8,6 +8,7 @@
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/held_out_loss.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 #include "diagnosis/verdict/typical_recording.hpp"
 
@@ -288,6 +289,9 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     }
     scores.push_back(score);
     if (score <= highest) return;
+    // What is no simpler has to predict better for certain.
+    const bool is_simpler = instead->fit.effects.size() < effects.size();
+    if (!is_simpler && !loss_by(problem, growth.fit, instead->fit).is_certain()) return;
     highest = score;
     best = std::move(instead);
   };

@@ -6,6 +6,7 @@
 
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/held_out_loss.hpp"
 
 namespace hybridtest {
 
@@ -194,7 +195,18 @@ Growth best_start(const IdentificationProblem& problem, const IdentificationProb
   }
   const auto by_score = [&](const auto& leader) { return score_of(problem, leader.second.fit); };
   auto best = std::ranges::max_element(leaders, {}, by_score);
-  const auto is_alike = [&](const auto& leader) { return are_alike(best->second.fit, leader.second.fit); };
+  const auto highest = best;
+  const auto is_told = [&](const auto& leader) {
+    return loss_by(problem, leader.second.fit, highest->second.fit).is_certain();
+  };
+  // Of those that may predict as well, the simplest.
+  for (auto leader = leaders.begin(); leader != leaders.end(); ++leader) {
+    const bool is_simpler = leader->second.fit.effects.size() < best->second.fit.effects.size();
+    if (is_simpler && !is_told(*leader)) best = leader;
+  }
+  const auto is_alike = [&](const auto& leader) {
+    return are_alike(best->second.fit, leader.second.fit) || !is_told(leader);
+  };
   if (is_of_sensor(*selection.library[best->first].type)) {
     const auto of_stage = std::ranges::find_if(leaders, [&](const auto& leader) {
       return !is_of_sensor(*selection.library[leader.first].type) && is_alike(leader);

@@ -481,7 +481,12 @@ bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& 
 bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   const Suspect suspect{problem, fit, fit.effects[position], fit.parameters[position]};
   if (place_of(problem.model, *suspect.effect.type) != nullptr) return false;
-  const auto half_of = [&](std::size_t i) { return half_interval_95(suspect.estimates[i]); };
+  // The first stiffness of a law may be anything where cracks close it at once: the law is there all the same.
+  const bool is_a_law = replaces_law(suspect.effect);
+  const auto half_of = [&](std::size_t i) {
+    const double held = is_a_law ? doubt_with_shape_held(suspect.covariance(), i) : 1.0;
+    return held * half_interval_95(suspect.estimates[i]);
+  };
   return absent_in_interval(suspect, half_of) != nullptr || may_be_endless(suspect);
 }
 

@@ -15,7 +15,8 @@ namespace hybridtest {
 [[nodiscard]] bool is_needless(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 
 /// Whether the interval that is reported (95 %) of what an effect is proportional to, or of its only parameter, holds
-/// the value at which it is absent, whatever its fit gains. Never of an effect that the model has.
+/// the value at which it is absent, whatever its fit gains; of a law, while its shape is held. Never of an effect that
+/// the model has.
 /// @param position   in the fit's effects.
 [[nodiscard]] bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
 

@@ -8,6 +8,7 @@
 #include "core/config_error.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/growth.hpp"
+#include "diagnosis/verdict/held_out_loss.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
@@ -125,37 +126,6 @@ IdentificationProblem with_numbers_beside(IdentificationProblem problem, const P
   return problem;
 }
 
-/// By how much the held-out log density is larger with one fit than with another, and the standard error of that from
-/// the differences between blocks [nats].
-struct Loss {
-  double nats = 0.0;
-  double standard_error = 0.0;
-};
-
-Loss loss_by(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen) {
-  Loss loss{.nats = held_out_score(problem, chosen) - held_out_score(problem, rival)};
-  double variance = 0.0;
-  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    const FitSegment& fit = problem.segments[i];
-    const std::vector<double>& with_rival = rival.segments[i].held_out_squares;
-    const std::vector<double>& with_chosen = chosen.segments[i].held_out_squares;
-    if (with_rival.size() != with_chosen.size() || with_chosen.size() < 2) continue;
-    const auto blocks = static_cast<double>(with_chosen.size());
-    const double slope = 0.5 * fit.independent / static_cast<double>(fit.measured.size()) /
-                         (chosen.segments[i].held_out_mean_square(fit) + 1.0 / (fit.weight * fit.weight));
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t block = 0; block < with_chosen.size(); ++block) {
-      const double difference = slope * (with_rival[block] - with_chosen[block]);
-      sum += difference;
-      squares += difference * difference;
-    }
-    variance += blocks / (blocks - 1.0) * std::max(0.0, squares - sum * sum / blocks);
-  }
-  loss.standard_error = std::sqrt(variance);
-  return loss;
-}
-
 /// The numbers of the model beside a rival and the other causes change no more than those beside the effect; or else
 /// they are slightly off only, or as they are beside the effect, and change less than the rival does.
 bool are_slight(const IdentificationProblem& problem, const Place& place, const FitOutcome& fit, double within) {
@@ -185,12 +155,14 @@ bool is_negligible(const IdentificationProblem& problem, const FitOutcome& rival
 }
 
 /// Whether the recordings decide against the rival: by what it leaves, or by numbers at the other channels that would
-/// have to be off for it.
+/// have to be off for it. It is of about the same signature: what it leaves more is of the size that the form of an
+/// effect may be wrong by, and counts for certain only where it is there in every block.
 bool is_told(const IdentificationProblem& problem, const FitOutcome& rival, const FitOutcome& chosen, double decides) {
   const Loss loss = loss_by(problem, rival, chosen);
   const double of_numbers = rival.cost_of_numbers - chosen.cost_of_numbers;
   if (of_numbers > decides) return true;
-  return loss.nats - of_numbers > std::max(loss.standard_error, decides) && !is_negligible(problem, rival, chosen);
+  return loss.nats - of_numbers > std::max(loss.standard_error_of_squares, decides) &&
+         !is_negligible(problem, rival, chosen);
 }
 
 /// The held-out log density with the rival, numbers of the model that it needs included, is smaller by less than

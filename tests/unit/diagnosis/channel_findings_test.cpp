@@ -239,6 +239,29 @@ TEST(ChannelFindings, SlowSamplingIsSaidWhereItMatters) {
   EXPECT_THAT(found_in(resonance(3.0)), ElementsAre(HasSubstr("sampled too slowly")));
 }
 
+/// Of a model that is a spring, the causes that were found tell whether it matters.
+TEST(ChannelFindings, SlowSamplingIsSaidWhereACauseNeedsDerivatives) {
+  const EffectSetting mass{find_effect(EffectInterface::specimen, "inertia"), {10.0}};
+  const EffectSetting friction{find_effect(EffectInterface::specimen, "coulomb_friction"), {10.0, 0.0, 1e-5}};
+  const auto said_of = [](const SiteModel& model, const EffectSetting& cause, double samples_per_cycle) {
+    const std::vector<Recording> recordings{resonance(samples_per_cycle)};
+    std::vector<std::string> said;
+    for (const ChannelFinding& finding : check_sampling(model, {&cause, 1}, recordings, 0)) {
+      EXPECT_FALSE(finding.is_unusable);
+      said.push_back(finding.said.what);
+    }
+    return said;
+  };
+  EXPECT_THAT(said_of(made_model(), mass, 9.0),
+              ElementsAre(testing::AllOf(HasSubstr("measured_force_n is sampled too slowly"),
+                                         HasSubstr("the causes need derivatives"))));
+  EXPECT_THAT(said_of(made_model(), friction, 9.0), IsEmpty());
+  EXPECT_THAT(said_of(made_model(), mass, 30.0), IsEmpty());
+  SiteModel with_mass = made_model();
+  with_mass.effects.push_back(mass);
+  EXPECT_THAT(said_of(with_mass, mass, 9.0), IsEmpty()) << "said before any fit";
+}
+
 TEST(ChannelFindings, SkewWithinASampleIsSaid) {
   EXPECT_THAT(found_with([](double t) { return spring_n(t - 0.4 * kSitePeriod_s); }),
               ElementsAre(HasSubstr("less than a sample")));

@@ -269,6 +269,15 @@ TEST(DiagnosisPage, CauseThatMayBeAbsentIsSaidToBeInTheFirstSentence) {
           Not(HasSubstr("No effect in the library"))));
 }
 
+TEST(DiagnosisPage, PartOfWhichAnotherMayBeTheCauseSaysSo) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::partial;
+  constexpr const char* kDoubt = " These recordings cannot distinguish coulomb friction and stribeck friction.";
+  EXPECT_THAT(verdict_sentence(report), Not(HasSubstr(kDoubt)));
+  for (std::size_t i = 0; i < 2; ++i) report.ranking[i].is_indistinguishable = true;
+  EXPECT_THAT(verdict_sentence(report), HasSubstr(kDoubt));
+}
+
 TEST(DiagnosisPage, CauseBesideASetIsNoMemberOfIt) {
   DiagnosisReport report = example();
   report.verdict = Verdict::set;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/held_out_loss.hpp"
 #include "diagnosis/verdict/library_fits.hpp"
 #include "mechanics/laws/bouc_wen.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -90,6 +91,38 @@ TEST(HeldOutScore, EachBlockThatIsLeftOutCountsForOneSample) {
   fit.independent = 100.0;
   EXPECT_NEAR(held_out_score(problem, found) - held_out_score(problem, nothing),
               0.5 * 100.0 * std::log(allowed(nothing) / allowed(found)), 1e-6);
+}
+
+/// A rival that leaves more by the same factor everywhere is worse for certain, however large the factor. One that is
+/// better in half of the blocks and worse in the others, by as much, is neither. By hand: of n samples, in B blocks
+/// with squares r and c, n / 2 times the sum of r / (sum of r) - c / (sum of c), and its standard deviation between
+/// blocks.
+TEST(HeldOutLoss, StandardErrorIsThatOfTheLogarithm) {
+  IdentificationProblem problem = problem_of(made_recording(made_motion_m, [](double t) { return 1.2 * spring_n(t); }));
+  for (FitSegment& fit : problem.segments) fit.is_suspect = fit.segment.to == Channel::measured_force;
+  FitSegment& force = problem.segments.back();
+  force.independent = 100.0;
+  force.weight = 1e9;  // nothing is allowed beside
+  const FitOutcome nothing = fit_nothing(problem, false);
+  const auto leaving = [&](std::vector<double> squares) {
+    FitOutcome outcome = nothing;
+    outcome.segments.back().held_out_squares = std::move(squares);
+    return outcome;
+  };
+  const FitOutcome even = leaving({1e6, 1e6, 1e6, 1e6});
+  const Loss certain = loss_by(problem, leaving({9e6, 9e6, 9e6, 9e6}), even);
+  EXPECT_NEAR(certain.nats, 0.5 * 100.0 * std::log(9.0), 1e-6);
+  EXPECT_NEAR(certain.standard_error, 0.0, 1e-6);
+  EXPECT_TRUE(certain.is_certain());
+  const Loss neither = loss_by(problem, leaving({1.5e6, 0.5e6, 1.5e6, 0.5e6}), even);
+  EXPECT_NEAR(neither.nats, 0.0, 1e-6);
+  EXPECT_NEAR(neither.standard_error, 50.0 * std::sqrt(4.0 / 3.0 * 4.0) * 0.125, 1e-6);
+  EXPECT_FALSE(neither.is_certain());
+  // What one block alone has more, in units of what the others have, is as uncertain as it is large, but its logarithm
+  // is less.
+  const Loss in_one = loss_by(problem, leaving({1e6, 1e6, 1e6, 97e6}), even);
+  EXPECT_NEAR(in_one.standard_error_of_squares, 50.0 * 24.0, 1e-3);
+  EXPECT_NEAR(in_one.standard_error, 50.0 * 0.96, 1e-3);
 }
 
 /// As few as there are blocks of 12 s, or of white noise all: half their logarithm, at most what thirty seconds cost.
