@@ -74,7 +74,7 @@ struct SensorFacts {
   std::optional<double> lag_s{};  // of a force behind the displacement
 };
 
-/// What a channel shows before any fit.
+/// What a channel shows before any fit, or of its sampling once the causes are known.
 struct Finding {
   std::string recording;  // its file
   std::string interface;

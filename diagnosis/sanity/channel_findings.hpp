@@ -9,7 +9,7 @@
 
 namespace hybridtest {
 
-/// What is wrong with a channel of a recording, found before any fit.
+/// What is wrong with a channel of a recording, found before any fit or by check_sampling().
 struct ChannelFinding {
   report::Finding said;
   std::size_t recording = 0;  // position in the list that was given

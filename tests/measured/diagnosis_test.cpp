@@ -313,7 +313,7 @@ TEST_F(FrictionDamper, NamesFrictionAndBacklash) {
   }
 }
 
-/// A tenth of the secant, which is what is left of the spring beside the friction.
+/// Of the secant hardly anything is a spring: a tenth of it is not told to be wrong beside the friction.
 TEST_F(FrictionDamper, HasTheSameCausesBesideASpringATenthAsStiff) {
   const Diagnosis diagnosis = answer_with(4.6e4);
   expect_friction_or_a_loop(diagnosis);
