@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/parameters/unit_of.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/refutations.hpp"
@@ -199,6 +200,19 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
 
 namespace {
 
+/// The estimate with what is not known of the form of its effect: it is never quite that of the site, so its numbers
+/// are known no better than those of a model are. Of an instant the form says nothing.
+ParameterEstimate with_doubt_of_form(const EffectSetting& effect, std::size_t position, ParameterEstimate estimate) {
+  const EffectType& type = *effect.type;
+  const std::optional<SearchRange> range =
+      type.replacement != nullptr ? std::nullopt : range_of(type, type.parameters[position]);
+  const bool is_instant = range && range->scale == ParameterScale::duration_s;
+  if (are_numbers({&effect, 1}) || is_instant || estimate.beside_wrong_numbers == 0.0) return estimate;
+  estimate.beside_wrong_numbers =
+      std::hypot(estimate.beside_wrong_numbers, tuning::kNumbersWithin * std::abs(estimate.value));
+  return estimate;
+}
+
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
   report::ReportedParameter parameter{.name = std::string{name}, .unit = std::string{unit}, .value = estimate.value};
   parameter.is_at_bound = estimate.at_bound;
@@ -234,7 +248,7 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
     found[i].value = own[i].value;
     found[i].freedom = estimates.front().freedom;
     found[i].beside_wrong_numbers = std::sqrt(std::max(0.0, variances[static_cast<Eigen::Index>(i)]));
-    parameters.push_back(reported(own[i].name, unit_of(own[i].name), found[i]));
+    parameters.push_back(reported(own[i].name, unit_of(own[i].name), with_doubt_of_form(effect, i, found[i])));
   }
   return parameters;
 }
@@ -273,7 +287,7 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   }
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const EffectParameter& parameter = effect.type->parameters[i];
-    cause.parameters.push_back(reported(parameter.name, parameter.unit, estimates[i]));
+    cause.parameters.push_back(reported(parameter.name, parameter.unit, with_doubt_of_form(effect, i, estimates[i])));
     // Left out, and so no limit that a search ran into.
     if (estimates[i].value == parameter.fallback) cause.parameters.back().is_at_bound = false;
   }

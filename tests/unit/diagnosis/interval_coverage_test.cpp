@@ -9,6 +9,7 @@
 #include "core/time.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/causes.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "plant/transfer_systems/first_order.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
@@ -303,6 +304,59 @@ TEST(IntervalCoverage, HoldsTheTruthOnRigsDrawnAfresh) {
   RecordProperty("coverage_without", std::to_string(share_within(errors, 1.0 / tuning::kIntervalScale)));
 }
 
+/// Seals that hold an actuator until it is asked to go so much further; then it gains on what is asked at a velocity.
+std::vector<double> held_by_seals(const std::vector<double>& asked_m, double breakaway_m, double gained_m) {
+  std::vector<double> read_m;
+  bool is_held = true;
+  double behind_m = 0.0;
+  double direction = 0.0;
+  double before_m = 0.0;
+  for (const double at_m : asked_m) {
+    const double travel_m = at_m - before_m;
+    before_m = at_m;
+    is_held = is_held || travel_m * direction < 0.0;
+    if (is_held) behind_m += travel_m;
+    if (is_held && std::abs(behind_m) > breakaway_m) {
+      is_held = false;
+      direction = behind_m;
+    }
+    if (!is_held) behind_m -= std::clamp(behind_m, -gained_m, gained_m);
+    read_m.push_back(at_m - behind_m);
+  }
+  return read_m;
+}
+
+/// What the library's actuator is behind dies away instead. By its fit alone the interval is as if that were the form.
+/// The way is several times what is travelled in a sample.
+TEST(IntervalCoverage, HoldsAStictionOfAnotherForm) {
+  constexpr int kDraws = 40;
+  const EffectType* const stiction = find_effect(transfer_system, "stiction");
+  double held = 0.0;
+  double held_by_fit = 0.0;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    Random random{29, draw};
+    const double breakaway_m = std::exp(random.uniform(std::log(2e-3), std::log(1e-2)));
+    const double slip_s = random.uniform(0.005, 0.04);
+    const EffectSetting start{.type = stiction, .values = {breakaway_m, slip_s}};
+    Recording recording = recorded({transfer_system, "stiction", start.values, 1e-12, 0.0}, start, draw);
+    std::vector<double> read_m = held_by_seals(recording.dofs[0].of(Channel::command_displacement), breakaway_m,
+                                               breakaway_m * kPeriod_s / slip_s);
+    const std::vector<double> noise_m = made_noise({}, kSamples, 2e-5, kPeriod_s, draw);
+    for (std::size_t i = 0; i < kSamples; ++i) read_m[i] += noise_m[i];
+    recording.dofs[0].of(Channel::measured_displacement) = std::move(read_m);
+    const auto problem = make_problem(made_model(), modelled_segments(made_model(), recording, 0, 0));
+    const FitOutcome fit = refit_effects(problem, {start}, false);
+    const ParameterEstimate& found = fit.parameters[0][0];
+    const report::Interval interval = ranked(made_model(), fit, 0).parameters[0].ci95.value();
+    held += interval.low <= breakaway_m && breakaway_m <= interval.high ? 1.0 : 0.0;
+    held_by_fit += std::abs(found.value - breakaway_m) <= half_interval_95(found) ? 1.0 : 0.0;
+  }
+  EXPECT_GE(held / kDraws, 0.85);         // of 40 three deviations are 10 %
+  EXPECT_LT(held_by_fit / kDraws, 0.85);  // control
+  RecordProperty("coverage", std::to_string(held / kDraws));
+  RecordProperty("coverage_by_fit", std::to_string(held_by_fit / kDraws));
+}
+
 /// A transducer's gain was found at the actuator, where it cannot be told from the actuator's own. A spring's stiffness
 /// is then known no better than that gain.
 TEST(IntervalCoverage, PassesOnTheDoubtOfAnEarlierChannel) {
@@ -322,6 +376,30 @@ TEST(IntervalCoverage, PassesOnTheDoubtOfAnEarlierChannel) {
   const double passed_on = tuning::kIntervalScale * kMadeStiffness_n_per_m * kDoubt / (1.0 + kGain);
   EXPECT_NEAR(doubt_with({&gain, 1}), passed_on, 0.05 * passed_on);
   EXPECT_LT(doubt_with({}), 0.1 * passed_on);  // control
+}
+
+/// A real clearance has edges that wear, and a real friction creeps: what is reported of them is not surer than a
+/// number of a model. A gain or an instant is what it is.
+TEST(IntervalCoverage, NumbersOfAFormAreKnownNoBetterThanThoseOfAModel) {
+  constexpr double kDoubtOfFit = 0.003;  // of the value
+  const auto reported_half = [](const EffectSetting& effect, std::size_t parameter) {
+    std::vector<ParameterEstimate> estimates;
+    for (const double value : effect.values) {
+      estimates.push_back({.value = value, .beside_wrong_numbers = kDoubtOfFit * value});
+    }
+    const auto size = std::ssize(effect.values);
+    const report::RankedCause cause = ranked(effect, estimates, Eigen::MatrixXd::Zero(size, size));
+    const report::Interval& interval = cause.parameters[parameter].ci95.value();
+    return 0.5 * (interval.high - interval.low) / effect.values[parameter];
+  };
+  const double of_fit = tuning::kTwoSided95 * kDoubtOfFit;
+  const double of_form = tuning::kTwoSided95 * std::hypot(kDoubtOfFit, tuning::kNumbersWithin);
+  EXPECT_NEAR(reported_half({find_effect(transfer_system, "backlash"), {0.002}}, 0), of_form, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(specimen, "coulomb_friction"), {5e3, 0.1, 1e-3}}, 0), of_form, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(specimen, "fracture"), {0.3, 4.0}}, 0), of_form, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(specimen, "fracture"), {0.3, 4.0}}, 1), of_fit, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(transfer_system, "gain"), {0.03}}, 0), of_fit, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(specimen, "viscous_damping"), {2e4}}, 0), of_fit, 1e-12);
 }
 
 TEST(IntervalCoverage, QuantileIsStudents) {
