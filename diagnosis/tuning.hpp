@@ -375,8 +375,8 @@ inline constexpr double kPartialLeaves = 0.3;
 /// Share of the gap [variance] that hardly matters: a tenth of its amplitude.
 inline constexpr double kHardlyLeft = 0.01;
 /// Share of the output [rms over rms] by which a number of the model is off [standard deviation]: load cells,
-/// displacement transducers and measured stiffnesses are rarely known to better than a hundredth or two. As well is
-/// what is fitted with the form of an effect or a law known: it is never quite that of the site.
+/// displacement transducers and measured stiffnesses are rarely known to better than a hundredth or two. The numbers of
+/// an effect or a law are known no better, as its form is never quite that of the site.
 inline constexpr double kNumbersWithin = 0.025;
 /// A cause that changes a held-out prediction by less than this share of the floor does not act there. Example: a limit
 /// that is not reached.

@@ -78,7 +78,7 @@ SearchedParameter searched(const IdentificationProblem& problem, const EffectTyp
       result.high = std::min(result.high, setting.most_s - setting.set_s);
       break;
   }
-  result.is_instant = range.scale == ParameterScale::duration_s;
+  result.is_instant = range.is_instant();
   result.is_time_from_none = range.scale == ParameterScale::time_s && result.low == 0.0;
   result.logarithmic = result.low > 0.0 && result.high > tuning::kLogarithmicFactor * result.low;
   return result;

@@ -66,6 +66,9 @@ struct SearchRange {
   double low = 0.0;
   double high = 0.0;
   SearchRestriction restriction{};
+
+  /// A time in the recording: it acts in one place only.
+  [[nodiscard]] bool is_instant() const noexcept { return scale == ParameterScale::duration_s; }
 };
 
 namespace search_table {

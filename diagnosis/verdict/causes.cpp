@@ -200,17 +200,19 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
 
 namespace {
 
-/// The estimate with what is not known of the form of its effect: it is never quite that of the site, so its numbers
-/// are known no better than those of a model are. Of an instant the form says nothing.
-ParameterEstimate with_doubt_of_form(const EffectSetting& effect, std::size_t position, ParameterEstimate estimate) {
-  const EffectType& type = *effect.type;
-  const std::optional<SearchRange> range =
-      type.replacement != nullptr ? std::nullopt : range_of(type, type.parameters[position]);
-  const bool is_instant = range && range->scale == ParameterScale::duration_s;
-  if (are_numbers({&effect, 1}) || is_instant || estimate.beside_wrong_numbers == 0.0) return estimate;
+/// The estimate with what is not known of the form of its effect or law: it is never quite that of the site, so its
+/// numbers are known no better than those of a model are. One that was not fitted stays as it is.
+ParameterEstimate with_doubt_of_form(ParameterEstimate estimate) {
+  if (estimate.beside_wrong_numbers == 0.0) return estimate;
   estimate.beside_wrong_numbers =
       std::hypot(estimate.beside_wrong_numbers, tuning::kNumbersWithin * std::abs(estimate.value));
   return estimate;
+}
+
+/// Whether the form of the effect leaves its parameter in doubt: not a number of the model, nor an instant.
+bool depends_on_form(const EffectSetting& effect, const EffectParameter& parameter) {
+  const std::optional<SearchRange> range = range_of(*effect.type, parameter);
+  return !are_numbers({&effect, 1}) && !(range && range->is_instant());
 }
 
 report::ReportedParameter reported(std::string_view name, std::string_view unit, const ParameterEstimate& estimate) {
@@ -248,7 +250,7 @@ std::vector<report::ReportedParameter> parameters_of_law(const EffectSetting& ef
     found[i].value = own[i].value;
     found[i].freedom = estimates.front().freedom;
     found[i].beside_wrong_numbers = std::sqrt(std::max(0.0, variances[static_cast<Eigen::Index>(i)]));
-    parameters.push_back(reported(own[i].name, unit_of(own[i].name), with_doubt_of_form(effect, i, found[i])));
+    parameters.push_back(reported(own[i].name, unit_of(own[i].name), with_doubt_of_form(found[i])));
   }
   return parameters;
 }
@@ -287,7 +289,9 @@ report::RankedCause ranked(const EffectSetting& effect, const std::vector<Parame
   }
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const EffectParameter& parameter = effect.type->parameters[i];
-    cause.parameters.push_back(reported(parameter.name, parameter.unit, with_doubt_of_form(effect, i, estimates[i])));
+    const ParameterEstimate estimate =
+        depends_on_form(effect, parameter) ? with_doubt_of_form(estimates[i]) : estimates[i];
+    cause.parameters.push_back(reported(parameter.name, parameter.unit, estimate));
     // Left out, and so no limit that a search ran into.
     if (estimates[i].value == parameter.fallback) cause.parameters.back().is_at_bound = false;
   }

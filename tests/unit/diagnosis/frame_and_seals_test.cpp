@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -9,6 +8,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
+#include "tests/unit/diagnosis/made_seals.hpp"
 
 /// What lies between the command and the specimen: a reaction frame that gives way, and the seals of an actuator.
 namespace hybridtest {
@@ -66,30 +66,13 @@ TEST(ReactionFrame, OnASpringIsASetWithAGain) {
               0.001 * kCompliance_m_per_n);
 }
 
-/// Held after each reversal until the command is `kStick_m` ahead; then it gains on the command by a velocity.
 TEST(Seals, AreFoundWhateverTheSlipLooksLike) {
   constexpr double kStick_m = 5.0e-4;
-  constexpr double kGained_m = 0.2 * kStick_m;  // in a sample
-  double behind_m = 0.0;
-  double asked_m = 0.0;
-  double way_m = 0.0;
-  bool is_stuck = true;
+  MadeSeals held{kStick_m, 0.2 * kStick_m};
   double displacement_m = 0.0;
-  const Diagnosis diagnosis =
-      diagnosis_of(made_model(), made_recording(
-                                     [&](double t) {
-                                       const double travel_m = made_motion_m(t) - asked_m;
-                                       asked_m += travel_m;
-                                       is_stuck = is_stuck || travel_m * way_m < 0.0;
-                                       if (is_stuck) behind_m += travel_m;
-                                       if (is_stuck && std::abs(behind_m) > kStick_m) {
-                                         is_stuck = false;
-                                         way_m = behind_m;
-                                       }
-                                       if (!is_stuck) behind_m -= std::clamp(behind_m, -kGained_m, kGained_m);
-                                       return displacement_m = asked_m - behind_m;
-                                     },
-                                     [&](double /*t*/) { return kMadeStiffness_n_per_m * displacement_m; }));
+  const Diagnosis diagnosis = diagnosis_of(
+      made_model(), made_recording([&](double t) { return displacement_m = held.next_m(made_motion_m(t)); },
+                                   [&](double) { return kMadeStiffness_n_per_m * displacement_m; }));
   ASSERT_THAT(causes_of(diagnosis), ElementsAre("stiction"));
   const report::RankedCause& seals = diagnosis.report.ranking.front();
   // It slips within five samples; the effect's slip dies away with a constant instead, so the two differ by up to a

@@ -14,6 +14,7 @@
 #include "plant/transfer_systems/first_order.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
+#include "tests/unit/diagnosis/made_seals.hpp"
 
 namespace hybridtest {
 namespace {
@@ -304,28 +305,6 @@ TEST(IntervalCoverage, HoldsTheTruthOnRigsDrawnAfresh) {
   RecordProperty("coverage_without", std::to_string(share_within(errors, 1.0 / tuning::kIntervalScale)));
 }
 
-/// Seals that hold an actuator until it is asked to go so much further; then it gains on what is asked at a velocity.
-std::vector<double> held_by_seals(const std::vector<double>& asked_m, double breakaway_m, double gained_m) {
-  std::vector<double> read_m;
-  bool is_held = true;
-  double behind_m = 0.0;
-  double direction = 0.0;
-  double before_m = 0.0;
-  for (const double at_m : asked_m) {
-    const double travel_m = at_m - before_m;
-    before_m = at_m;
-    is_held = is_held || travel_m * direction < 0.0;
-    if (is_held) behind_m += travel_m;
-    if (is_held && std::abs(behind_m) > breakaway_m) {
-      is_held = false;
-      direction = behind_m;
-    }
-    if (!is_held) behind_m -= std::clamp(behind_m, -gained_m, gained_m);
-    read_m.push_back(at_m - behind_m);
-  }
-  return read_m;
-}
-
 /// What the library's actuator is behind dies away instead. By its fit alone the interval is as if that were the form.
 /// The way is several times what is travelled in a sample.
 TEST(IntervalCoverage, HoldsAStictionOfAnotherForm) {
@@ -339,10 +318,11 @@ TEST(IntervalCoverage, HoldsAStictionOfAnotherForm) {
     const double slip_s = random.uniform(0.005, 0.04);
     const EffectSetting start{.type = stiction, .values = {breakaway_m, slip_s}};
     Recording recording = recorded({transfer_system, "stiction", start.values, 1e-12, 0.0}, start, draw);
-    std::vector<double> read_m = held_by_seals(recording.dofs[0].of(Channel::command_displacement), breakaway_m,
-                                               breakaway_m * kPeriod_s / slip_s);
-    const std::vector<double> noise_m = made_noise({}, kSamples, 2e-5, kPeriod_s, draw);
-    for (std::size_t i = 0; i < kSamples; ++i) read_m[i] += noise_m[i];
+    MadeSeals seals{breakaway_m, breakaway_m * kPeriod_s / slip_s};
+    std::vector<double> read_m = made_noise({}, kSamples, 2e-5, kPeriod_s, draw);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      read_m[i] += seals.next_m(recording.dofs[0].of(Channel::command_displacement)[i]);
+    }
     recording.dofs[0].of(Channel::measured_displacement) = std::move(read_m);
     const auto problem = make_problem(made_model(), modelled_segments(made_model(), recording, 0, 0));
     const FitOutcome fit = refit_effects(problem, {start}, false);
