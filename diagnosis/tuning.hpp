@@ -247,9 +247,10 @@ inline constexpr double kSliderFriction = 0.1;
 
 // Search: its limits.
 
-/// Number of steps for each searched parameter, three at least, relative gain below which the search stops, and number
-/// of starts that it continues. With twelve, a law of thirteen numbers stopped on its way.
-inline constexpr int kStepsPerParameter = 4;
+/// Number of steps for each searched parameter, three at least, of one effect and of several together, relative gain
+/// below which the search stops, and number of starts that it continues. With twelve steps, a law of thirteen numbers
+/// stopped on its way; with four for each, a clearance beside a friction.
+inline constexpr std::array<int, 2> kStepsPerParameter{4, 8};
 inline constexpr double kSearchTolerance = 1e-5;
 inline constexpr std::size_t kRefinedStarts = 2;
 /// Starts by the number of searched parameters: 0, 1, 2, 3 or more.

@@ -13,6 +13,7 @@
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/noise_spectrum.hpp"
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/tuning.hpp"
@@ -392,6 +393,21 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& residual, bool form_is_r
   fit.independent = independent;
 }
 
+/// The model that makes a force of the noise of its input. A spring that is far off makes as much more or less of it
+/// than the specimen does, so it is as stiff as the recording shows.
+SiteModel model_of_noise(const IdentificationProblem& problem, const FitSegment& fit) {
+  SiteModel model = problem.model;
+  if (!problem.law_is_spring || fit.segment.to != Channel::measured_force) return model;
+  const Eigen::VectorXd by_model = fit.baseline.array() - fit.baseline.mean();
+  const double ratio = by_model.dot(fit.measured) / by_model.squaredNorm();
+  if (!(ratio > 0.0) || !std::isfinite(ratio) || std::abs(1.0 / ratio - 1.0) <= tuning::kSlightlyWrong) return model;
+  const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
+  EffectSetting as_recorded = absent(*stiffness);
+  as_recorded.values.front() = ratio - 1.0;
+  add_effect(model, as_recorded);
+  return model;
+}
+
 FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::span<const FoundEffect> found) {
   const SiteModel& model = problem.model;
   FitSegment fit;
@@ -401,7 +417,7 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
   fit.smoothing_floor = fit.segment.smoothing_error;
-  const InputErrors errors = input_errors(model, fit.segment);
+  const InputErrors errors = input_errors(model_of_noise(problem, fit), fit.segment);
   fit.channel_sample_floor = noise_floor(fit.segment, errors);
   const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
   const double of_input =

@@ -491,7 +491,9 @@ Start refine(const VariableProjection& projection, const Start& start) {
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = tuning::kStepsPerParameter * std::max(3, static_cast<int>(places.size()));
+  const bool are_several = projection.plan().neutral.size() > 1;
+  options.max_num_iterations =
+      tuning::kStepsPerParameter[are_several ? 1 : 0] * std::max(3, static_cast<int>(places.size()));
   options.function_tolerance = tuning::kSearchTolerance;
   options.num_threads = 1;
   // A step is cut off at the bounds, and the trust region judges it. A line search before would ask for the slopes of

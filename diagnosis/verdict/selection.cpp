@@ -278,6 +278,10 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   selection.baseline = fit_nothing(problem, false);
   selection.chosen = selection.baseline;
   if (!stands_above_floor(problem, selection.baseline, tuning::kGapOverFloor)) return selection;
+  // The numbers that the user gave do not decide which noise the candidates are compared by.
+  selection.by_numbers = fit_numbers(problem, coarse);
+  settle_noise(problem, selection.by_numbers);
+  settle_noise(coarse, refit_effects(coarse, selection.by_numbers.effects, false));
   selection.library = fit_library(problem, coarse, progress.part(0.0, tuning::kLibraryFitted));
   if (selection.library.empty()) return selection;
   // Under a large gap the noise is not known: it is that of the best candidate, and the others are judged by it.

@@ -321,6 +321,18 @@ TEST_F(FrictionDamper, HasTheSameCausesBesideASpringATenthAsStiff) {
   EXPECT_EQ(diagnosis.causes.size(), 2U);
 }
 
+/// Such a spring would make ten times as much of the transducer's noise.
+TEST_F(FrictionDamper, HasTheSameCausesBesideASpringTenTimesAsStiff) {
+  const Diagnosis diagnosis = answer_with(4.6e6);
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
+  EXPECT_TRUE(names(diagnosis, "specimen", "coulomb_friction"));
+  EXPECT_TRUE(names(diagnosis, "specimen", "backlash"));
+  EXPECT_TRUE(names(diagnosis, "specimen", "stiffness_error"));
+  EXPECT_EQ(diagnosis.causes.size(), 3U);
+  EXPECT_THAT(report::verdict_sentence(diagnosis.report),
+              HasSubstr("cannot distinguish coulomb friction and bouc wen hysteresis."));
+}
+
 /// A reinforced-concrete column and what is known of it from elsewhere: the residual of the best Bouc-Wen-Baber-Noori
 /// law, fitted by brute force (README of the data) [rms over rms], and the secant stiffness.
 struct Column {

@@ -143,9 +143,10 @@ TEST(OpenedCase, MissingPoleIsNoSlightDelay) {
 }
 
 /// A specimen that pinches and fades: under what the simple laws leave, few samples count as independent, and a law
-/// with so many numbers gained less than they cost. All was `unknown`.
+/// with so many numbers gained less than they cost. All was `unknown`. A simpler law that fades, beside which the rest
+/// fades with the largest displacement, predicts as well.
 TEST(OpenedCase, LawThatPinchesAndFadesIsToldInPart) {
-  EXPECT_THAT(causes_of_case(1393686318, 24), ElementsAre("specimen.hysteresis_law"));
+  EXPECT_THAT(causes_of_case(1393686318, 24), Contains("specimen.hysteresis_law"));
 }
 
 /// One block alone reaches the limit. When it was left out, the rest moved the limit away.

@@ -358,7 +358,7 @@ TEST(FitEffects, PredictsOncePerPointAndSlope) {
   predictions = 0;
   const FitOutcome fit = fit_effects(problem, {find_effect(transfer_system, "stiction")}, false);
   constexpr std::size_t kSearched = 2;
-  constexpr std::size_t kSteps = 3 * tuning::kStepsPerParameter;  // as for three parameters
+  constexpr std::size_t kSteps = 3 * tuning::kStepsPerParameter.front();  // as for three parameters
   // The last terms: the start and the end of each refinement; the solution, and its slopes for the intervals.
   EXPECT_LE(predictions,
             tuning::kStarts[kSearched] + tuning::kRefinedStarts * ((kSteps + 1) * (1 + kSearched) + 2) + kSearched + 2);

@@ -47,6 +47,26 @@ TEST(NoiseOfInput, IsThatOfDisplacementTimesStiffnessAndOfVelocityTimesDamping) 
   EXPECT_GT(made_of(kDamping_n_s_per_m), 2.0 * made_of(0.0));
 }
 
+/// A spring ten times too stiff makes ten times as much of the noise, and a specimen does not.
+TEST(NoiseOfInput, FloorIsThatOfASpringAsStiffAsTheRecordingShows) {
+  const Recording recording =
+      with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  const auto fit_with = [&](double ratio) {
+    SiteModel model = made_model();
+    model.make_law = [ratio] { return std::make_unique<Elastic>(ratio * kMadeStiffness_n_per_m); };
+    return of_force(make_problem(model, segments_of(recording, 0, 0)));
+  };
+  const FitSegment right = fit_with(1.0);
+  for (const double ratio : {0.1, 10.0}) {
+    const FitSegment far = fit_with(ratio);
+    // The slope of force on a noisy displacement is known to some parts in a million.
+    EXPECT_NEAR(far.channel_floor, right.channel_floor, 1e-4 * right.channel_floor) << ratio;
+    EXPECT_NEAR(far.channel_sample_floor, right.channel_sample_floor, 1e-4 * right.channel_sample_floor) << ratio;
+    // Control: what the model itself makes of the noise.
+    EXPECT_NEAR(far.noise_of_input, ratio * ratio * right.noise_of_input, 1e-9 * far.noise_of_input) << ratio;
+  }
+}
+
 TEST(NoiseOfInput, IsLessBehindALag) {
   const Recording recording =
       with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
