@@ -42,15 +42,72 @@ bool NetworkLags::fluctuate() const noexcept {
   return found >= tuning::kLagsFoundMin && shrinking >= tuning::kLagsShrinkingMin;
 }
 
+namespace {
+
+/// A target that has not been received before.
+struct Fresh {
+  double sample = 0.0;
+  int lag = 0;
+};
+
+/// Share of those that are not as late as the one before.
+double share_of_changes(std::span<const Fresh> fresh) {
+  double changes = 0.0;
+  for (std::size_t i = 1; i < fresh.size(); ++i) changes += fresh[i].lag != fresh[i - 1].lag ? 1.0 : 0.0;
+  return changes / static_cast<double>(fresh.size());
+}
+
+struct Slope {
+  double value = 0.0;  // samples per sample
+  double span = 0.0;   // samples
+  double standard_error = 0.0;
+
+  [[nodiscard]] bool exceeds(double lag) const noexcept {
+    return (value - tuning::kTwoSided95 * standard_error) * span > lag;
+  }
+};
+
+/// How much later they come with each sample, by least squares.
+Slope slope_of(std::span<const Fresh> fresh) {
+  const auto n = static_cast<Eigen::Index>(fresh.size());
+  if (n < 3) return {};
+  Eigen::ArrayXd sample(n);
+  Eigen::ArrayXd lag(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    sample[i] = fresh[static_cast<std::size_t>(i)].sample;
+    lag[i] = fresh[static_cast<std::size_t>(i)].lag;
+  }
+  Slope slope{.span = sample[n - 1] - sample[0]};
+  sample -= sample.mean();
+  lag -= lag.mean();
+  const double squares = sample.square().sum();
+  slope.value = (sample * lag).sum() / squares;
+  slope.standard_error = std::sqrt((lag - slope.value * sample).square().sum() / static_cast<double>(n - 2) / squares);
+  return slope;
+}
+
+/// A clock that drifts makes them later in either half of the recording. 0 where that is not certain, or where it is
+/// not certainly more than a sample in all.
+double drift_of(std::span<const Fresh> fresh) {
+  const Slope slope = slope_of(fresh);
+  const std::size_t half = fresh.size() / 2;
+  const bool is_steady = slope_of(fresh.first(half)).exceeds(0.0) && slope_of(fresh.subspan(half)).exceeds(0.0);
+  return is_steady && slope.exceeds(1.0) ? slope.value : 0.0;
+}
+
+/// The whole samples by which a drift makes a target late, which is played at the next one.
+int late_by(double drift, double sample) { return static_cast<int>(std::ceil(drift * sample)); }
+
+}  // namespace
+
 NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m, double period_s) {
   NetworkLags lags;
   const auto latest = static_cast<std::size_t>(tuning::kArrivalLagMax_s / period_s);
   lags.lag.assign(received_m.size(), -1);
-  std::map<int, double> fresh;
+  std::vector<Fresh> fresh;
   double moving = 0.0;
   double found = 0.0;
   double shrinking = 0.0;
-  double fresh_count = 0.0;
   int before = -1;
   bool was_held = false;
   for (std::size_t i = 1; i < received_m.size(); ++i) {
@@ -67,28 +124,29 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
     was_held = is_held;
     if (lag >= 0) {
       found += 1.0;
-      lags.mean += lag;
       if (before >= 0 && lag < before) shrinking += 1.0;
-      if (!is_held) {
-        fresh[lag] += 1.0;
-        fresh_count += 1.0;
-      }
+      if (!is_held) fresh.push_back({static_cast<double>(i), lag});
     }
     before = lag;
   }
-  if (moving == 0.0 || found == 0.0 || fresh_count == 0.0) return lags;
+  if (moving == 0.0 || found == 0.0 || fresh.empty()) return lags;
   lags.found = found / moving;
   lags.shrinking = shrinking / found;
-  lags.held /= moving;
+  lags.drift = drift_of(fresh);
+  lags.unlike = 0.5 * std::max(0.0, share_of_changes(fresh) - lags.drift);
+  lags.held = std::max(0.0, lags.held / moving - lags.drift);
   lags.held_again /= moving;
-  lags.mean /= found;
-  const auto share = [fresh_count](const auto& entry) { return entry.second / fresh_count; };
-  const auto usual = std::ranges::max_element(fresh, {}, share);
-  lags.usual = usual->first;
-  lags.fresh_at_usual = share(*usual);
-  const auto shortest = std::ranges::find_if(
-      fresh, [](double part) { return part > tuning::kLagsShrinkingMin; }, share);
-  if (shortest != fresh.end()) lags.shortest = shortest->first;
+  for (std::size_t i = 0; i < lags.lag.size(); ++i) {
+    if (lags.lag[i] >= 0) lags.mean += (lags.lag[i] - late_by(lags.drift, static_cast<double>(i))) / found;
+  }
+  std::map<int, double> shares;
+  for (const Fresh& one : fresh) {
+    shares[std::max(0, one.lag - late_by(lags.drift, one.sample))] += 1.0 / static_cast<double>(fresh.size());
+  }
+  lags.usual = std::ranges::max_element(shares, {}, &std::pair<const int, double>::second)->first;
+  const auto shortest =
+      std::ranges::find_if(shares, [](const auto& entry) { return entry.second > tuning::kLagsShrinkingMin; });
+  if (shortest != shares.end()) lags.shortest = shortest->first;
   return lags;
 }
 
@@ -126,16 +184,26 @@ Trace network_trace(const EffectType& type, double value) {
   return trace;
 }
 
+/// The targets, as late as the latency and the drift make them [samples].
+std::vector<double> made_late(std::span<const double> sent_m, int latency, double drift) {
+  std::vector<double> late_m;
+  for (std::size_t i = 0; i < sent_m.size(); ++i) {
+    const int late = latency + late_by(drift, static_cast<double>(i));
+    late_m.push_back(sent_m[i - std::min(i, static_cast<std::size_t>(late))]);
+  }
+  return late_m;
+}
+
 }  // namespace
 
 std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<const double> received_m,
                                      double period_s) {
   const NetworkLags lags = lags_between(sent_m, received_m, period_s);
   if (!lags.fluctuate()) return {};
-  const bool are_alike = lags.fresh_at_usual > tuning::kEquallyLateMin;
+  const bool are_alike = 1.0 - lags.unlike > tuning::kEquallyLateMin;
   // Two late messages in a row: the first one shows, late. Two lost ones: neither does. Nearer to which?
   const double twice = lags.held * lags.held;
-  const bool is_short_jitter = 1.0 - lags.fresh_at_usual > 0.5 * twice && lags.held_again < 0.5 * twice;
+  const bool is_short_jitter = lags.unlike > 0.5 * twice && lags.held_again < 0.5 * twice;
   const bool is_loss = are_alike && !is_short_jitter;
   // A message that is late at all shows a sample later.
   const int latency = is_loss ? lags.usual : std::max(0, lags.shortest - 1);
@@ -143,17 +211,22 @@ std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<c
   const EffectType* const fluctuating =
       find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
   const EffectType* const constant = find_effect(EffectInterface::network, "latency");
-  if (fluctuating == nullptr || constant == nullptr) return {};
+  const EffectType* const drifting = find_effect(EffectInterface::network, "clock_drift");
+  if (fluctuating == nullptr || constant == nullptr || drifting == nullptr) return {};
   std::vector<Trace> traces{network_trace(*fluctuating, is_loss ? lags.held : jitter * period_s)};
   traces.front().gap_share = gap_share(sent_m, received_m);
-  if (latency == 0) return traces;
-  std::vector<double> late_m(sent_m.size(), sent_m.front());
-  std::ranges::copy(sent_m.first(sent_m.size() - static_cast<std::size_t>(latency)), late_m.begin() + latency);
-  traces.push_back(network_trace(*constant, latency * period_s));
-  traces.back().probability = 0.5;  // clocks that are off shift all targets alike
-  const double beside = std::min(traces.front().gap_share, gap_share(late_m, received_m));
-  traces.back().gap_share = traces.front().gap_share - beside;
-  traces.front().gap_share = beside;
+  // Of what is left, each of the others explains a part.
+  const auto add = [&](const EffectType& type, double value, double drift) {
+    traces.push_back(network_trace(type, value));
+    const double beside = std::min(traces.front().gap_share, gap_share(made_late(sent_m, latency, drift), received_m));
+    traces.back().gap_share = traces.front().gap_share - beside;
+    traces.front().gap_share = beside;
+  };
+  if (latency > 0) {
+    add(*constant, latency * period_s, 0.0);
+    traces.back().probability = 0.5;  // clocks that are off shift all targets alike
+  }
+  if (lags.drift > 0.0) add(*drifting, lags.drift, lags.drift);
   return traces;
 }
 

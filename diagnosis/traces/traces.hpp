@@ -28,15 +28,17 @@ struct Trace {
 /// Delay of each target that a site received, in samples. With only the network in between, every received target
 /// equals one that was sent.
 struct NetworkLags {
-  std::vector<int> lag;         // per sample; -1: not found, or at rest
-  double found = 0.0;           // share of moving samples
-  double shrinking = 0.0;       // share of found ones that follow a longer lag
-  double fresh_at_usual = 0.0;  // share of fresh targets with the most frequent lag
-  double held = 0.0;            // share of moving samples that repeat the target before
-  double held_again = 0.0;      // and of those that repeat one that was a repetition already
-  double mean = 0.0;            // samples
-  int usual = 0;                // most frequent one of fresh targets [samples]
-  int shortest = 0;             // that fresh targets have more than by chance; 0: none has [samples]
+  std::vector<int> lag;     // per sample; -1: not found, or at rest
+  double found = 0.0;       // share of moving samples
+  double shrinking = 0.0;   // share of found ones that follow a longer lag
+  double unlike = 0.0;      // share of fresh targets with another lag than those before and behind, beside the drift
+  double held = 0.0;        // share of moving samples that repeat the target before, without those of the drift
+  double held_again = 0.0;  // and of those that repeat one that was a repetition already
+  double drift = 0.0;       // of fresh targets, per sample; 0: not certainly more than one sample in all [samples]
+  // What is left of the lags beside the drift, of which a fresh target has the next whole sample.
+  double mean = 0.0;  // samples
+  int usual = 0;      // most frequent one of fresh targets [samples]
+  int shortest = 0;   // that fresh targets have more than by chance; 0: none has [samples]
 
   /// Whether the lags go up and down; those of a delay or a drift do not.
   [[nodiscard]] bool fluctuate() const noexcept;
@@ -46,11 +48,12 @@ struct NetworkLags {
 [[nodiscard]] NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m,
                                        double period_s);
 
-/// `jitter` or `loss`, if the lags fluctuate, and the `latency` that all targets have besides, if it is a sample or
-/// more. With loss, new targets always have the same delay; with jitter they do not. A jitter of little more than a
-/// sample period leaves most of them alike, too: messages that come too late look lost. But then the one behind a late
-/// message is seldom late as well without showing the late one, so that two repetitions in a row are rare, and of
-/// messages that are lost independently of each other they are not.
+/// `jitter` or `loss`, if the lags fluctuate, and what all targets have besides: the `clock_drift` by which they come
+/// later and later, and the `latency`, if it is a sample or more. With loss, new targets are as late as the ones before
+/// and behind; with jitter they are not. A jitter of little more than a sample period leaves most of them alike,
+/// too: messages that come too late look lost. But then the one behind a late message is seldom late as well without
+/// showing the late one, so that two repetitions in a row are rare, and of messages that are lost independently of each
+/// other they are not.
 ///
 /// Of a jitter J, evenly spread, the newest message that has come is l samples old or less with the chance
 /// 1 - (1 - T/J)(1 - 2T/J)...(1 - lT/J): J is the one with the recorded mean.

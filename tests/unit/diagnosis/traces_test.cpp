@@ -187,6 +187,78 @@ TEST(NetworkTrace, JitterAndTheLatencyBesideItAreToldApart) {
   }
 }
 
+/// A clock that is slow plays each target at the next whole sample.
+std::vector<int> drifting(double drift_ratio, int latency) {
+  std::vector<int> lags(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    lags[i] = latency + static_cast<int>(std::ceil(drift_ratio * static_cast<double>(i)));
+  }
+  return lags;
+}
+
+TEST(NetworkTrace, LossAndAClockThatDriftsAreToldTogether) {
+  for (const double drift_ratio : {2e-4, 5e-4, 3e-3}) {
+    for (const int latency : {0, 4}) {
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        Random random{seed};
+        std::vector<int> lags = drifting(drift_ratio, latency);
+        double lost = 0.0;
+        for (std::size_t i = 1; i < kSamples; ++i) {
+          if (random.uniform() >= 0.05) continue;
+          lags[i] = lags[i - 1] + 1;
+          lost += 1.0;
+        }
+        const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
+        ASSERT_EQ(traces.size(), latency == 0 ? 2U : 3U) << drift_ratio << ' ' << latency << ' ' << seed;
+        EXPECT_EQ(traces.front().effect.type->name, "loss");
+        // Where the drift makes them a sample later, a target is repeated, too; next to one that is lost it is not,
+        // which a tenth of them are.
+        const double repeated = drift_ratio * kSamples;
+        EXPECT_NEAR(traces.front().effect.values[0], lost / kSamples, (5.0 + latency + 0.25 * repeated) / kSamples);
+        EXPECT_EQ(traces.back().effect.type->name, "clock_drift");
+        // The line through whole samples: a half of one at most at either end.
+        EXPECT_NEAR(traces.back().effect.values[0], drift_ratio, 1.0 / kSamples) << latency << ' ' << seed;
+        EXPECT_GT(traces.back().gap_share, 0.0);
+        if (latency == 0) continue;
+        EXPECT_EQ(traces[1].effect.type->name, "latency");
+        EXPECT_DOUBLE_EQ(traces[1].effect.values[0], latency * kPeriod_s);
+      }
+    }
+  }
+}
+
+/// From the middle on they take another way, which is three samples longer.
+TEST(NetworkTrace, LossAndAnotherWayAreNoClockThatDrifts) {
+  Random random{3};
+  std::vector<int> lags(kSamples, 1);
+  for (std::size_t i = 1; i < kSamples; ++i) {
+    lags[i] = random.uniform() < 0.02 ? lags[i - 1] + 1 : (i < kSamples / 2 ? 1 : 4);
+  }
+  const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
+  ASSERT_FALSE(traces.empty());
+  EXPECT_EQ(traces.front().effect.type->name, "loss");
+  EXPECT_TRUE(std::ranges::none_of(traces, [](const Trace& t) { return t.effect.type->name == "clock_drift"; }));
+}
+
+TEST(NetworkTrace, JitterAndAClockThatDriftsAreToldTogether) {
+  constexpr int kDraws = 20;
+  constexpr double kDriftRatio = 3e-3;
+  const std::vector<int> late = drifting(kDriftRatio, 0);
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    std::vector<int> lags = ages(6.0, 0, seed);
+    for (std::size_t i = 0; i < kSamples; ++i) lags[i] += late[i];
+    const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
+    ASSERT_EQ(traces.size(), 2U) << seed;
+    EXPECT_EQ(traces[0].effect.type->name, "jitter");
+    EXPECT_EQ(traces[1].effect.type->name, "clock_drift");
+    EXPECT_NEAR(traces[1].effect.values[0], kDriftRatio, 1.0 / kSamples) << seed;
+    sum += traces[0].effect.values[0];
+  }
+  // As without a drift: 2 % in a draw.
+  EXPECT_NEAR(sum / kDraws, 6.0 * kPeriod_s, 0.01 * 6.0 * kPeriod_s);
+}
+
 /// Each lag is rarer than a chance hit, so that none is known to be the shortest.
 TEST(NetworkTrace, LagsThatHardlyRepeatAreAJitterWithoutLatency) {
   std::vector<int> lags(kSamples);
