@@ -136,15 +136,21 @@ std::vector<int> ages(double jitter, int latency, std::uint64_t seed) {
   return newest;
 }
 
-TEST(NetworkTrace, SeparatesLossJitterAndDelay) {
-  Random random{3};
-  std::vector<int> lost(kSamples, 4);
-  std::size_t held = 0;
-  for (std::size_t i = 1; i < kSamples; ++i) {
-    const bool is_lost = random.uniform() < 0.05;
-    lost[i] = is_lost ? lost[i - 1] + 1 : 4;
-    held += is_lost ? 1U : 0U;
+/// Loses a share of the messages, independently of each other: the one before is played again. How many are lost.
+std::size_t lose(std::vector<int>& lags, double share, std::uint64_t seed) {
+  Random random{seed};
+  std::size_t lost = 0;
+  for (std::size_t i = 1; i < lags.size(); ++i) {
+    if (random.uniform() >= share) continue;
+    lags[i] = lags[i - 1] + 1;
+    ++lost;
   }
+  return lost;
+}
+
+TEST(NetworkTrace, SeparatesLossJitterAndDelay) {
+  std::vector<int> lost(kSamples, 4);
+  const std::size_t held = lose(lost, 0.05, 3);
   const std::vector<Trace> loss = traces_of_network(motion_m(), received(lost), kPeriod_s);
   ASSERT_EQ(loss.size(), 2U);
   EXPECT_EQ(loss[0].effect.type->name, "loss");
@@ -200,14 +206,8 @@ TEST(NetworkTrace, LossAndAClockThatDriftsAreToldTogether) {
   for (const double drift_ratio : {2e-4, 5e-4, 3e-3}) {
     for (const int latency : {0, 4}) {
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        Random random{seed};
         std::vector<int> lags = drifting(drift_ratio, latency);
-        double lost = 0.0;
-        for (std::size_t i = 1; i < kSamples; ++i) {
-          if (random.uniform() >= 0.05) continue;
-          lags[i] = lags[i - 1] + 1;
-          lost += 1.0;
-        }
+        const auto lost = static_cast<double>(lose(lags, 0.05, seed));
         const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
         ASSERT_EQ(traces.size(), latency == 0 ? 2U : 3U) << drift_ratio << ' ' << latency << ' ' << seed;
         EXPECT_EQ(traces.front().effect.type->name, "loss");
@@ -229,11 +229,9 @@ TEST(NetworkTrace, LossAndAClockThatDriftsAreToldTogether) {
 
 /// From the middle on they take another way, which is three samples longer.
 TEST(NetworkTrace, LossAndAnotherWayAreNoClockThatDrifts) {
-  Random random{3};
   std::vector<int> lags(kSamples, 1);
-  for (std::size_t i = 1; i < kSamples; ++i) {
-    lags[i] = random.uniform() < 0.02 ? lags[i - 1] + 1 : (i < kSamples / 2 ? 1 : 4);
-  }
+  std::fill(lags.begin() + kSamples / 2, lags.end(), 4);
+  lose(lags, 0.02, 3);
   const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
   ASSERT_FALSE(traces.empty());
   EXPECT_EQ(traces.front().effect.type->name, "loss");
