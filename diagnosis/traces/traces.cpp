@@ -38,9 +38,9 @@ double gap_share(std::span<const double> sent_m, std::span<const double> receive
 
 }  // namespace
 
-bool NetworkLags::fluctuate() const noexcept {
-  return found >= tuning::kLagsFoundMin && shrinking >= tuning::kLagsShrinkingMin;
-}
+bool NetworkLags::are_messages() const noexcept { return found >= tuning::kLagsFoundMin; }
+
+bool NetworkLags::fluctuate() const noexcept { return are_messages() && shrinking >= tuning::kLagsShrinkingMin; }
 
 namespace {
 
@@ -48,6 +48,7 @@ namespace {
 struct Fresh {
   double sample = 0.0;
   int lag = 0;
+  bool is_only_one = true;  // the one sent before it is another one
 };
 
 /// Share of those that are not as late as the one before.
@@ -88,17 +89,64 @@ Slope slope_of(std::span<const Fresh> fresh) {
 
 /// A clock that drifts makes them later in either half of the recording. 0 where that is not certain, or where it is
 /// not certainly more than a sample in all.
-double drift_of(std::span<const Fresh> fresh) {
+double slope_in_either_half(std::span<const Fresh> fresh) {
   const Slope slope = slope_of(fresh);
   const std::size_t half = fresh.size() / 2;
   const bool is_steady = slope_of(fresh.first(half)).exceeds(0.0) && slope_of(fresh.subspan(half)).exceeds(0.0);
   return is_steady && slope.exceeds(1.0) ? slope.value : 0.0;
 }
 
-/// The whole samples by which a drift makes a target late, which is played at the next one.
-int late_by(double drift, double sample) { return static_cast<int>(std::ceil(drift * sample)); }
+/// Successive targets of the same lag.
+struct Tread {
+  double first = 0.0;  // samples
+  double last = 0.0;
+  double lag = 0.0;
+};
+
+/// The stairs of lags that never become shorter; none of others. A value that was sent twice is found with the shorter
+/// lag.
+std::vector<Tread> treads_of(std::span<const Fresh> fresh) {
+  std::vector<Tread> treads;
+  double shorter = 0.0;
+  for (const Fresh& one : fresh) {
+    if (!one.is_only_one) continue;
+    if (!treads.empty() && one.lag < treads.back().lag) {
+      shorter += 1.0;
+      continue;
+    }
+    if (treads.empty() || one.lag > treads.back().lag) {
+      treads.push_back({one.sample, one.sample, static_cast<double>(one.lag)});
+    }
+    treads.back().last = one.sample;
+  }
+  if (shorter > tuning::kLagsShrinkingMin * static_cast<double>(fresh.size())) treads.clear();
+  return treads;
+}
+
+/// The straight line through the instants at which the lags become longer, of a clock that drifts steadily. None where
+/// that is less than twice, or where the line leaves the stairs by more than a sample: then another way is longer.
+std::optional<Lateness> line_through(std::span<const Tread> treads) {
+  if (treads.size() < 3) return std::nullopt;
+  const auto steps = std::ssize(treads) - 1;
+  Eigen::MatrixX2d shape = Eigen::MatrixX2d::Ones(steps, 2);
+  Eigen::VectorXd lag(steps);
+  for (Eigen::Index i = 0; i < steps; ++i) {
+    const Tread& higher = treads[static_cast<std::size_t>(i) + 1];
+    shape(i, 1) = higher.first;
+    lag[i] = higher.lag - 1.0;
+  }
+  const Eigen::Vector2d line = shape.colPivHouseholderQr().solve(lag);
+  const auto at = [&](double sample) { return line[0] + line[1] * sample; };
+  const bool is_near = std::ranges::all_of(treads, [&](const Tread& tread) {
+    return at(tread.first) > tread.lag - 2.0 && at(tread.last) < tread.lag + 1.0;
+  });
+  if (!is_near) return std::nullopt;
+  return Lateness{.per_sample = line[1], .at_start = line[0] - std::max(0.0, std::round(line[0]))};
+}
 
 }  // namespace
+
+int Lateness::at(double sample) const noexcept { return static_cast<int>(std::ceil(at_start + per_sample * sample)); }
 
 NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m, double period_s) {
   NetworkLags lags;
@@ -125,23 +173,31 @@ NetworkLags lags_between(std::span<const double> sent_m, std::span<const double>
     if (lag >= 0) {
       found += 1.0;
       if (before >= 0 && lag < before) shrinking += 1.0;
-      if (!is_held) fresh.push_back({static_cast<double>(i), lag});
+      if (!is_held) {
+        const std::size_t sent = i - static_cast<std::size_t>(lag);
+        fresh.push_back({static_cast<double>(i), lag, sent == 0 || sent_m[sent] != sent_m[sent - 1]});
+      }
     }
     before = lag;
   }
   if (moving == 0.0 || found == 0.0 || fresh.empty()) return lags;
   lags.found = found / moving;
   lags.shrinking = shrinking / found;
-  lags.drift = drift_of(fresh);
-  lags.unlike = 0.5 * std::max(0.0, share_of_changes(fresh) - lags.drift);
-  lags.held = std::max(0.0, lags.held / moving - lags.drift);
+  const auto line = lags.are_messages() ? line_through(treads_of(fresh)) : std::nullopt;
+  if (line) {
+    lags.drift = *line;
+  } else if (lags.fluctuate()) {
+    lags.drift.per_sample = slope_in_either_half(fresh);
+  }
+  lags.unlike = 0.5 * std::max(0.0, share_of_changes(fresh) - lags.drift.per_sample);
+  lags.held = std::max(0.0, lags.held / moving - lags.drift.per_sample);
   lags.held_again /= moving;
   for (std::size_t i = 0; i < lags.lag.size(); ++i) {
-    if (lags.lag[i] >= 0) lags.mean += (lags.lag[i] - late_by(lags.drift, static_cast<double>(i))) / found;
+    if (lags.lag[i] >= 0) lags.mean += (lags.lag[i] - lags.drift.at(static_cast<double>(i))) / found;
   }
   std::map<int, double> shares;
   for (const Fresh& one : fresh) {
-    shares[std::max(0, one.lag - late_by(lags.drift, one.sample))] += 1.0 / static_cast<double>(fresh.size());
+    shares[std::max(0, one.lag - lags.drift.at(one.sample))] += 1.0 / static_cast<double>(fresh.size());
   }
   lags.usual = std::ranges::max_element(shares, {}, &std::pair<const int, double>::second)->first;
   const auto shortest =
@@ -184,14 +240,36 @@ Trace network_trace(const EffectType& type, double value) {
   return trace;
 }
 
-/// The targets, as late as the latency and the drift make them [samples].
-std::vector<double> made_late(std::span<const double> sent_m, int latency, double drift) {
+}  // namespace
+
+std::vector<double> made_late(std::span<const double> sent_m, int latency, const Lateness& drift) {
   std::vector<double> late_m;
   for (std::size_t i = 0; i < sent_m.size(); ++i) {
-    const int late = latency + late_by(drift, static_cast<double>(i));
+    const int late = std::max(0, latency + drift.at(static_cast<double>(i)));
     late_m.push_back(sent_m[i - std::min(i, static_cast<std::size_t>(late))]);
   }
   return late_m;
+}
+
+namespace {
+
+/// What makes lags go up and down, and the latency that all targets have beside it.
+struct Fluctuation {
+  DigitTrace shows = DigitTrace::loss;
+  double value = 0.0;
+  int latency = 0;  // samples
+};
+
+Fluctuation fluctuation_of(const NetworkLags& lags, double period_s) {
+  const bool are_alike = 1.0 - lags.unlike > tuning::kEquallyLateMin;
+  // Two late messages in a row: the first one shows, late. Two lost ones: neither does. Nearer to which?
+  const double twice = lags.held * lags.held;
+  const bool is_short_jitter = lags.unlike > 0.5 * twice && lags.held_again < 0.5 * twice;
+  if (are_alike && !is_short_jitter) return {.value = lags.held, .latency = lags.usual};
+  // A message that is late at all shows a sample later.
+  const int latency = std::max(0, lags.shortest - 1);
+  const double jitter = are_alike ? 1.0 / (1.0 - lags.held) : jitter_of(lags.mean - latency);
+  return {.shows = DigitTrace::lateness, .value = jitter * period_s, .latency = latency};
 }
 
 }  // namespace
@@ -199,34 +277,33 @@ std::vector<double> made_late(std::span<const double> sent_m, int latency, doubl
 std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<const double> received_m,
                                      double period_s) {
   const NetworkLags lags = lags_between(sent_m, received_m, period_s);
-  if (!lags.fluctuate()) return {};
-  const bool are_alike = 1.0 - lags.unlike > tuning::kEquallyLateMin;
-  // Two late messages in a row: the first one shows, late. Two lost ones: neither does. Nearer to which?
-  const double twice = lags.held * lags.held;
-  const bool is_short_jitter = lags.unlike > 0.5 * twice && lags.held_again < 0.5 * twice;
-  const bool is_loss = are_alike && !is_short_jitter;
-  // A message that is late at all shows a sample later.
-  const int latency = is_loss ? lags.usual : std::max(0, lags.shortest - 1);
-  const double jitter = are_alike ? 1.0 / (1.0 - lags.held) : jitter_of(lags.mean - latency);
-  const EffectType* const fluctuating =
-      find_effect(EffectInterface::network, is_loss ? DigitTrace::loss : DigitTrace::lateness);
-  const EffectType* const constant = find_effect(EffectInterface::network, "latency");
-  const EffectType* const drifting = find_effect(EffectInterface::network, "clock_drift");
-  if (fluctuating == nullptr || constant == nullptr || drifting == nullptr) return {};
-  std::vector<Trace> traces{network_trace(*fluctuating, is_loss ? lags.held : jitter * period_s)};
-  traces.front().gap_share = gap_share(sent_m, received_m);
-  // Of what is left, each of the others explains a part.
-  const auto add = [&](const EffectType& type, double value, double drift) {
-    traces.push_back(network_trace(type, value));
-    const double beside = std::min(traces.front().gap_share, gap_share(made_late(sent_m, latency, drift), received_m));
-    traces.back().gap_share = traces.front().gap_share - beside;
-    traces.front().gap_share = beside;
+  const bool drifts = lags.drift.per_sample > 0.0;
+  if (!lags.fluctuate() && !drifts) return {};
+  const Fluctuation fluctuation =
+      lags.fluctuate() ? fluctuation_of(lags, period_s) : Fluctuation{.latency = lags.usual};
+  const int latency = fluctuation.latency;
+  std::vector<Trace> traces;
+  double left = gap_share(sent_m, received_m);
+  // Each explains a part of what those before leave.
+  const auto add = [&](const EffectType* type, double value, double leaves) {
+    if (type == nullptr) return;
+    traces.push_back(network_trace(*type, value));
+    traces.back().gap_share = std::max(0.0, left - leaves);
+    left = std::min(left, leaves);
   };
   if (latency > 0) {
-    add(*constant, latency * period_s, 0.0);
+    add(find_effect(EffectInterface::network, "latency"), latency * period_s,
+        gap_share(made_late(sent_m, latency, {}), received_m));
     traces.back().probability = 0.5;  // clocks that are off shift all targets alike
   }
-  if (lags.drift > 0.0) add(*drifting, lags.drift, lags.drift);
+  if (drifts) {
+    add(find_effect(EffectInterface::network, "clock_drift"), lags.drift.per_sample,
+        gap_share(made_late(sent_m, latency, lags.drift), received_m));
+  }
+  if (lags.fluctuate()) {
+    add(find_effect(EffectInterface::network, fluctuation.shows), fluctuation.value, 0.0);
+    std::ranges::rotate(traces, traces.end() - 1);
+  }
   return traces;
 }
 

@@ -25,6 +25,14 @@ struct Trace {
 [[nodiscard]] std::vector<Trace> find_traces(const SiteModel& model, std::span<const Recording> recordings,
                                              std::size_t dof);
 
+/// How late a clock that drifts makes each message, which is played at the next whole sample.
+struct Lateness {
+  double per_sample = 0.0;  // 0: no drift
+  double at_start = 0.0;    // up to half [samples]
+
+  [[nodiscard]] int at(double sample) const noexcept;
+};
+
 /// Delay of each target that a site received, in samples. With only the network in between, every received target
 /// equals one that was sent.
 struct NetworkLags {
@@ -34,12 +42,14 @@ struct NetworkLags {
   double unlike = 0.0;      // share of fresh targets with another lag than those before and behind, beside the drift
   double held = 0.0;        // share of moving samples that repeat the target before, without those of the drift
   double held_again = 0.0;  // and of those that repeat one that was a repetition already
-  double drift = 0.0;       // of fresh targets, per sample; 0: not certainly more than one sample in all [samples]
-  // What is left of the lags beside the drift, of which a fresh target has the next whole sample.
+  Lateness drift;           // of fresh targets; none that is not certainly more than one sample in all
+  // What is left of the lags beside the drift.
   double mean = 0.0;  // samples
   int usual = 0;      // most frequent one of fresh targets [samples]
   int shortest = 0;   // that fresh targets have more than by chance; 0: none has [samples]
 
+  /// Whether the received targets are the ones that were sent.
+  [[nodiscard]] bool are_messages() const noexcept;
   /// Whether the lags go up and down; those of a delay or a drift do not.
   [[nodiscard]] bool fluctuate() const noexcept;
 };
@@ -48,12 +58,16 @@ struct NetworkLags {
 [[nodiscard]] NetworkLags lags_between(std::span<const double> sent_m, std::span<const double> received_m,
                                        double period_s);
 
+/// The targets that a latency and a clock that drifts make late.
+[[nodiscard]] std::vector<double> made_late(std::span<const double> sent_m, int latency, const Lateness& drift);
+
 /// `jitter` or `loss`, if the lags fluctuate, and what all targets have besides: the `clock_drift` by which they come
-/// later and later, and the `latency`, if it is a sample or more. With loss, new targets are as late as the ones before
-/// and behind; with jitter they are not. A jitter of little more than a sample period leaves most of them alike,
-/// too: messages that come too late look lost. But then the one behind a late message is seldom late as well without
-/// showing the late one, so that two repetitions in a row are rare, and of messages that are lost independently of each
-/// other they are not.
+/// later and later, and the `latency`, if it is a sample or more. Without jitter or loss, a drift whose lags
+/// follow a straight line to within a sample, and become longer twice or more; a latency alone is left to a fit. With
+/// loss, new targets are as late as the ones before and behind; with jitter they are not. A jitter of little more than
+/// a sample period leaves most of them alike, too: messages that come too late look lost. But then the one behind a
+/// late message is seldom late as well without showing the late one, so that two repetitions in a row are rare, and of
+/// messages that are lost independently of each other they are not.
 ///
 /// Of a jitter J, evenly spread, the newest message that has come is l samples old or less with the chance
 /// 1 - (1 - T/J)(1 - 2T/J)...(1 - lT/J): J is the one with the recorded mean.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "core/random.hpp"
@@ -31,22 +32,38 @@ struct BlockEnergy {
   }
 };
 
-/// The prediction with the causes. Random network faults cannot be repeated by a seed: for them the lags that were
-/// found show sample by sample what they explain.
-std::vector<double> predicted_with(const SiteModel& model, std::span<const EffectSetting> causes,
-                                   const Segment& segment) {
-  std::vector<double> predicted = predict(model, segment, causes);
-  const bool is_random =
-      segment.to == Channel::target_displacement && std::ranges::any_of(causes, [&](const EffectSetting& cause) {
-        return segment.touched_by(*cause.type) && shows_in_digits(*cause.type);
-      });
-  if (!is_random) return predicted;
+/// The sum over the causes of an effect of the network [its unit].
+double sum_of(std::span<const EffectSetting> causes, std::string_view network_effect) {
+  const EffectType* const type = find_effect(EffectInterface::network, network_effect);
+  double sum = 0.0;
+  for (const EffectSetting& cause : causes) sum += cause.type == type ? cause.values.front() : 0.0;
+  return sum;
+}
+
+/// Messages, which are played at the next whole sample. Random faults cannot be repeated by a seed: for them the lags
+/// that were found show sample by sample what they explain.
+void play_messages(std::span<const EffectSetting> causes, const Segment& segment, std::vector<double>& predicted) {
   std::vector<double> sent_m(segment.input.size());
   std::ranges::transform(segment.input, sent_m.begin(), &Motion::displacement_m);
   const NetworkLags lags = lags_between(sent_m, segment.measured, segment.period_s);
-  for (std::size_t i = 0; i < predicted.size(); ++i) {
-    if (lags.lag[i] >= 0) predicted[i] = segment.measured[i];
+  const bool is_random = std::ranges::any_of(causes, [&](const EffectSetting& cause) {
+    return segment.touched_by(*cause.type) && shows_in_digits(*cause.type);
+  });
+  const double drift = sum_of(causes, "clock_drift");
+  if (is_random) {
+    for (std::size_t i = 0; i < predicted.size(); ++i) {
+      if (lags.lag[i] >= 0) predicted[i] = segment.measured[i];
+    }
+  } else if (drift > 0.0 && lags.are_messages()) {
+    const double late_s = sum_of(causes, "latency") + sum_of(causes, "clock_offset");
+    predicted = made_late(sent_m, static_cast<int>(std::ceil(late_s / segment.period_s)), {.per_sample = drift});
   }
+}
+
+std::vector<double> predicted_with(const SiteModel& model, std::span<const EffectSetting> causes,
+                                   const Segment& segment) {
+  std::vector<double> predicted = predict(model, segment, causes);
+  if (segment.to == Channel::target_displacement) play_messages(causes, segment, predicted);
   return predicted;
 }
 

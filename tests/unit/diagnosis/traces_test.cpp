@@ -161,9 +161,6 @@ TEST(NetworkTrace, SeparatesLossJitterAndDelay) {
 
   const std::vector<int> late(kSamples, 5);
   EXPECT_TRUE(traces_of_network(motion_m(), received(late), kPeriod_s).empty());
-  std::vector<int> drifting(kSamples);
-  for (std::size_t i = 0; i < kSamples; ++i) drifting[i] = static_cast<int>(i / 1000);
-  EXPECT_TRUE(traces_of_network(motion_m(), received(drifting), kPeriod_s).empty());
   EXPECT_TRUE(traces_of_network(motion_m(), with_noise(motion_m(), 1e-6), kPeriod_s).empty()) << "not what was sent";
 }
 
@@ -200,6 +197,50 @@ std::vector<int> drifting(double drift_ratio, int latency) {
     lags[i] = latency + static_cast<int>(std::ceil(drift_ratio * static_cast<double>(i)));
   }
   return lags;
+}
+
+TEST(NetworkTrace, ClockThatDriftsIsToldByTheInstantsAtWhichTargetsComeLater) {
+  for (const double drift_ratio : {3e-4, 5e-4, 3e-3}) {
+    for (const int latency : {0, 4}) {
+      const std::vector<Trace> traces =
+          traces_of_network(motion_m(), received(drifting(drift_ratio, latency)), kPeriod_s);
+      ASSERT_EQ(traces.size(), latency == 0 ? 1U : 2U) << drift_ratio << ' ' << latency;
+      EXPECT_EQ(traces.back().effect.type->name, "clock_drift");
+      // Each instant is known to a sample: of the time between the first and the last of them, two samples at most.
+      const double steps = std::floor(drift_ratio * kSamples) - 1.0;
+      EXPECT_NEAR(traces.back().effect.values[0], drift_ratio, drift_ratio * drift_ratio * 2.0 / steps);
+      EXPECT_GT(traces.back().gap_share, 0.0);
+      EXPECT_EQ(traces.back().probability, 1.0);
+      if (latency == 0) continue;
+      EXPECT_EQ(traces.front().effect.type->name, "latency");
+      EXPECT_DOUBLE_EQ(traces.front().effect.values[0], latency * kPeriod_s);
+    }
+  }
+}
+
+/// A quartz that warms and cools.
+TEST(NetworkTrace, ClockWhoseRateWandersByATenthDrifts) {
+  constexpr double kDriftRatio = 1e-3;
+  std::vector<int> lags(kSamples);
+  double late = 0.0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    lags[i] = static_cast<int>(std::ceil(late));
+    late += kDriftRatio * (1.0 + 0.1 * std::sin(2e-3 * static_cast<double>(i)));
+  }
+  const std::vector<Trace> traces = traces_of_network(motion_m(), received(lags), kPeriod_s);
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces[0].effect.type->name, "clock_drift");
+  // The line through instants that come and go by 0.1 / 2e-3 samples: as much over half of all of them.
+  EXPECT_NEAR(traces[0].effect.values[0], kDriftRatio, kDriftRatio * 50.0 / (0.5 * kSamples));
+}
+
+/// Two longer ways, one after the other, are no straight line; nor is one that is longer once.
+TEST(NetworkTrace, LongerWaysAreNoClockThatDrifts) {
+  std::vector<int> lags(kSamples, 1);
+  std::fill(lags.begin() + kSamples / 2, lags.end(), 2);
+  EXPECT_TRUE(traces_of_network(motion_m(), received(lags), kPeriod_s).empty());
+  std::fill(lags.begin() + kSamples * 6 / 10, lags.end(), 3);
+  EXPECT_TRUE(traces_of_network(motion_m(), received(lags), kPeriod_s).empty());
 }
 
 TEST(NetworkTrace, LossAndAClockThatDriftsAreToldTogether) {
