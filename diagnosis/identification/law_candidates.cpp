@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <deque>
+#include <memory>
 #include <type_traits>
+#include <typeinfo>
 
 #include "core/assert.hpp"
 #include "diagnosis/tuning.hpp"
@@ -441,6 +443,17 @@ const LawCandidate& law_candidate(const EffectType& replacement) {
 
 bool are_the_same_law(const EffectType& one, const EffectType& other) noexcept {
   return one.replacement != nullptr && other.replacement != nullptr && one.replacement->law == other.replacement->law;
+}
+
+bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
+  if (!model.make_law) return false;
+  SiteModel replaced = model;
+  add_effect(replaced, replacement);
+  const std::unique_ptr<Law> law = law_of(replaced);
+  const std::unique_ptr<Law> own = model.make_law();
+  const Law& first = *law;
+  const Law& second = *own;
+  return typeid(first) == typeid(second);
 }
 
 std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter) {

@@ -6,6 +6,7 @@
 
 #include "diagnosis/identification/search_table.hpp"
 #include "plant/effects/effect_type.hpp"
+#include "plant/site_model.hpp"
 
 namespace hybridtest {
 
@@ -37,6 +38,9 @@ struct LawCandidate {
 
 /// Whether both are laws, and of one name: one has parameters that the other has not.
 [[nodiscard]] bool are_the_same_law(const EffectType& one, const EffectType& other) noexcept;
+
+/// Whether a law that replaces the model's has the same form: it differs in its numbers alone.
+[[nodiscard]] bool has_own_form(const SiteModel& model, const EffectSetting& replacement);
 
 /// The search range of a parameter of an effect, of a law or of a formula; nothing: it is not searched.
 [[nodiscard]] std::optional<SearchRange> range_of(const EffectType& effect, const EffectParameter& parameter);

@@ -157,7 +157,10 @@ InputErrors input_errors(const SiteModel& model, const Segment& segment) {
   };
   const std::vector<double> wide = predict(model, segment);
   InputErrors errors;
-  errors.of_noise = change(predict(model, with_noise(segment, segment.noise, 1.0)), wide);
+  // What is told is the noise itself, and another one than a draw with that of the readings: slow noise with it.
+  errors.of_noise = segment.told_noise.empty()
+                        ? change(predict(model, with_noise(segment, segment.noise, 1.0)), wide)
+                        : change(wide, predict(model, with_noise(segment, segment.told_noise, -1.0)));
   if (segment.narrow_input.empty()) return errors;
   const std::vector<double> narrow = predicted(segment.narrow_input);
   errors.of_window = change(narrow, wide);

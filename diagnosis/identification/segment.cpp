@@ -346,7 +346,7 @@ Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofR
 }
 
 /// What a spring and a damper beside the model, and with them perhaps a mass, leave of a force along the motion of a
-/// smoothed segment [mean square].
+/// smoothed segment [mean square]. A mass is not negative: dry friction would be one in part.
 double left_beside(const SiteModel& model, const std::vector<double>& force_n, const Segment& smooth, bool with_mass) {
   const auto judged = static_cast<Eigen::Index>(force_n.size() - 2 * smooth.unjudged);
   if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return std::numeric_limits<double>::infinity();
@@ -360,7 +360,9 @@ double left_beside(const SiteModel& model, const std::vector<double>& force_n, c
     if (with_mass) columns(row, 4) = motion.acceleration_m_per_s2;
     right[row] = force_n[i];
   }
-  return (right - columns * columns.colPivHouseholderQr().solve(right)).squaredNorm() / static_cast<double>(judged);
+  const Eigen::VectorXd sizes = columns.colPivHouseholderQr().solve(right);
+  if (with_mass && sizes[4] < 0.0) return left_beside(model, force_n, smooth, false);
+  return (right - columns * sizes).squaredNorm() / static_cast<double>(judged);
 }
 
 /// A specimen that is simulated turns at reversals that are as small as the noise, too, and a real one does not: they

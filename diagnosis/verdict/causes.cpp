@@ -103,15 +103,16 @@ bool delays_by_more_than(const IdentificationProblem& problem, const EffectSetti
   return own_s > 0.0 && sure_s > share * own_s;
 }
 
-/// Numbers of the model that are slightly off. Not among them: a zero, which is known exactly before a test, and
-/// damping that the model does not have.
+/// Numbers of the model that are slightly off, of its law all together, too. Not among them: a zero, which is known
+/// exactly before a test, and damping that the model does not have.
 std::vector<std::size_t> slightly_off(const IdentificationProblem& problem, const Selection& selection, double share) {
   std::vector<std::size_t> corrections;
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     const EffectSetting& effect = selection.chosen.effects[i];
     const ModelNumber number = effect.type->traits.number;
     const bool is_in_model = holds(problem.model.effects, effect.type);
-    const bool is_number = is_in_model || (number != ModelNumber::none && number != ModelNumber::damping);
+    const bool is_number = is_in_model || (number != ModelNumber::none && number != ModelNumber::damping) ||
+                           (replaces_law(effect) && has_own_form(problem.model, effect));
     if (!is_number || number == ModelNumber::offset) continue;
     // An output follows a gain, a stiffness or a strength in proportion. A delay and a bandwidth that are as much off
     // change it by less.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <typeinfo>
 #include <utility>
 
 #include "diagnosis/identification/law_candidates.hpp"
@@ -235,18 +234,6 @@ Candidate without_needless_numbers(const IdentificationProblem& problem, Candida
   return candidate;
 }
 
-/// Whether a law that replaces the model's has the same form: it differs in its numbers alone.
-bool has_own_form(const SiteModel& model, const EffectSetting& replacement) {
-  if (!model.make_law) return false;
-  SiteModel replaced = model;
-  add_effect(replaced, replacement);
-  const std::unique_ptr<Law> law = law_of(replaced);
-  const std::unique_ptr<Law> own = model.make_law();
-  const Law& first = *law;
-  const Law& second = *own;
-  return typeid(first) == typeid(second);
-}
-
 /// Whether several numbers of the model that are slightly off beside one effect have to be far off beside another.
 bool pushes_numbers(const IdentificationProblem& problem, const std::vector<EffectSetting>& with_one,
                     const std::vector<EffectSetting>& with_another) {
@@ -438,6 +425,28 @@ void grow_further(const IdentificationProblem& problem, const IdentificationProb
       break;
     }
   }
+}
+
+void correct_numbers(const IdentificationProblem& problem, const FitOutcome& by_numbers, double within,
+                     Growth& growth) {
+  const std::vector<EffectSetting>& found = growth.fit.effects;
+  const GapEnergy left = gap_energy(problem, growth.fit);
+  const bool is_at_floor = left.total <= std::pow(tuning::kFaultOverFloor, 2) * left.floor;
+  if (found.empty() || is_at_floor || left.is_clear()) return;
+  const auto is_new = [&](const EffectSetting& effect) { return !holds(found, effect.type); };
+  std::vector<EffectSetting> start = with_all_numbers(problem, found);
+  std::erase_if(start, [&](const EffectSetting& effect) {
+    return is_new(effect) && effect.type->traits.number == ModelNumber::damping;
+  });
+  if (start.size() == found.size()) return;
+  FitOutcome with = refit_effects(problem, start, false);
+  prune(problem, by_numbers, with);
+  const auto stays = [&](const EffectSetting& effect) { return holds(with.effects, effect.type); };
+  const auto is_slight = [&](const EffectSetting& effect) {
+    return !is_new(effect) || changes_at_most(problem, effect, within);
+  };
+  if (with.effects.size() == found.size() || !std::ranges::all_of(found, stays)) return;
+  if (std::ranges::all_of(with.effects, is_slight)) growth.fit = std::move(with);
 }
 
 namespace {

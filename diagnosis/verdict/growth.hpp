@@ -68,6 +68,11 @@ void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, F
 void grow_further(const IdentificationProblem& problem, const IdentificationProblem& coarse, const Selection& selection,
                   Beside freedom, const PartProgress& progress, Growth& growth);
 
+/// Where what was found leaves little above the floor: numbers of the model that are slightly off. Beside a large cause
+/// they are nothing that a further effect is looked for, but another motion may show more of them.
+/// @param within   of the output that each of them may change [rms over rms].
+void correct_numbers(const IdentificationProblem& problem, const FitOutcome& by_numbers, double within, Growth& growth);
+
 /// Which effects are needed, when all are known: compared at the lower rate, at a fraction of the cost. What is lost so
 /// at the full rate is asked there: what moves within a few samples, as a slip, hardly exists at the lower one.
 /// @return whether an effect was dropped.

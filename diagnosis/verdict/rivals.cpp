@@ -207,6 +207,18 @@ bool is_rival(const IdentificationProblem& problem, const VerdictPolicy& policy,
              problem, [&](const EffectType& type) { return &type == place.type(); }, rival);
 }
 
+/// The numbers of the model that a rival needs, and beside one in the place of a law of the model's own form the
+/// numbers of that law, which may be slightly off.
+std::vector<EffectSetting> numbers_beside(const IdentificationProblem& problem, const Place& place,
+                                          const FitOutcome& rival) {
+  std::vector<EffectSetting> numbers = wrong_numbers(problem, rival);
+  if (place.type()->replacement == nullptr) return numbers;
+  for (const EffectType* const type : judged_effects(problem)) {
+    if (is_of_law(*type) && !holds(numbers, type)) numbers.push_back(absent(*type));
+  }
+  return numbers;
+}
+
 /// An effect that may be in the place of the chosen one, by its fit at the lower rate.
 struct PossibleRival {
   EffectSetting effect;
@@ -226,7 +238,7 @@ std::optional<Candidate> rival_in(const IdentificationProblem& problem, const Ve
   rival.fit = refit_effects(beside, rival.fit.effects, true);
   if (is_rival(beside, policy, place, rival, possible.is_alike)) return rival;
   // A law does not follow its numbers in proportion.
-  const std::vector<EffectSetting> numbers = wrong_numbers(beside, rival.fit);
+  const std::vector<EffectSetting> numbers = numbers_beside(beside, place, rival.fit);
   if (numbers.empty() || !may_be_slight(changes_of(beside, rival.fit) - place.all, place.alone)) return {};
   effects = rival.fit.effects;
   effects.insert(effects.end(), numbers.begin(), numbers.end());
@@ -266,8 +278,9 @@ std::vector<PossibleRival> of_about_the_same_signature(const IdentificationProbl
   return found;
 }
 
-/// Positions of the chosen effects that may be a cause of the verdict, largest share first. Not among them: the
-/// stiffness of the user's spring beside another cause, which is free beside every candidate.
+/// Positions of the chosen effects that may be a cause of the verdict, largest share first. Not among them: a law of
+/// another form than the model's, and the stiffness of the user's spring beside another cause, which is free beside
+/// every candidate.
 std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, const Selection& selection,
                                          const Judgement& judgement) {
   const std::vector<EffectSetting>& effects = selection.chosen.effects;
@@ -280,7 +293,8 @@ std::vector<std::size_t> causes_by_share(const IdentificationProblem& problem, c
   std::erase_if(causes, [&](std::size_t i) {
     const EffectType& type = *effects[i].type;
     const bool is_of_law = type.interface == EffectInterface::specimen && is_model_number(problem, type);
-    return type.replacement != nullptr || (problem.law_is_spring && is_of_law && told > 1);
+    const bool is_another_law = replaces_law(effects[i]) && !has_own_form(problem.model, effects[i]);
+    return is_another_law || (problem.law_is_spring && is_of_law && told > 1);
   });
   std::ranges::stable_sort(causes, std::greater{}, [&](std::size_t i) { return selection.shares[i]; });
   return causes;

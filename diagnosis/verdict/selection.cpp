@@ -304,6 +304,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   try_all_laws(problem, coarse, policy, selection, growth);
   try_several(problem, coarse, selection, progress, growth);
   keep_what_tells(problem, policy, selection, growth);
+  correct_numbers(problem, selection.by_numbers, policy.numbers_within, growth);
   if (growth.fit.effects.empty()) return selection;
   // Of what was chosen at the lower rate, the full rate may leave nothing.
   drop_gone(problem, growth.fit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -19,9 +20,17 @@ namespace {
 constexpr std::size_t kInterfaces = static_cast<std::size_t>(EffectInterface::numerical_substructure) + 1;
 using Shares = std::array<double, kInterfaces>;
 
+double energy_of(const SegmentResult& result) {
+  return std::accumulate(result.held_out_squares.begin(), result.held_out_squares.end(), 0.0);
+}
+
 /// The interface to which the gap of a segment is attributed. Effects of the displacement sensor also show in the
-/// force: they come last.
-EffectInterface blamed(const Segment& segment, const FitOutcome& chosen) {
+/// force: they come last, and only where they explain most of its gap.
+EffectInterface blamed(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& chosen,
+                       std::size_t position) {
+  const Segment& segment = problem.segments[position].segment;
+  const bool is_explained =
+      energy_of(chosen.segments[position]) < (1.0 - tuning::kMainShare) * energy_of(baseline.segments[position]);
   EffectInterface blamed = segment.interface;
   bool is_found = false;
   for (const EffectSetting& effect : chosen.effects) {
@@ -29,7 +38,7 @@ EffectInterface blamed(const Segment& segment, const FitOutcome& chosen) {
     const bool acts_elsewhere =
         effect.type->interface == EffectInterface::displacement_sensor && segment.to == Channel::measured_force;
     if (!acts_elsewhere) return effect.type->interface;
-    if (!is_found) blamed = effect.type->interface;
+    if (!is_found && is_explained) blamed = effect.type->interface;
     is_found = true;
   }
   return blamed;
@@ -54,7 +63,7 @@ Shares shares_of(const IdentificationProblem& problem, const FitOutcome& baselin
       samples += static_cast<double>(fit.block_begins[drawn + 1] - fit.block_begins[drawn]);
     }
     const double excess = std::max(0.0, energy / samples - fit.floor * fit.floor) / output;
-    shares[static_cast<std::size_t>(blamed(fit.segment, chosen))] += excess;
+    shares[static_cast<std::size_t>(blamed(problem, baseline, chosen, i))] += excess;
     sum += excess;
   }
   if (sum > 0.0) {
@@ -102,8 +111,9 @@ std::vector<report::InterfaceGap> locate(const IdentificationProblem& problem, c
     floors[k] += fit.sample_floor * fit.sample_floor * static_cast<double>(size) / output;
     judged[k] += 1.0;
   };
-  for (const FitSegment& fit : problem.segments) {
-    const EffectInterface at = blamed(fit.segment, chosen);
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    const FitSegment& fit = problem.segments[i];
+    const EffectInterface at = blamed(problem, baseline, chosen, i);
     add(at, fit, predict(problem.model, fit.segment));
     // The stage itself is judged with the effect of its neighbour added.
     if (at != fit.segment.interface)

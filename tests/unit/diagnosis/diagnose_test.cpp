@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compensation/polynomial_displacement.hpp"
+#include "diagnosis/verdict/where.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -122,6 +123,24 @@ TEST(Diagnose, SeparatesSensorFromActuatorByForce) {
     EXPECT_EQ(gap->share, 0.0) << stage;
     EXPECT_FALSE(gap->is_at_fault) << stage;
   }
+}
+
+/// The transducer reads half a millimetre too much, and the specimen meets a stop on either side.
+TEST(Diagnose, WhatASensorDoesNotExplainOfTheForceIsTheSpecimens) {
+  const auto share_of_specimen = [](double stop_n_per_m) {
+    const auto force_n = [=](double t) {
+      return spring_n(t) + stop_n_per_m * (made_motion_m(t) - std::clamp(made_motion_m(t), -0.012, 0.012));
+    };
+    const Recording recording = made_recording([](double t) { return made_motion_m(t) + 5e-4; }, force_n);
+    const IdentificationProblem problem = make_problem(made_model(), segments_of(recording, 0, 0));
+    const EffectType* const bias = find_effect(EffectInterface::displacement_sensor, "bias");
+    const FitOutcome found = refit_effects(problem, {{bias, {0.0}}}, false);
+    const auto where = locate(problem, fit_nothing(problem, false), found, 1);
+    const auto gap = std::ranges::find(where, "specimen", &report::InterfaceGap::interface);
+    return gap == where.end() ? 0.0 : gap->share;
+  };
+  EXPECT_GT(share_of_specimen(3.0 * kMadeStiffness_n_per_m), 0.5);
+  EXPECT_EQ(share_of_specimen(0.0), 0.0);  // control: the force of a spring knows of the transducer
 }
 
 /// It moves a thousandth of its command, and not as commanded.

@@ -142,6 +142,31 @@ TEST(NoiseOfInput, ColouredNoiseIsTakenOffWhereItIsTold) {
   EXPECT_NEAR(left_of_noise(), 1.0, 0.1);
 }
 
+/// A spring and a damper as modelled, with slow noise of the motion: without it the floor is of white noise alone.
+TEST(NoiseOfInput, FloorHasTheNoiseThatIsTold) {
+  const std::vector<double> noise = made_noise({0.7, 0.0}, 6000, 5e-5, kSitePeriod_s, 1);
+  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
+  constexpr double kDamping_n_s_per_m = 5.0e4;
+  const Recording recording =
+      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
+                     [](double t) {
+                       return kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t);
+                     },
+                     kForceNoise_n);
+  SiteModel model = made_model();
+  add_effect(model,
+             {.type = find_effect(EffectInterface::specimen, ModelNumber::damping), .values = {kDamping_n_s_per_m}});
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  const auto force = [&] { return of_force(make_problem(model, segments)); };
+  const FitSegment untold = force();
+  const double left_n =
+      (untold.measured - untold.baseline).norm() / std::sqrt(static_cast<double>(untold.measured.size()));
+  EXPECT_LT(untold.channel_floor, 0.8 * left_n);  // control
+  segments.back().told_noise = motion_of_readings(segments.back(), noise);
+  // Beside it the load cell has noise of a hundredth.
+  EXPECT_NEAR(force().channel_floor, left_n, 0.02 * left_n);
+}
+
 TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {
   const Recording recording =
       with_noisy_motion(2e-5, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });

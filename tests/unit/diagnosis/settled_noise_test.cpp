@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
@@ -235,6 +236,25 @@ TEST(SettledNoise, WrongModelIsNotNone) {
       EXPECT_NE(verdict_on(law, beside, {.correlation = 0.99}, 1, 1.5), report::Verdict::none) << law.name;
     }
   }
+}
+
+/// The load cell has an offset of a twentieth of the largest force, which drifts by a fiftieth. A wave as slow as the
+/// recording is long is not taken off (control).
+TEST(SettledNoise, SamplesAreAsIndependentBesideAnOffsetThatDrifts) {
+  const auto independent = [](double offset_n, double drift_n, double wave_n) {
+    const auto force_n = [&](double t) {
+      const double part = t / 12.0;
+      return kStiffness_n_per_m * made_motion_m(t) + offset_n + drift_n * part +
+             wave_n * std::sin(2.0 * std::numbers::pi * part);
+    };
+    const Recording recording = made_recording(made_motion_m, force_n, 0.1);
+    const IdentificationProblem problem = make_problem(made_model(), segments_of(recording, 0, 0));
+    EXPECT_EQ(problem.segments.back().segment.to, Channel::measured_force);
+    return problem.segments.back().independent;
+  };
+  const double alone = independent(0.0, 0.0, 0.0);
+  EXPECT_NEAR(independent(1000.0, 400.0, 0.0), alone, 1e-6 * alone);
+  EXPECT_LT(independent(0.0, 0.0, 400.0), 0.5 * alone);
 }
 
 /// Noise of the transducer is ten times as much force in a model that is ten times too stiff as in the specimen. Of a
