@@ -358,19 +358,20 @@ double share_answered(const Eigen::VectorXd& displacement, const Eigen::VectorXd
   return all > 0.0 && by_chance < 1.0 ? std::clamp(answered / all, 0.0, 1.0) : 0.0;
 }
 
-/// Without the straight line that it follows from the first sample to the last.
-Eigen::VectorXd without_line(const Eigen::VectorXd& values) {
+/// Without the straight line in time that makes up most of it, if one does: the zero of a transducer and its drift are
+/// no noise, and nothing would seem independent beside them.
+Eigen::VectorXd without_zero(const Eigen::VectorXd& values) {
   Eigen::MatrixX2d line{values.size(), 2};
   line.col(0).setOnes();
   line.col(1).setLinSpaced(-1.0, 1.0);
-  return values - line * line.colPivHouseholderQr().solve(values);
+  Eigen::VectorXd rest = values - line * line.colPivHouseholderQr().solve(values);
+  return rest.squaredNorm() < (1.0 - tuning::kMainShare) * values.squaredNorm() ? rest : values;
 }
 
 /// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
-/// The zero of a transducer and its drift are no noise: nothing would seem independent beside them.
 /// @param form_is_right   of the model that leaves it, with what was found.
 void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right) {
-  const Eigen::VectorXd residual = without_line(left);
+  const Eigen::VectorXd residual = without_zero(left);
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
   // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the

@@ -285,23 +285,19 @@ std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<c
   std::vector<Trace> traces;
   double left = gap_share(sent_m, received_m);
   // Each explains a part of what those before leave.
-  const auto add = [&](const EffectType* type, double value, double leaves) {
-    if (type == nullptr) return;
-    traces.push_back(network_trace(*type, value));
+  const auto add = [&](const EffectType& type, double value, double leaves) {
+    traces.push_back(network_trace(type, value));
     traces.back().gap_share = std::max(0.0, left - leaves);
     left = std::min(left, leaves);
   };
+  const auto left_by = [&](const Lateness& drift) { return gap_share(made_late(sent_m, latency, drift), received_m); };
   if (latency > 0) {
-    add(find_effect(EffectInterface::network, "latency"), latency * period_s,
-        gap_share(made_late(sent_m, latency, {}), received_m));
+    add(*find_effect(EffectInterface::network, "latency"), latency * period_s, left_by({}));
     traces.back().probability = 0.5;  // clocks that are off shift all targets alike
   }
-  if (drifts) {
-    add(find_effect(EffectInterface::network, "clock_drift"), lags.drift.per_sample,
-        gap_share(made_late(sent_m, latency, lags.drift), received_m));
-  }
+  if (drifts) add(*find_effect(EffectInterface::network, "clock_drift"), lags.drift.per_sample, left_by(lags.drift));
   if (lags.fluctuate()) {
-    add(find_effect(EffectInterface::network, fluctuation.shows), fluctuation.value, 0.0);
+    add(*find_effect(EffectInterface::network, fluctuation.shows), fluctuation.value, 0.0);
     std::ranges::rotate(traces, traces.end() - 1);
   }
   return traces;
