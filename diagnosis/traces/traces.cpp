@@ -1,6 +1,7 @@
 #include "diagnosis/traces/traces.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -298,7 +299,7 @@ std::vector<Trace> traces_of_network(std::span<const double> sent_m, std::span<c
   if (drifts) add(*find_effect(EffectInterface::network, "clock_drift"), lags.drift.per_sample, left_by(lags.drift));
   if (lags.fluctuate()) {
     add(*find_effect(EffectInterface::network, fluctuation.shows), fluctuation.value, 0.0);
-    std::ranges::rotate(traces, traces.end() - 1);
+    std::rotate(traces.begin(), traces.end() - 1, traces.end());
   }
   return traces;
 }
