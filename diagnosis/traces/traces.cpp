@@ -1,7 +1,6 @@
 #include "diagnosis/traces/traces.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -59,49 +58,57 @@ double share_of_changes(std::span<const Fresh> fresh) {
   return changes / static_cast<double>(fresh.size());
 }
 
-struct Slope {
-  double value = 0.0;  // samples per sample
-  double span = 0.0;   // samples
-  double standard_error = 0.0;
+/// How late they come, as a straight line.
+struct Line {
+  double slope = 0.0;                                               // samples per sample
+  double at_zero = 0.0;                                             // samples
+  double span = 0.0;                                                // samples
+  double standard_error = std::numeric_limits<double>::infinity();  // of the slope
 
-  [[nodiscard]] bool exceeds(double lag) const noexcept {
-    return (value - tuning::kTwoSided95 * standard_error) * span > lag;
+  [[nodiscard]] double at(double sample) const noexcept { return at_zero + slope * sample; }
+  [[nodiscard]] bool rises_by_more_than(double lag) const noexcept {
+    return (slope - tuning::kTwoSided95 * standard_error) * span > lag;
   }
 };
 
-/// How much later they come with each sample, by least squares.
-Slope slope_of(std::span<const Fresh> fresh) {
+/// By least squares, of two at least.
+Line line_of(std::span<const Fresh> fresh) {
   const auto n = static_cast<Eigen::Index>(fresh.size());
-  if (n < 3) return {};
+  if (n < 2) return {};
   Eigen::ArrayXd sample(n);
   Eigen::ArrayXd lag(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     sample[i] = fresh[static_cast<std::size_t>(i)].sample;
     lag[i] = fresh[static_cast<std::size_t>(i)].lag;
   }
-  Slope slope{.span = sample[n - 1] - sample[0]};
-  sample -= sample.mean();
-  lag -= lag.mean();
+  Line line{.span = sample[n - 1] - sample[0]};
+  const double middle = sample.mean();
+  const double mean = lag.mean();
+  sample -= middle;
+  lag -= mean;
   const double squares = sample.square().sum();
-  slope.value = (sample * lag).sum() / squares;
-  slope.standard_error = std::sqrt((lag - slope.value * sample).square().sum() / static_cast<double>(n - 2) / squares);
-  return slope;
+  line.slope = (sample * lag).sum() / squares;
+  line.at_zero = mean - line.slope * middle;
+  if (n < 3) return line;
+  line.standard_error = std::sqrt((lag - line.slope * sample).square().sum() / static_cast<double>(n - 2) / squares);
+  return line;
 }
 
 /// A clock that drifts makes them later in either half of the recording. 0 where that is not certain, or where it is
 /// not certainly more than a sample in all.
 double slope_in_either_half(std::span<const Fresh> fresh) {
-  const Slope slope = slope_of(fresh);
+  const Line line = line_of(fresh);
   const std::size_t half = fresh.size() / 2;
-  const bool is_steady = slope_of(fresh.first(half)).exceeds(0.0) && slope_of(fresh.subspan(half)).exceeds(0.0);
-  return is_steady && slope.exceeds(1.0) ? slope.value : 0.0;
+  const bool is_steady =
+      line_of(fresh.first(half)).rises_by_more_than(0.0) && line_of(fresh.subspan(half)).rises_by_more_than(0.0);
+  return is_steady && line.rises_by_more_than(1.0) ? line.slope : 0.0;
 }
 
 /// Successive targets of the same lag.
 struct Tread {
   double first = 0.0;  // samples
   double last = 0.0;
-  double lag = 0.0;
+  int lag = 0;
 };
 
 /// The stairs of lags that never become shorter; none of others. A value that was sent twice is found with the shorter
@@ -116,7 +123,7 @@ std::vector<Tread> treads_of(std::span<const Fresh> fresh) {
       continue;
     }
     if (treads.empty() || one.lag > treads.back().lag) {
-      treads.push_back({one.sample, one.sample, static_cast<double>(one.lag)});
+      treads.push_back({one.sample, one.sample, one.lag});
     }
     treads.back().last = one.sample;
   }
@@ -128,21 +135,14 @@ std::vector<Tread> treads_of(std::span<const Fresh> fresh) {
 /// that is less than twice, or where the line leaves the stairs by more than a sample: then another way is longer.
 std::optional<Lateness> line_through(std::span<const Tread> treads) {
   if (treads.size() < 3) return std::nullopt;
-  const auto steps = std::ssize(treads) - 1;
-  Eigen::MatrixX2d shape = Eigen::MatrixX2d::Ones(steps, 2);
-  Eigen::VectorXd lag(steps);
-  for (Eigen::Index i = 0; i < steps; ++i) {
-    const Tread& higher = treads[static_cast<std::size_t>(i) + 1];
-    shape(i, 1) = higher.first;
-    lag[i] = higher.lag - 1.0;
-  }
-  const Eigen::Vector2d line = shape.colPivHouseholderQr().solve(lag);
-  const auto at = [&](double sample) { return line[0] + line[1] * sample; };
+  std::vector<Fresh> longer;
+  for (const Tread& tread : treads.subspan(1)) longer.push_back({.sample = tread.first, .lag = tread.lag - 1});
+  const Line line = line_of(longer);
   const bool is_near = std::ranges::all_of(treads, [&](const Tread& tread) {
-    return at(tread.first) > tread.lag - 2.0 && at(tread.last) < tread.lag + 1.0;
+    return line.at(tread.first) > tread.lag - 2 && line.at(tread.last) < tread.lag + 1;
   });
   if (!is_near) return std::nullopt;
-  return Lateness{.per_sample = line[1], .at_start = line[0] - std::max(0.0, std::round(line[0]))};
+  return Lateness{.per_sample = line.slope, .at_start = line.at_zero - std::max(0.0, std::round(line.at_zero))};
 }
 
 }  // namespace

@@ -40,26 +40,28 @@ double sum_of(std::span<const EffectSetting> causes, std::string_view network_ef
   return sum;
 }
 
-/// Messages, which are played at the next whole sample. Random faults cannot be repeated by a seed: for them the lags
-/// that were found show sample by sample what they explain.
+/// What a site receives, which plays messages at the next whole sample, where the causes say so. Random faults cannot
+/// be repeated by a seed: for them the lags that were found show sample by sample what they explain.
 void play_messages(std::span<const EffectSetting> causes, const Segment& segment, std::vector<double>& predicted) {
-  std::vector<double> sent_m(segment.input.size());
-  std::ranges::transform(segment.input, sent_m.begin(), &Motion::displacement_m);
-  const NetworkLags lags = lags_between(sent_m, segment.measured, segment.period_s);
   const bool is_random = std::ranges::any_of(causes, [&](const EffectSetting& cause) {
     return segment.touched_by(*cause.type) && shows_in_digits(*cause.type);
   });
   const double drift = sum_of(causes, "clock_drift");
+  if (!is_random && !(drift > 0.0)) return;
+  std::vector<double> sent_m(segment.input.size());
+  std::ranges::transform(segment.input, sent_m.begin(), &Motion::displacement_m);
+  const NetworkLags lags = lags_between(sent_m, segment.measured, segment.period_s);
   if (is_random) {
     for (std::size_t i = 0; i < predicted.size(); ++i) {
       if (lags.lag[i] >= 0) predicted[i] = segment.measured[i];
     }
-  } else if (drift > 0.0 && lags.are_messages()) {
+  } else if (lags.are_messages()) {
     const double late_s = sum_of(causes, "latency") + sum_of(causes, "clock_offset");
     predicted = made_late(sent_m, static_cast<int>(std::ceil(late_s / segment.period_s)), {.per_sample = drift});
   }
 }
 
+/// The prediction with the causes.
 std::vector<double> predicted_with(const SiteModel& model, std::span<const EffectSetting> causes,
                                    const Segment& segment) {
   std::vector<double> predicted = predict(model, segment, causes);

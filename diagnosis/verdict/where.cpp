@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -20,17 +19,14 @@ namespace {
 constexpr std::size_t kInterfaces = static_cast<std::size_t>(EffectInterface::numerical_substructure) + 1;
 using Shares = std::array<double, kInterfaces>;
 
-double energy_of(const SegmentResult& result) {
-  return std::accumulate(result.held_out_squares.begin(), result.held_out_squares.end(), 0.0);
-}
-
 /// The interface to which the gap of a segment is attributed. Effects of the displacement sensor also show in the
 /// force: they come last, and only where they explain most of its gap.
 EffectInterface blamed(const IdentificationProblem& problem, const FitOutcome& baseline, const FitOutcome& chosen,
                        std::size_t position) {
-  const Segment& segment = problem.segments[position].segment;
-  const bool is_explained =
-      energy_of(chosen.segments[position]) < (1.0 - tuning::kMainShare) * energy_of(baseline.segments[position]);
+  const FitSegment& fit = problem.segments[position];
+  const Segment& segment = fit.segment;
+  const bool is_explained = chosen.segments[position].held_out_mean_square(fit) <
+                            (1.0 - tuning::kMainShare) * baseline.segments[position].held_out_mean_square(fit);
   EffectInterface blamed = segment.interface;
   bool is_found = false;
   for (const EffectSetting& effect : chosen.effects) {

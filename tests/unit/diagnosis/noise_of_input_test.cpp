@@ -117,16 +117,20 @@ TEST(NoiseOfInput, IsTakenOffWhatIsLeft) {
                    0.5);  // 5 are left where the noise would be 10: half of it, and the model's own stays
 }
 
+/// Of a spring and a damper, whose motion is read with this noise [m], one value per sample.
+Recording with_slow_noise(const std::vector<double>& noise_m, double damping_n_s_per_m) {
+  return made_recording(
+      [&](double t) { return made_motion_m(t) + noise_m[static_cast<std::size_t>(std::llround(t / kSitePeriod_s))]; },
+      [&](double t) {
+        return kMadeStiffness_n_per_m * made_motion_m(t) + damping_n_s_per_m * made_velocity_m_per_s(t);
+      },
+      kForceNoise_n);
+}
+
 TEST(NoiseOfInput, ColouredNoiseIsTakenOffWhereItIsTold) {
   const std::vector<double> noise = made_noise({0.95, 0.0}, 6000, 1e-4, kSitePeriod_s, 1);
-  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
   constexpr double kDamping_n_s_per_m = 5.0e4;
-  const Recording recording =
-      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
-                     [](double t) {
-                       return kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t);
-                     },
-                     kForceNoise_n);
+  const Recording recording = with_slow_noise(noise, kDamping_n_s_per_m);
   std::vector<Segment> segments = segments_of(recording, 0, 0);
   const EffectType* const damping = find_effect(EffectInterface::specimen, ModelNumber::damping);
   const auto left_of_noise = [&] {
@@ -145,14 +149,8 @@ TEST(NoiseOfInput, ColouredNoiseIsTakenOffWhereItIsTold) {
 /// A spring and a damper as modelled, with slow noise of the motion: without it the floor is of white noise alone.
 TEST(NoiseOfInput, FloorHasTheNoiseThatIsTold) {
   const std::vector<double> noise = made_noise({0.7, 0.0}, 6000, 5e-5, kSitePeriod_s, 1);
-  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
   constexpr double kDamping_n_s_per_m = 5.0e4;
-  const Recording recording =
-      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
-                     [](double t) {
-                       return kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t);
-                     },
-                     kForceNoise_n);
+  const Recording recording = with_slow_noise(noise, kDamping_n_s_per_m);
   SiteModel model = made_model();
   add_effect(model,
              {.type = find_effect(EffectInterface::specimen, ModelNumber::damping), .values = {kDamping_n_s_per_m}});
@@ -186,10 +184,7 @@ TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {
 
 TEST(ToldNoise, IsWhatAnExplainedActuatorLeavesAndNothingElse) {
   const std::vector<double> noise = made_noise({0.95, 0.0}, 6000, 1e-4, kSitePeriod_s, 1);
-  const auto at = [](double t) { return static_cast<std::size_t>(std::llround(t / kSitePeriod_s)); };
-  const Recording recording =
-      made_recording([&](double t) { return made_motion_m(t) + noise[at(t)]; },
-                     [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); }, kForceNoise_n);
+  const Recording recording = with_slow_noise(noise, 0.0);
   SiteModel model = made_model();
   const auto told_by = [&](Channel channel) {
     std::vector<Segment> segments = segments_of(recording, 0, 0);

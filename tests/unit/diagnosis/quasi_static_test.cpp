@@ -116,8 +116,7 @@ TEST(QuasiStaticRecording, AnswerIsTheSameWithEveryTimeBase) {
 }
 
 /// The model is 3 % too stiff and its strength 2 % too small, and the load cell has a zero of 1.3 % of the largest
-/// force that drifts by half of that: none of them by itself explains most of the gap. A small element that yields
-/// beside the specimen was told as well.
+/// force that drifts by half of that: none of them by itself explains most of the gap.
 TEST(QuasiStaticRecording, WrongNumbersBesideAZeroThatDriftsAreCorrected) {
   constexpr double kReached_m = 0.0125;
   constexpr double kStrength_n = 0.4 * kMadeStiffness_n_per_m * kReached_m;
@@ -130,7 +129,7 @@ TEST(QuasiStaticRecording, WrongNumbersBesideAZeroThatDriftsAreCorrected) {
   Bilinear specimen{
       {.stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = kStrength_n, .hardening_ratio = 0.022}};
   Random random{5};
-  // Five cycles, each a fifth larger than the first.
+  // Five cycles, each larger than the one before by as much as the first is.
   for (std::size_t cycle = 1; cycle <= 5; ++cycle) {
     const std::size_t points = 96 * cycle;
     for (std::size_t i = 1; i <= points; ++i) {

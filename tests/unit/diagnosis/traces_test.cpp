@@ -218,6 +218,16 @@ TEST(NetworkTrace, ClockThatDriftsIsToldByTheInstantsAtWhichTargetsComeLater) {
   }
 }
 
+/// A clock that is ahead by nearly a sample at the start: the first thousand targets are not late at all.
+TEST(NetworkTrace, ClockThatDriftsMayBeAheadAtTheStart) {
+  std::vector<int> ahead(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) ahead[i] = static_cast<int>(i / 1000);
+  const std::vector<Trace> traces = traces_of_network(motion_m(), received(ahead), kPeriod_s);
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces[0].effect.type->name, "clock_drift");
+  EXPECT_NEAR(traces[0].effect.values[0], 1e-3, 1e-6 * 2.0 / 10.0);
+}
+
 /// A quartz that warms and cools.
 TEST(NetworkTrace, ClockWhoseRateWandersByATenthDrifts) {
   constexpr double kDriftRatio = 1e-3;
