@@ -172,24 +172,26 @@ SearchPlan plan_search(const IdentificationProblem& problem, const std::vector<c
     EffectSetting neutral{.type = &effect, .values = {}};
     bool removed_by_linear = false;
     const bool is_of_model = place_of(problem.model, effect) != nullptr;
-    const bool is_whole = freedoms.empty() || freedoms[i] == Freedom::all;
+    const Freedom freedom = freedoms.empty() ? Freedom::all : freedoms[i];
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const EffectParameter& parameter = effect.parameters[j];
-      const bool is_left_out = !is_whole && !std::isnan(left_out(problem, effect, j)) && !parameter.is_linear;
-      if (is_left_out || is_fixed(problem, effect, parameter)) {
+      const bool is_left_out =
+          freedom == Freedom::required && !std::isnan(left_out(problem, effect, j)) && !parameter.is_linear;
+      const std::optional<SearchRange> range = range_of(effect, parameter);
+      const bool is_too_early = freedom == Freedom::without_last && range && range->restriction.is_freed_last;
+      if (is_left_out || is_too_early || is_fixed(problem, effect, parameter)) {
         neutral.values.push_back(left_out(problem, effect, j));
         continue;
       }
-      const SearchRange range = *range_of(effect, parameter);
       if (parameter.is_linear && !all_searched) {
         neutral.values.push_back(parameter.neutral);
-        const double unit = 0.5 * std::max(range.high, -range.low) * scale_of(problem, effect, range);
-        const double low = least_of(problem, effect, j, range);
+        const double unit = 0.5 * std::max(range->high, -range->low) * scale_of(problem, effect, *range);
+        const double low = least_of(problem, effect, j, *range);
         plan.linear.push_back({i, j, unit, low - parameter.neutral, parameter.high - parameter.neutral, is_of_model});
         // Without its stiffness a law has no force, nor has a model without what it has: neither is the baseline.
         removed_by_linear = effect.replacement == nullptr && !is_of_model;
       } else {
-        plan.searched.push_back(searched(problem, effect, i, j, range));
+        plan.searched.push_back(searched(problem, effect, i, j, *range));
         neutral.values.push_back(plan.searched.back().at(0.5));
       }
     }

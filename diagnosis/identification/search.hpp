@@ -55,9 +55,9 @@ struct SearchPlan {
 /// or the ratio of a law's.
 [[nodiscard]] std::size_t searched_number(const IdentificationProblem& problem, const EffectType& number);
 
-/// Which parameters of an effect are free: all, or only those that a scenario has to give; of an effect that the model
-/// has, only its size.
-enum class Freedom : std::uint8_t { all, required };
+/// Which parameters of an effect are free: all, all but those that are freed last, or only those that a scenario has to
+/// give; of an effect that the model has, only its size.
+enum class Freedom : std::uint8_t { all, without_last, required };
 
 /// @param freedoms   one per effect; empty: all of each.
 [[nodiscard]] SearchPlan plan_search(const IdentificationProblem& problem,

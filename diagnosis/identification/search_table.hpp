@@ -54,6 +54,8 @@ struct SearchRestriction {
   bool per_input = false;
   // At the upper end it no longer shows in any recording: an estimate there means that it is as large or larger.
   bool is_unseen_at_high = false;
+  // The shape of something whose size is found without it: freed from where a search without it ends.
+  bool is_freed_last = false;
 };
 
 /// The search range of one parameter of one effect.
@@ -172,10 +174,12 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "coulomb_friction", "friction_force_n", Scale::force_n, 0.0, 1.5},
     SearchRange{specimen, "coulomb_friction", "asymmetry", Scale::one, -0.9, 0.9},
     SearchRange{specimen, "coulomb_friction", "presliding_displacement_m", Scale::displacement_m, 1e-4, 0.5},
+    SearchRange{specimen, "coulomb_friction", "presliding_exponent", Scale::one, 0.0, 2.0, {.is_freed_last = true}},
     SearchRange{specimen, "stribeck_friction", "friction_force_n", Scale::force_n, 0.0, 1.5},
     SearchRange{specimen, "stribeck_friction", "static_excess_ratio", Scale::one, 0.05, 3.0},
     SearchRange{specimen, "stribeck_friction", "stribeck_velocity_m_per_s", Scale::velocity_m_per_s, 0.01, 0.7},
     SearchRange{specimen, "stribeck_friction", "presliding_displacement_m", Scale::displacement_m, 1e-4, 0.5},
+    SearchRange{specimen, "stribeck_friction", "presliding_exponent", Scale::one, 0.0, 2.0, {.is_freed_last = true}},
     SearchRange{specimen, "cubic_stiffness", "stiffness_n_per_m3", Scale::stiffness_n_per_m3, -2.0, 2.0},
     SearchRange{specimen, "yielding", "yield_force_n", Scale::force_n, 0.02, 1.5},
     SearchRange{specimen, "yielding", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.05, 5.0},

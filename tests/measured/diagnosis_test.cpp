@@ -152,7 +152,7 @@ TEST_F(ServoHydraulicActuator, NamesBandwidthBesideFittedDelay) {
 SiteModel unpowered_damper() {
   SiteModel model = ideal_actuator();
   model.effects.push_back({find_effect(EffectInterface::transfer_system, "bandwidth"), {0.02542, 0.1645}});
-  model.effects.push_back({find_effect(EffectInterface::specimen, "coulomb_friction"), {204.7, 0.19, 3.21e-5}});
+  model.effects.push_back({find_effect(EffectInterface::specimen, "coulomb_friction"), {204.7, 0.19, 3.21e-5, 0.0}});
   model.effects.push_back({find_effect(EffectInterface::force_sensor, "bias"), {-295.4}});
   return model;
 }

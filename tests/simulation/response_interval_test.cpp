@@ -127,8 +127,8 @@ class ResponseInterval : public testing::Test {
 
 const Site kSpring{kSpringLaw, {{find_effect(specimen, "viscous_damping"), {20.0e3}}}};
 const Site kYields{kYieldingLaw, {{find_effect(specimen, "viscous_damping"), {20.0e3}}}};
-const Site kRubs{kSpringLaw, {{find_effect(specimen, "coulomb_friction"), {6000.0, 0.0, 5.0e-4}}}};
-const Site kRubsAndYields{kYieldingLaw, {{find_effect(specimen, "coulomb_friction"), {6000.0, 0.0, 1.0e-5}}}};
+const Site kRubs{kSpringLaw, {{find_effect(specimen, "coulomb_friction"), {6000.0, 0.0, 5.0e-4, 0.0}}}};
+const Site kRubsAndYields{kYieldingLaw, {{find_effect(specimen, "coulomb_friction"), {6000.0, 0.0, 1.0e-5, 0.0}}}};
 
 std::string name_of_site(const Site& site) {
   return std::string{site.missing[0].type->name} + (site.specimen == kYieldingLaw ? "_beside_yielding" : "");

@@ -242,7 +242,7 @@ TEST(ChannelFindings, SlowSamplingIsSaidWhereItMatters) {
 /// Of a model that is a spring, the causes that were found tell whether it matters.
 TEST(ChannelFindings, SlowSamplingIsSaidWhereACauseNeedsDerivatives) {
   const EffectSetting mass{find_effect(EffectInterface::specimen, "inertia"), {10.0}};
-  const EffectSetting friction{find_effect(EffectInterface::specimen, "coulomb_friction"), {10.0, 0.0, 1e-5}};
+  const EffectSetting friction{find_effect(EffectInterface::specimen, "coulomb_friction"), {10.0, 0.0, 1e-5, 0.0}};
   const auto said_of = [](const SiteModel& model, const EffectSetting& cause, double samples_per_cycle) {
     const std::vector<Recording> recordings{resonance(samples_per_cycle)};
     std::vector<std::string> said;

@@ -38,7 +38,7 @@ TEST(DrawnCauses, HaveTheCovarianceThatIsGiven) {
 }
 
 TEST(DrawnCauses, StayWithinWhatTheEffectAccepts) {
-  const std::array causes{EffectSetting{find_effect(specimen, "coulomb_friction"), {500.0, 0.1, 1e-4}},
+  const std::array causes{EffectSetting{find_effect(specimen, "coulomb_friction"), {500.0, 0.1, 1e-4, 0.0}},
                           EffectSetting{find_effect(transfer_system, "gain"), {0.02}}};
   Eigen::VectorXd deviation(4);
   deviation << -2000.0, 0.05, 1e-5, 0.01;
@@ -79,7 +79,7 @@ TEST(DrawnCauses, TogetherAsTheyWereFitted) {
   });
   const IdentificationProblem problem = make_problem(made_model(), modelled_segments(made_model(), recording, 0, 0));
   const FitOutcome fit = refit_effects(problem,
-                                       {{find_effect(specimen, "coulomb_friction"), {2e3, 0.0, 1e-4}},
+                                       {{find_effect(specimen, "coulomb_friction"), {2e3, 0.0, 1e-4, 0.0}},
                                         {find_effect(specimen, "stiffness_error"), {0.0, 1e5}}},
                                        false);
   const Eigen::MatrixXd covariance = covariance_for_draws(fit);

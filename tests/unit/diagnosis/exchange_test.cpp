@@ -142,7 +142,7 @@ TEST(DropGone, EffectOfSizeZeroIsDropped) {
     FitOutcome fit = refit_effects(
         problem,
         {{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, 0.05 * kMadeStiffness_n_per_m}},
-         {find_effect(EffectInterface::specimen, "coulomb_friction"), {100.0, 0.0, 1e-5}}},
+         {find_effect(EffectInterface::specimen, "coulomb_friction"), {100.0, 0.0, 1e-5, 0.0}}},
         false);
     ASSERT_EQ(fit.effects.size(), 2U);
     drop_gone(problem, fit);

@@ -72,9 +72,9 @@ struct Element {
   [[nodiscard]] const EffectType& type() const { return *find_effect(EffectInterface::specimen, effect); }
 };
 
-const Element kFriction{"coulomb_friction", friction, {kForce_n, 0.0, kPresliding_m}, 2};
+const Element kFriction{"coulomb_friction", friction, {kForce_n, 0.0, kPresliding_m, 0.0}, 2};
 const Element kFallingFriction{
-    "stribeck_friction", falling_friction, {kForce_n, kStaticExcess, kStribeckVelocity_m_per_s, kPresliding_m}, 3};
+    "stribeck_friction", falling_friction, {kForce_n, kStaticExcess, kStribeckVelocity_m_per_s, kPresliding_m, 0.0}, 3};
 const Element kHysteresis{"bouc_wen_hysteresis", hysteresis, {kForce_n, kYieldDisplacement_m, 1.0, 0.5}, 1};
 
 const Element kShortHysteresis{

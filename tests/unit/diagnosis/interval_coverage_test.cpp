@@ -56,7 +56,7 @@ Recording recorded(const CoverageCase& one, const EffectSetting& truth, std::uin
 TEST(IntervalCoverage, HoldsTheTruthIn95PercentOfDraws) {
   constexpr int kDraws = 100;
   const std::array cases{
-      CoverageCase{specimen, "coulomb_friction", {5000.0, 0.0, 5e-4}, 800.0, 0.9},
+      CoverageCase{specimen, "coulomb_friction", {5000.0, 0.0, 5e-4, 0.0}, 800.0, 0.9},
       CoverageCase{specimen, "yielding", {1e4, 1e6, 20.0}, 800.0, 0.9},
       CoverageCase{transfer_system, "delay", {0.013}, 2e-4, 0.9},
       CoverageCase{transfer_system, "bandwidth", {0.012, 0.2}, 2e-4, 0.9},
@@ -261,7 +261,7 @@ class DrawnRig {
 /// Errors over half the interval, sorted.
 std::vector<double> errors_on_drawn_rigs(std::uint64_t first_draw, std::uint64_t draws) {
   const std::array cases{
-      CoverageCase{specimen, "coulomb_friction", {5000.0, 0.0, 5e-4}, 0.0, 0.0},
+      CoverageCase{specimen, "coulomb_friction", {5000.0, 0.0, 5e-4, 0.0}, 0.0, 0.0},
       CoverageCase{specimen, "viscous_damping", {4e4}, 0.0, 0.0},
       CoverageCase{specimen, "stiffness_error", {0.0, 6e4}, 0.0, 0.0},
       CoverageCase{specimen, "gap", {1e-3}, 0.0, 0.0},
@@ -375,7 +375,7 @@ TEST(IntervalCoverage, NumbersOfAFormAreKnownNoBetterThanThoseOfAModel) {
   const double of_fit = tuning::kTwoSided95 * kDoubtOfFit;
   const double of_form = tuning::kTwoSided95 * std::hypot(kDoubtOfFit, tuning::kNumbersWithin);
   EXPECT_NEAR(reported_half({find_effect(transfer_system, "backlash"), {0.002}}, 0), of_form, 1e-12);
-  EXPECT_NEAR(reported_half({find_effect(specimen, "coulomb_friction"), {5e3, 0.1, 1e-3}}, 0), of_form, 1e-12);
+  EXPECT_NEAR(reported_half({find_effect(specimen, "coulomb_friction"), {5e3, 0.1, 1e-3, 0.0}}, 0), of_form, 1e-12);
   EXPECT_NEAR(reported_half({find_effect(specimen, "fracture"), {0.3, 4.0}}, 0), of_form, 1e-12);
   EXPECT_NEAR(reported_half({find_effect(specimen, "fracture"), {0.3, 4.0}}, 1), of_fit, 1e-12);
   EXPECT_NEAR(reported_half({find_effect(transfer_system, "gain"), {0.03}}, 0), of_fit, 1e-12);

@@ -66,7 +66,7 @@ Recording recording_of(const std::function<double(double, double, double)>& besi
 SiteModel model_with_friction(double friction_force_n) {
   SiteModel model = made_model();
   model.effects = {
-      {find_effect(EffectInterface::specimen, "coulomb_friction"), {friction_force_n, 0.0, kPresliding_m}}};
+      {find_effect(EffectInterface::specimen, "coulomb_friction"), {friction_force_n, 0.0, kPresliding_m, 0.0}}};
   return model;
 }
 

@@ -292,7 +292,7 @@ TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {
 
   lag.fit.effects[0].values[1] = lag.fit.parameters[0][1].value = 0.0;  // one pole: no limit that was chosen
   EXPECT_FALSE(is_cut_off(problem, lag.fit, 0));
-  Candidate friction = fit_of(specimen, "coulomb_friction", {100.0, 0.0, 1e-6});
+  Candidate friction = fit_of(specimen, "coulomb_friction", {100.0, 0.0, 1e-6, 0.0});
   friction.fit.parameters[0][2].at_bound = true;  // as sharp as is searched
   EXPECT_FALSE(is_cut_off(problem, friction.fit, 0));
   Candidate deadband = fit_of(transfer_system, "deadband", {2e-5});
@@ -303,9 +303,9 @@ TEST(Refutation, FurtherEffectAtTheEndOfItsRange) {
 
 TEST(Refutation, FrictionThatIsASpringMostOfTheWay) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
-  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.012}, 0.0001)),
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.012, 0.0}, 0.0001)),
               HasSubstr("of the path, as a spring that yields"));
-  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001}, 0.0001)), IsEmpty());
+  EXPECT_THAT(refutation(problem, fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001, 0.0}, 0.0001)), IsEmpty());
 }
 
 TEST(Refutation, PowerOfTheVelocityThatIsASimplerDamping) {
@@ -322,7 +322,7 @@ TEST(Refutation, PowerOfTheVelocityThatIsASimplerDamping) {
   Candidate smallest = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.1, 0.0});
   smallest.fit.parameters[0][1].at_bound = true;
   EXPECT_THAT(refutation(problem, smallest), HasSubstr("may as well be dry friction"));
-  Candidate beside = fit_of(specimen, "coulomb_friction", {3.0e3, 0.0, 0.001}, 0.0001);
+  Candidate beside = fit_of(specimen, "coulomb_friction", {3.0e3, 0.0, 0.001, 0.0}, 0.0001);
   const Candidate damping = fit_of(specimen, "nonlinear_viscous_damping", {1.0e4, 0.5, 0.0});
   beside.fit.effects.push_back(damping.fit.effects.front());
   beside.fit.parameters.push_back(damping.fit.parameters.front());
@@ -393,7 +393,7 @@ TEST(LawWithoutLoop, IsASelfCentringOneWithoutAFlagAndAlone) {
   EXPECT_TRUE(is_law_without_loop(problem, fit_with(closed), 0));
   EXPECT_FALSE(is_law_without_loop(problem, fit_with({.value = 1.0, .at_bound = true}), 0));
   FitOutcome beside_friction = fit_with(closed);
-  beside_friction.effects.push_back({find_effect(specimen, "coulomb_friction"), {100.0, 0.0, 1e-3}});
+  beside_friction.effects.push_back({find_effect(specimen, "coulomb_friction"), {100.0, 0.0, 1e-3, 0.0}});
   beside_friction.parameters.emplace_back(3);
   EXPECT_FALSE(is_law_without_loop(problem, beside_friction, 0));
   EXPECT_FALSE(is_law_without_loop(problem, beside_friction, 1)) << "friction is no law";
@@ -403,7 +403,7 @@ TEST(Refutation, DropsWhatIsRefutedAndKeepsTheOrder) {
   const IdentificationProblem problem = problem_of(made_recording(made_motion_m, spring_n));
   std::vector<Candidate> candidates{fit_of(specimen, "viscous_damping", {100.0}),
                                     fit_of(force_sensor, "saturation", {1e3}),
-                                    fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001})};
+                                    fit_of(specimen, "coulomb_friction", {3e3, 0.0, 0.001, 0.0})};
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].score = 3.0 - static_cast<double>(i);
   drop_refuted(problem, candidates);
   ASSERT_EQ(candidates.size(), 2U);

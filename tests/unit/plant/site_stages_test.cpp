@@ -110,7 +110,7 @@ TEST(SiteStages, StagesTogetherEqualTheRig) {
   model.effects = {setting(EffectInterface::transfer_system, "bandwidth", {0.004, 0.25}),
                    setting(EffectInterface::displacement_sensor, "gain", {0.1}),
                    setting(EffectInterface::specimen, "viscous_damping", {2.0e3}),
-                   setting(EffectInterface::specimen, "coulomb_friction", {500.0, 0.1, 1e-4}),
+                   setting(EffectInterface::specimen, "coulomb_friction", {500.0, 0.1, 1e-4, 0.0}),
                    setting(EffectInterface::force_sensor, "gain", {-0.02})};
   std::vector<std::unique_ptr<TransferSystem>> transfer_systems;
   transfer_systems.push_back(model.make_transfer_system(kPeriod_s, 0.0));

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Specimen, AFormulaOfTheMotion, testing::ValuesIn(formul
 
 TEST(StribeckFriction, DecreasesFromStaticToSlidingValue) {
   const auto sliding_at = [](double velocity_m_per_s) {
-    const auto effect = made(kSpecimen, "stribeck_friction", {100.0, 0.5, 0.02, 1e-6});
+    const auto effect = made(kSpecimen, "stribeck_friction", {100.0, 0.5, 0.02, 1e-6, 0.0});
     const Driver ramp{[=](double t) { return velocity_m_per_s * t; }, [=](double) { return velocity_m_per_s; },
                       [](double) { return 0.0; }};
     return response(*effect, ramp, 50).back();
@@ -351,7 +351,7 @@ TEST(SpecimenBacklash, FreeSpringBacklashIsAFixedGap) {
 }
 
 TEST(SpecimenBacklash, FrictionDamperBacklashMovesWithReversal) {
-  const auto friction = made(kSpecimen, "coulomb_friction", {100.0, 0.0, 0.01});
+  const auto friction = made(kSpecimen, "coulomb_friction", {100.0, 0.0, 0.01, 0.0});
   const auto backlash = made(kSpecimen, "backlash", {0.1, 0.0});
   std::vector<double> forces;
   for (int i = 0; i <= 80; ++i) {

@@ -273,7 +273,7 @@ TEST_F(SiteFile, CorrectedFrictionTakesThePlaceOfItsOwn) {
   const std::string friction = "{interface: specimen, effect: coulomb_friction, friction_force_n: 4.0}";
   const std::string bias = "{interface: force_sensor, effect: bias, bias_n: 1.0}";
   const std::vector<ListedEffect> added{
-      {{find_effect(EffectInterface::specimen, "coulomb_friction"), {3.0, 0.0, 1e-3}}, 0},
+      {{find_effect(EffectInterface::specimen, "coulomb_friction"), {3.0, 0.0, 1e-3, 0.0}}, 0},
       {{find_effect(EffectInterface::force_sensor, "gain"), {0.5}}, 0}};
   for (const std::string& list : {fmt::format("[{}, {}]", friction, bias), fmt::format("[{}, {}]", bias, friction)}) {
     const SiteModelFile site = read("specimen: [{type: none}, {type: none}]\neffects: " + list + "\n");
