@@ -209,6 +209,8 @@ inline constexpr std::array kRows{
     SearchRange{specimen, "backlash", "holding_ratio", Scale::one, 0.0, 1.0},
     SearchRange{specimen, "contact", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 50.0},
     SearchRange{specimen, "contact", "position_m", Scale::displacement_m, -0.95, 0.95},
+    SearchRange{specimen, "contact", "other_stiffness_ratio", Scale::one, 0.0, 2.0},
+    SearchRange{specimen, "contact", "other_position_ratio", Scale::one, 0.3, 2.0, {.is_freed_last = true}},
     SearchRange{specimen, "relaxation", "stiffness_n_per_m", Scale::stiffness_n_per_m, 0.0, 3.0},
     SearchRange{
         specimen, "relaxation", "time_constant_s", Scale::time_s, 0.005, 100.0, {.limit = SearchLimit::within_motion}},

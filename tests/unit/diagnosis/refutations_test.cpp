@@ -185,7 +185,7 @@ TEST(Refutation, ColumnTooTallForItsHeightToShowIsNotCutOff) {
     return is_cut_off(problem, candidate.fit, 0);
   };
   EXPECT_FALSE(at_highest("geometric_stiffness", 1, {1e5, 0.0}));
-  EXPECT_TRUE(at_highest("contact", 0, {0.0, 0.01}));
+  EXPECT_TRUE(at_highest("contact", 0, {0.0, 0.01, 0.0, 1.0}));
 }
 
 TEST(Refutation, IntervalThatIsReportedIsNotNarrowedByAShapeHeld) {

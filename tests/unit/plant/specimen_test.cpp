@@ -64,11 +64,23 @@ std::vector<Formula> formulas() {
               {2.0e9},
               [](const Driver& d, double t) { return 2.0e9 * std::pow(d.displacement_m(t), 3); }},
       Formula{"contact",
-              {4.0e5, 0.004},
+              {4.0e5, 0.004, 0.0, 1.0},
               [](const Driver& d, double t) { return 4.0e5 * std::max(0.0, d.displacement_m(t) - 0.004); }},
       Formula{"contact",
-              {4.0e5, -0.004},
+              {4.0e5, -0.004, 0.0, 1.0},
               [](const Driver& d, double t) { return 4.0e5 * std::min(0.0, d.displacement_m(t) + 0.004); }},
+      Formula{"contact",
+              {4.0e5, 0.004, 0.5, 1.25},
+              [](const Driver& d, double t) {
+                const double x = d.displacement_m(t);
+                return 4.0e5 * std::max(0.0, x - 0.004) + 2.0e5 * std::min(0.0, x + 0.005);
+              }},
+      Formula{"contact",
+              {4.0e5, -0.004, 0.5, 1.25},
+              [](const Driver& d, double t) {
+                const double x = d.displacement_m(t);
+                return 4.0e5 * std::min(0.0, x + 0.004) + 2.0e5 * std::max(0.0, x - 0.005);
+              }},
       Formula{"geometric_stiffness", {5.0e4, 0.05}, [](const Driver& d, double t) {
                 return -5.0e4 * std::tan(std::asin(d.displacement_m(t) / 0.05));
               }}};
@@ -310,7 +322,7 @@ TEST(StageEffects, WrongNumbersOfTheLawChangeNothingBesideIt) {
     std::vector<std::unique_ptr<Effect>> effects;
     effects.push_back(made(kSpecimen, "strength_error", {1.0}));
     effects.push_back(made(kSpecimen, "stiffness_error", {0.5, 0.0}));
-    effects.insert(is_first ? effects.begin() : effects.end(), made(kSpecimen, "contact", {100.0, 0.3}));
+    effects.insert(is_first ? effects.begin() : effects.end(), made(kSpecimen, "contact", {100.0, 0.3, 0.0, 1.0}));
     StageEffects stage{std::move(effects)};
     // 15 per metre up to 16; the stop adds 100 per metre from 0.3 m on.
     for (const auto& [x, expected] : {std::pair{0.2, 3.0}, std::pair{0.5, 7.5 + 20.0}, std::pair{2.0, 16.0 + 170.0}}) {

@@ -1,0 +1,60 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "diagnosis/diagnose.hpp"
+#include "tests/unit/diagnosis/answers.hpp"
+#include "tests/unit/diagnosis/made_recording.hpp"
+
+/// Stops that a specimen meets, as an isolator in its moat: on one side, or on both.
+namespace hybridtest {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr double kStop_n_per_m = 6.0e6;
+constexpr double kPosition_m = 0.016;
+constexpr double kOtherStop_n_per_m = 4.0e6;
+constexpr double kOtherPosition_m = -0.018;
+
+Diagnosis diagnosis_with_stops(bool on_both_sides) {
+  return diagnosis_of(made_model(), made_recording(made_motion_m, [=](double t) {
+                        const double x = made_motion_m(t);
+                        const double other_n = kOtherStop_n_per_m * std::min(0.0, x - kOtherPosition_m);
+                        return kMadeStiffness_n_per_m * x + kStop_n_per_m * std::max(0.0, x - kPosition_m) +
+                               (on_both_sides ? other_n : 0.0);
+                      }));
+}
+
+TEST(Stops, OnBothSidesAreOneCause) {
+  const Diagnosis diagnosis = diagnosis_with_stops(true);
+  EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("contact"));
+  const report::RankedCause& cause = diagnosis.report.ranking.front();
+  const auto value_of = [&](const char* name) { return find_parameter(cause, name)->value; };
+  // Either one may be the first.
+  const double first_n_per_m = value_of("stiffness_n_per_m");
+  const double second_n_per_m = first_n_per_m * value_of("other_stiffness_ratio");
+  const double first_m = value_of("position_m");
+  const double second_m = -first_m * value_of("other_position_ratio");
+  // 20 N of noise over a few hundred readings beyond each stop, of 10 kN and more.
+  EXPECT_NEAR(std::max(first_m, second_m), kPosition_m, 0.001 * kPosition_m);
+  EXPECT_NEAR(std::min(first_m, second_m), kOtherPosition_m, -0.001 * kOtherPosition_m);
+  EXPECT_NEAR(first_m > 0.0 ? first_n_per_m : second_n_per_m, kStop_n_per_m, 0.01 * kStop_n_per_m);
+  EXPECT_NEAR(first_m > 0.0 ? second_n_per_m : first_n_per_m, kOtherStop_n_per_m, 0.01 * kOtherStop_n_per_m);
+}
+
+TEST(Stops, OnOneSideHaveNoOther) {
+  const Diagnosis diagnosis = diagnosis_with_stops(false);
+  EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("contact"));
+  const report::RankedCause& cause = diagnosis.report.ranking.front();
+  EXPECT_NEAR(find_parameter(cause, "stiffness_n_per_m")->value, kStop_n_per_m, 0.01 * kStop_n_per_m);
+  EXPECT_NEAR(find_parameter(cause, "position_m")->value, kPosition_m, 0.001 * kPosition_m);
+  // Of what would be 20 N of noise over the same readings.
+  EXPECT_LT(find_parameter(cause, "other_stiffness_ratio")->value, 0.01);
+}
+
+}  // namespace
+}  // namespace hybridtest
