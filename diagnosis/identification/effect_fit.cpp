@@ -8,7 +8,6 @@
 #include "diagnosis/identification/linearisation.hpp"
 #include "diagnosis/identification/parameter_doubt.hpp"
 #include "diagnosis/identification/search.hpp"
-#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {
@@ -63,13 +62,14 @@ Eigen::VectorXd places_of(const SearchPlan& plan, const std::vector<EffectSettin
   return places;
 }
 
-/// Where a search of all parameters begins: at the best of fewer of them. The size of an effect that is not solved for
-/// lies in a narrow valley, which a few points along it meet, and hardly any in a plane; and some shapes mean nothing
-/// before the size is found. Empty where these are all of them.
-Eigen::VectorXd fewer_first(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
-                            const SearchPlan& plan, bool with_nuisance, Freedom fewer) {
+/// Where a search of all parameters begins: at the best of those alone that a scenario has to give, where there are
+/// others. The size of an effect that is not solved for lies in a narrow valley, which a few points along it meet, and
+/// hardly any in a plane. Empty where nothing is gained.
+Eigen::VectorXd simplest_first(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                               const SearchPlan& plan, bool with_nuisance) {
+  if (!plan.linear.empty()) return {};
   const VariableProjection projection{
-      problem, plan_search(problem, effects, std::vector<Freedom>(effects.size(), fewer)), with_nuisance};
+      problem, plan_search(problem, effects, std::vector<Freedom>(effects.size(), Freedom::required)), with_nuisance};
   const std::size_t count = projection.plan().searched.size();
   if (count == 0 || count == plan.searched.size()) return {};
   const Eigen::VectorXd places = search_best(projection, {}, starts_for(static_cast<Eigen::Index>(count)));
@@ -84,16 +84,12 @@ FitOutcome fit_free(const IdentificationProblem& problem, const std::vector<cons
   const VariableProjection projection{problem, plan_search(problem, effects, freedoms), with_nuisance};
   const SearchPlan& plan = projection.plan();
   Eigen::VectorXd first;
-  bool is_found = false;  // but for what is freed last
   if (!start.empty()) {
     first = places_of(plan, start);
-  } else if (look == Look::everywhere && freedoms.empty()) {
-    first = fewer_first(problem, effects, plan, with_nuisance, Freedom::without_last);
-    is_found = first.size() > 0;
-    if (!is_found && plan.linear.empty()) first = fewer_first(problem, effects, plan, with_nuisance, Freedom::required);
+  } else if (look == Look::everywhere && std::ranges::find(freedoms, Freedom::required) == freedoms.end()) {
+    first = simplest_first(problem, effects, plan, with_nuisance);
   }
-  const bool is_spread = look == Look::everywhere && !is_found;
-  const int starts = is_spread ? starts_for(static_cast<Eigen::Index>(plan.searched.size())) : 0;
+  const int starts = look == Look::everywhere ? starts_for(static_cast<Eigen::Index>(plan.searched.size())) : 0;
   const Eigen::VectorXd places =
       look == Look::around_start ? search_around(projection, first) : search_best(projection, first, starts);
   const Projected solution = projection.solve(places);
@@ -134,8 +130,7 @@ bool may_have_no_size(const IdentificationProblem& problem, const FitOutcome& fi
 }
 
 /// Whether a parameter that a scenario may leave out is at a limit of its range while it or another one of its effect
-/// is not left out: a ratio of closed joints of one says that there are none, whatever the force that closes them. One
-/// that is freed last and left out says nothing of the others.
+/// is not left out: a ratio of closed joints of one says that there are none, whatever the force that closes them.
 bool has_optional_at_limit(const FitOutcome& fit) {
   for (std::size_t i = 0; i < fit.effects.size(); ++i) {
     const std::span<const EffectParameter> parameters = fit.effects[i].type->parameters;
@@ -143,9 +138,6 @@ bool has_optional_at_limit(const FitOutcome& fit) {
     bool is_left_out = true;
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       if (std::isnan(parameters[j].fallback)) continue;
-      const SearchRange* const range = search_range(*fit.effects[i].type, parameters[j]);
-      const bool is_last = range != nullptr && range->restriction.is_freed_last;
-      if (is_last && fit.parameters[i][j].value == parameters[j].fallback) continue;
       is_at_limit = is_at_limit || fit.parameters[i][j].at_bound;
       is_left_out = is_left_out && fit.parameters[i][j].value == parameters[j].fallback;
     }
@@ -166,13 +158,28 @@ double lost_without(const IdentificationProblem& problem, const FitOutcome& all,
   return lost;
 }
 
+/// All parameters free; those that are freed last, from where the others are the best without them, and only where they
+/// take off most of what is left there. Where they do not, its form is another one, which a shape would bend to.
+FitOutcome fit_all(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+                   const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
+  const std::vector<Freedom> without_last(effects.size(), Freedom::without_last);
+  const std::size_t count = plan_search(problem, effects).searched.size();
+  if (plan_search(problem, effects, without_last).searched.size() == count) {
+    return fit_free(problem, effects, start, look, with_nuisance, {});
+  }
+  FitOutcome without = fit_free(problem, effects, start, look, with_nuisance, without_last);
+  FitOutcome all = fit_free(problem, effects, without.effects, Look::from_start, with_nuisance, {});
+  const double left = squares_of(problem, all).fitted / squares_of(problem, without).fitted;
+  return left < tuning::kMainShare ? all : without;
+}
+
 /// Parameters that a scenario may leave out are left out where the blocks cannot hold them: when they are fitted, but
 /// predict a block that was left out much worse than the others alone do; and where one of them goes to a limit of its
 /// range but is not worth its place in the score. The shape of an effect that the model has is the model's where
 /// nothing is left of it.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
-  FitOutcome all = fit_free(problem, effects, start, look, with_nuisance, {});
+  FitOutcome all = fit_all(problem, effects, start, look, with_nuisance);
   std::vector<Freedom> freedoms(effects.size(), Freedom::all);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     if (may_have_no_size(problem, all, i)) freedoms[i] = Freedom::required;

@@ -144,6 +144,26 @@ double spring_beside(const IdentificationProblem& problem, const FitOutcome& fit
   return stiffness_n_per_m;
 }
 
+/// Of an effect; 0 where it has no such parameter.
+double value_of(const EffectSetting& effect, std::string_view name) {
+  const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
+  const auto position = static_cast<std::size_t>(found - effect.type->parameters.begin());
+  return found == effect.type->parameters.end() ? 0.0 : effect.values[position];
+}
+
+/// Stops on both sides with hardly any spring left between them, of the model's own and of what is beyond: they are the
+/// specimen, beyond a gap, and that is its name.
+bool is_gap(const IdentificationProblem& problem, const FitOutcome& fit) {
+  if (!problem.law_is_spring || !problem.model.make_law) return false;
+  const double own_n_per_m = problem.model.make_law()->initial_stiffness_n_per_m();
+  return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
+    if (!(value_of(effect, "other_stiffness_ratio") > tuning::kMainShare)) return false;
+    const double between_n_per_m = spring_beside(problem, fit);
+    const double beyond_n_per_m = between_n_per_m + value_of(effect, "stiffness_n_per_m");
+    return between_n_per_m < std::sqrt(tuning::kHardlyLeft) * std::min(own_n_per_m, beyond_n_per_m);
+  });
+}
+
 /// A friction that slides only after a displacement that is not small, beside a spring: together they are a specimen
 /// that yields and hardens, and that is its name; or softens, where a negative spring takes a tenth of the friction and
 /// more. Beside another law it has none.
@@ -152,16 +172,10 @@ bool is_yielding(const IdentificationProblem& problem, const FitOutcome& fit) {
   return std::ranges::any_of(fit.effects, [&](const EffectSetting& effect) {
     const std::ptrdiff_t position = &effect - fit.effects.data();
     if (slides_as_in_model(problem, fit, static_cast<std::size_t>(position))) return false;
-    const auto at = [&](std::string_view name) {
-      const auto found = std::ranges::find(effect.type->parameters, name, &EffectParameter::name);
-      return found == effect.type->parameters.end()
-                 ? 0.0
-                 : effect.values[static_cast<std::size_t>(found - effect.type->parameters.begin())];
-    };
-    const double presliding_m = at("presliding_displacement_m");
+    const double presliding_m = value_of(effect, "presliding_displacement_m");
     if (!(presliding_m > tuning::kPreslidingMax * problem.scales.displacement_m)) return false;
     const double spring_n_per_m = spring_beside(problem, fit);
-    const double friction_n = at("friction_force_n");
+    const double friction_n = value_of(effect, "friction_force_n");
     const double taken_n = -spring_n_per_m * problem.scales.displacement_m;
     return spring_n_per_m > tuning::kHardeningMin * (spring_n_per_m + friction_n / presliding_m) ||
            taken_n > std::sqrt(tuning::kHardlyLeft) * friction_n;
@@ -196,7 +210,8 @@ void set_score(const IdentificationProblem& problem, Candidate& candidate) {
 
 /// The candidate with its score, if it can be the cause.
 std::optional<Candidate> scored(const IdentificationProblem& problem, Candidate candidate) {
-  if (is_yielding(problem, candidate.fit) || is_dry_friction(problem, candidate.fit)) return {};
+  const FitOutcome& fit = candidate.fit;
+  if (is_yielding(problem, fit) || is_dry_friction(problem, fit) || is_gap(problem, fit)) return {};
   set_score(problem, candidate);
   for (std::size_t i = 0; i < candidate.fit.effects.size(); ++i) {
     candidate.parameters += free_parameters(problem, candidate.fit, i);

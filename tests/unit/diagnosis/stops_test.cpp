@@ -56,5 +56,21 @@ TEST(Stops, OnOneSideHaveNoOther) {
   EXPECT_LT(find_parameter(cause, "other_stiffness_ratio")->value, 0.01);
 }
 
+/// With no spring between them, stops are the specimen itself, beyond a gap: a fifth stiffer than the model here.
+TEST(Stops, WithoutASpringBetweenThemAreAGap) {
+  constexpr double kGap_m = 4e-4;
+  const Diagnosis diagnosis = diagnosis_of(made_model(), made_recording(made_motion_m, [kGap_m](double t) {
+                                             const double x = made_motion_m(t);
+                                             return 1.2 * kMadeStiffness_n_per_m * (x - std::clamp(x, -kGap_m, kGap_m));
+                                           }));
+  EXPECT_TRUE(report::names_a_cause(diagnosis.report.verdict));
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("gap", "stiffness_error"));
+  for (const report::RankedCause& cause : diagnosis.report.ranking) {
+    if (!cause.is_cause || cause.effect != "gap") continue;
+    // 20 N of noise over 6000 readings are 0.1 um of such a spring; a millimetre of motion lies between two readings.
+    EXPECT_NEAR(find_parameter(cause, "gap_m")->value, kGap_m, 0.01 * kGap_m);
+  }
+}
+
 }  // namespace
 }  // namespace hybridtest
