@@ -40,8 +40,8 @@ TEST(DrawnCauses, HaveTheCovarianceThatIsGiven) {
 TEST(DrawnCauses, StayWithinWhatTheEffectAccepts) {
   const std::array causes{EffectSetting{find_effect(specimen, "coulomb_friction"), {500.0, 0.1, 1e-4, 0.0}},
                           EffectSetting{find_effect(transfer_system, "gain"), {0.02}}};
-  Eigen::VectorXd deviation(4);
-  deviation << -2000.0, 0.05, 1e-5, 0.01;
+  Eigen::VectorXd deviation(5);
+  deviation << -2000.0, 0.05, 1e-5, 0.0, 0.01;
   const std::vector<EffectSetting> moved = moved_causes(causes, deviation);
   EXPECT_EQ(moved[0].values[0], causes[0].type->parameters[0].low);
   EXPECT_NEAR(moved[0].values[1], 0.15, 1e-15);
@@ -83,10 +83,10 @@ TEST(DrawnCauses, TogetherAsTheyWereFitted) {
                                         {find_effect(specimen, "stiffness_error"), {0.0, 1e5}}},
                                        false);
   const Eigen::MatrixXd covariance = covariance_for_draws(fit);
-  ASSERT_EQ(covariance.rows(), 5);
+  ASSERT_EQ(covariance.rows(), 6);
   // With a larger friction goes a softer spring.
-  EXPECT_LT(covariance(0, 4), 0.0);
-  EXPECT_NEAR(covariance(0, 4) / covariance(4, 0), 1.0, 1e-9);
+  EXPECT_LT(covariance(0, 5), 0.0);
+  EXPECT_NEAR(covariance(0, 5) / covariance(5, 0), 1.0, 1e-9);
 }
 
 }  // namespace

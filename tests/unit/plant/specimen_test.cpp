@@ -411,7 +411,7 @@ TEST(BracedDamper, RelaxesAsItsEquationSays) {
     const auto effect = made(kSpecimen, "nonlinear_viscous_damping", {3.0e4, exponent, kStretch_m});
     const auto forces = along(*effect, std::vector<double>(400, kHeld_m));
     const double m = 1.0 / exponent;
-    // The substeps of the first sample stretch the brace as they go: what is left then is where the solution begins.
+    // The first sample stretches the brace as it goes: what is left then is where the solution begins.
     const double start = forces.front() / 3.0e4;
     EXPECT_GT(start, 0.0);
     for (std::size_t i = 0; i < forces.size(); i += 20) {
@@ -419,7 +419,8 @@ TEST(BracedDamper, RelaxesAsItsEquationSays) {
       const double power = std::pow(start, 1.0 - m) + (m - 1.0) * t / kStretch_m;  // for n > 1 negative at rest
       const double expected =
           exponent == 1.0 ? start * std::exp(-t / kStretch_m) : std::pow(std::max(0.0, power), 1.0 / (1.0 - m));
-      // Second order: a quarter of a millisecond over a time constant of four, squared, and a half of that.
+      // Second order: 0.04 of the cube of a sample over the time constant, a quarter, in each sample, while the force
+      // decays: 0.001 at most for n = 1, and twice that for other powers.
       ASSERT_NEAR(forces[i] / 3.0e4, expected, 0.002 * start) << exponent << ' ' << i;
     }
   }
