@@ -158,13 +158,18 @@ double lost_without(const IdentificationProblem& problem, const FitOutcome& all,
   return lost;
 }
 
+/// Whether a search with that freedom of each has fewer parameters than one of all.
+bool has_fewer(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
+               const std::vector<Freedom>& freedoms) {
+  return plan_search(problem, effects, freedoms).searched.size() < plan_search(problem, effects).searched.size();
+}
+
 /// All parameters free; those that are freed last, from where the others are the best without them, and only where they
 /// take off most of what is left there. Where they do not, its form is another one, which a shape would bend to.
 FitOutcome fit_all(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                    const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
   const std::vector<Freedom> without_last(effects.size(), Freedom::without_last);
-  const std::size_t count = plan_search(problem, effects).searched.size();
-  if (plan_search(problem, effects, without_last).searched.size() == count) {
+  if (!has_fewer(problem, effects, without_last)) {
     return fit_free(problem, effects, start, look, with_nuisance, {});
   }
   FitOutcome without = fit_free(problem, effects, start, look, with_nuisance, without_last);
@@ -189,9 +194,7 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
   }
   const Squares squares = squares_of(problem, all);
   freedoms.assign(effects.size(), Freedom::required);
-  const bool has_optional =
-      plan_search(problem, effects, freedoms).searched.size() < plan_search(problem, effects).searched.size();
-  if (!has_optional) return all;
+  if (!has_fewer(problem, effects, freedoms)) return all;
   const bool is_held = squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted;
   const bool is_at_limit = has_optional_at_limit(all);
   if (is_held && !is_at_limit) return all;

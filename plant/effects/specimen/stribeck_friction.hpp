@@ -6,6 +6,7 @@
 #include "mechanics/laws/presliding_element.hpp"
 #include "plant/effects/effect_type.hpp"
 #include "plant/effects/parameter_limits.hpp"
+#include "plant/effects/specimen/presliding_exponent.hpp"
 
 namespace hybridtest {
 
@@ -43,13 +44,7 @@ class StribeckFriction final : public Effect {
                       .high = kUnbounded,
                       .neutral = kNoNeutral,
                       .fallback = 1e-5},
-      EffectParameter{.name = "presliding_exponent",
-                      .unit = "",
-                      .what = "i, 0: elastoplastic, 1: exponential",
-                      .low = 0.0,
-                      .high = 5.0,
-                      .neutral = kNoNeutral,
-                      .fallback = 0.0}};
+      kPreslidingExponent};
 
   StribeckFriction(std::span<const double> values, double /*sample_period_s*/)
       : friction_force_n_{values[0]},

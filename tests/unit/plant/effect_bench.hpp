@@ -85,4 +85,13 @@ struct Driver {
   return outputs;
 }
 
+/// Work of `forces` over samples begin to end of the motion, by the trapezium.
+[[nodiscard]] inline double work_j(const std::vector<double>& forces, const Driver& driver, std::size_t begin,
+                                   std::size_t end) {
+  const auto at_m = [&](std::size_t i) { return driver.displacement_m(kBenchPeriod_s * static_cast<double>(i)); };
+  double work = 0.0;
+  for (std::size_t i = begin + 1; i <= end; ++i) work += 0.5 * (forces[i] + forces[i - 1]) * (at_m(i) - at_m(i - 1));
+  return work;
+}
+
 }  // namespace hybridtest

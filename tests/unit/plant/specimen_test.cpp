@@ -19,16 +19,6 @@ constexpr auto kSpecimen = EffectInterface::specimen;
 
 double time_s(std::size_t sample) { return kBenchPeriod_s * static_cast<double>(sample); }
 
-/// Work of `forces` over samples begin to end of the motion, by the trapezium.
-double work_j(const std::vector<double>& forces, const Driver& driver, std::size_t begin, std::size_t end) {
-  double work = 0.0;
-  for (std::size_t i = begin + 1; i <= end; ++i) {
-    work +=
-        0.5 * (forces[i] + forces[i - 1]) * (driver.displacement_m(time_s(i)) - driver.displacement_m(time_s(i - 1)));
-  }
-  return work;
-}
-
 struct Formula {
   const char* name;
   std::vector<double> values;
