@@ -40,6 +40,8 @@ class Security : public SystemTest {
   const Arguments short_{"--set", "time.duration_s=2",
                          "--set", "timeouts={discovery_s: 120, liveliness_lease_s: 30}",
                          "--set", "substructures[storey_1].limits.command_age_s=60"};
+  // For intruders who do get in: at full speed the test may be over before they have discovered it.
+  const Arguments paced_{"--set", "time.mode=paced", "--set", "time.duration_s=10"};
 
   /// Runs launch/security/make_credentials for this test into a folder.
   void make_credentials(const std::string& folder, const Arguments& more = {}) {
@@ -64,6 +66,12 @@ class Security : public SystemTest {
   [[nodiscard]] Arguments secured(const Arguments& more) const {
     Arguments arguments = short_;
     arguments.insert(arguments.end(), {"--credentials", directory_of("true").string()});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  [[nodiscard]] Arguments unsecured(const Arguments& more) const {
+    Arguments arguments = short_;
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -183,7 +191,7 @@ TEST_F(Security, OverTcpThePacketFilterAdmitsTheTestItself) {
 
 TEST_F(Security, WithoutCredentialsAStrangerStopsTheTest) {
   const Intruder stranger{joining(), joining(), test_name(), {.stops = true}};
-  StartedProgram run = start_run(scenario_, "run", short_);
+  StartedProgram run = start_run(scenario_, "run", unsecured(paced_));
   EXPECT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_GT(stranger.heard(), 0U);
 }
@@ -191,7 +199,7 @@ TEST_F(Security, WithoutCredentialsAStrangerStopsTheTest) {
 TEST_F(Security, StolenKeyThatHasNotExpiredGetsIn) {
   make_credentials("true");
   const Intruder thief{joining("true/coordinator"), joining("true/coordinator"), test_name(), {.stops = true}};
-  StartedProgram run = start_run(scenario_, "run", secured({}));
+  StartedProgram run = start_run(scenario_, "run", secured(paced_));
   EXPECT_THAT(run.wait(), Optional(kExitEndedEarly)) << run.standard_error();
   EXPECT_GT(thief.heard(), 0U);
 }
@@ -199,9 +207,9 @@ TEST_F(Security, StolenKeyThatHasNotExpiredGetsIn) {
 TEST_F(Security, WithoutCredentialsAnotherSiteForgesAForce) {
   const Intruder other_site{joining(), joining(), test_name(), {.forges_storey_2 = true}};
   ASSERT_TRUE(wait_until([&] { return other_site.has_moved(); }));
-  StartedProgram run = start_run(scenario_, "run", short_);
+  StartedProgram run = start_run(scenario_, "run", unsecured(paced_));
   ASSERT_TRUE(run.wait());
-  StartedProgram simulated = start_simulate(scenario_, "simulated", short_);
+  StartedProgram simulated = start_simulate(scenario_, "simulated", unsecured(paced_));
   ASSERT_THAT(simulated.wait(), Optional(kExitCompleted));
   EXPECT_NE(recorded("run").column(kCoordinatorId, "steps", "displacement_floor_2_m"),
             recorded("simulated").column(kCoordinatorId, "steps", "displacement_floor_2_m"));
