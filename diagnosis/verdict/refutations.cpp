@@ -112,7 +112,8 @@ std::vector<Bounded> readings(const FitSegment& fit) {
 std::string limit_refuted(const Suspect& suspect, std::string_view name, std::string_view unit,
                           std::vector<Bounded> (*bounded)(const FitSegment&)) {
   const ParameterEstimate& limit = suspect.parameter(name);
-  const double unsure = tuning::kTwoSided95 * limit.standard_error;
+  // Beside a gap that it does not explain, a limit is not sure; but what is read at a limit is the limit.
+  const double unsure = std::min(tuning::kTwoSided95 * limit.standard_error, tuning::kBeyondLimit * limit.value);
   double reached = 0.0;
   for (const FitSegment& fit : suspect.problem.segments) {
     if (!suspect.ends_at(fit)) continue;

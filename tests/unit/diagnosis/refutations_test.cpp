@@ -52,6 +52,9 @@ TEST(Refutation, LoadCellLimitThatReadingsPass) {
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {20e3})),
               HasSubstr("of the readings pass its limit"));
   EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {40e3})), HasSubstr("no reading comes near"));
+  // A limit that what is left beside it makes unsure by half of it is passed all the same.
+  EXPECT_THAT(refutation(problem, fit_of(force_sensor, "saturation", {26e3}, 7e3)),
+              HasSubstr("of the readings pass its limit"));
 }
 
 /// A smoothed force overshoots at the corners of a clipped one. What counts is what the cell read.
