@@ -254,6 +254,22 @@ struct Instead {
   std::optional<Candidate> fitted;
 };
 
+/// All numbers of the model's law, its hardening too, in the place of an effect of the specimen: a friction that yields
+/// where the law does is a law with another strength. Nothing for a number, or a law without a hardening.
+std::optional<Candidate> whole_law_instead(const IdentificationProblem& problem,
+                                           const std::vector<EffectSetting>& effects, std::size_t position) {
+  const EffectType& type = *effects[position].type;
+  const EffectType* const hardening = find_effect(EffectInterface::specimen, ModelNumber::hardening);
+  if (type.interface != EffectInterface::specimen || is_number(problem, type)) return {};
+  if (std::ranges::any_of(effects, replaces_law) || holds(effects, hardening)) return {};
+  if (!is_judged(problem, *hardening) || place_of(problem.model, *hardening) != nullptr) return {};
+  std::vector<EffectSetting> start = with_all_numbers(problem, without(effects, position));
+  start.push_back(absent(*hardening));
+  std::optional<Candidate> numbers = fit_together(problem, hardening, start, refit_effects);
+  if (numbers) numbers = without_needless_numbers(problem, *std::move(numbers));
+  return numbers;
+}
+
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
 /// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
 /// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
@@ -314,6 +330,11 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     const std::vector<EffectSetting> start = with_all_numbers(problem, without(effects, position));
     const EffectType* const stiffness = find_effect(EffectInterface::specimen, ModelNumber::stiffness);
     if (holds(start, stiffness)) compare(fit_together(problem, stiffness, start, refit_effects));
+  } else if (std::optional<Candidate> numbers = whole_law_instead(problem, effects, position)) {
+    // All of them are expected to be off, so they are the simpler answer.
+    const double score = score_of(problem, numbers->fit) + decisive_gain(problem);
+    scores.push_back(score);
+    if (score > highest) best = std::move(numbers);
   }
   if (!best) return;
   const auto place = std::ranges::max_element(scores) - scores.begin();

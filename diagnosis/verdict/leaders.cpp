@@ -174,13 +174,32 @@ void weigh_numbers(const IdentificationProblem& problem, std::size_t position, G
   put_most_probable_first(selection.library);
 }
 
+/// Numbers of the model and the zero of a sensor, which may hide that they are off; the zero with which they predict
+/// best.
+FitOutcome with_a_zero(const IdentificationProblem& problem, const FitOutcome& numbers) {
+  FitOutcome best = numbers;
+  for (const EffectType* const type : judged_effects(problem)) {
+    if (type->traits.number != ModelNumber::offset || place_of(problem.model, *type) != nullptr) continue;
+    std::vector<EffectSetting> effects = numbers.effects;
+    effects.push_back(absent(*type));
+    FitOutcome fit = refit_effects(problem, effects, false);
+    if (held_out_score(problem, fit) > held_out_score(problem, best)) best = std::move(fit);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<FitOutcome> needed_numbers(const IdentificationProblem& problem, const Selection& selection) {
   const FitOutcome& all = selection.by_numbers;
-  const double gain = held_out_score(problem, all) - held_out_score(problem, selection.baseline);
-  if (all.effects.empty() || gain <= decisive_gain(problem)) return {};
-  FitOutcome needed = all;
+  if (all.effects.empty()) return {};
+  const auto tells = [&](const FitOutcome& fit) {
+    return held_out_score(problem, fit) > held_out_score(problem, selection.baseline) + decisive_gain(problem);
+  };
+  // What leads and is a number or a zero itself has the others found beside it.
+  const bool is_led_by_number = is_number(problem, *selection.library.front().type);
+  FitOutcome needed = tells(all) || is_led_by_number ? all : with_a_zero(problem, all);
+  if (!tells(needed)) return {};
   prune(problem, all, needed);
   return needed;
 }

@@ -14,6 +14,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/verdict/growth.hpp"
+#include "diagnosis/verdict/leaders.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -27,12 +28,13 @@ using report::Verdict;
 using testing::UnorderedElementsAre;
 
 constexpr double kYieldForce_n = 2.0e4;
+constexpr double kHardeningRatio = 0.07;
 constexpr double kLargest_m = 0.028;
 
-std::unique_ptr<Law> yielding(double stiffness_ratio, double strength_ratio) {
+std::unique_ptr<Law> yielding(double stiffness_ratio, double strength_ratio, double hardening_ratio = kHardeningRatio) {
   return std::make_unique<Bilinear>(Bilinear::Parameters{.stiffness_n_per_m = stiffness_ratio * kMadeStiffness_n_per_m,
                                                          .yield_force_n = strength_ratio * kYieldForce_n,
-                                                         .hardening_ratio = 0.07});
+                                                         .hardening_ratio = hardening_ratio});
 }
 
 /// Softens by this share of its elastic force at the largest displacement.
@@ -102,6 +104,56 @@ TEST(NumbersFirstAlone, LawThatIsOffIsCorrected) {  // control: nothing else is 
   const Diagnosis diagnosis = diagnosis_with({});
   EXPECT_EQ(diagnosis.report.verdict, Verdict::none);
   EXPECT_THAT(effects_of(diagnosis.report.corrections), UnorderedElementsAre("stiffness_error", "strength_error"));
+}
+
+/// Stiffness, strength and hardening all slightly off are nearly a friction that yields where the law does.
+TEST(NumbersFirstAlone, WholeLawThatIsOffIsNoFriction) {
+  constexpr double kStiffnessError = 0.012;
+  constexpr double kStrengthError = 0.02;
+  constexpr double kHardeningError = -0.0014;
+  constexpr double kZero_n = 330.0;
+  SiteModel model = made_model();
+  model.make_law = [] { return yielding(1.0, 1.0); };
+  const std::unique_ptr<Law> real =
+      yielding(1.0 + kStiffnessError, 1.0 + kStrengthError, kHardeningRatio + kHardeningError);
+  const Diagnosis diagnosis = diagnosis_of(model, made_recording(made_motion_m, [&](double t) {
+                                             const double force_n = real->trial(made_motion_m(t), 0.0);
+                                             real->commit();
+                                             return force_n + kZero_n;
+                                           }));
+  EXPECT_THAT(causes_of(diagnosis), UnorderedElementsAre("bias"));
+  EXPECT_THAT(effects_of(diagnosis.report.corrections),
+              UnorderedElementsAre("stiffness_error", "strength_error", "hardening_error"));
+  EXPECT_NEAR(first_parameter_of(diagnosis, "bias"), kZero_n, 0.01 * kZero_n);
+}
+
+/// The zero of a load cell is a gap of its own, under which a stiffness that is slightly off does not show.
+TEST(NeededNumbers, AreFoundWithTheZeroThatHidesThem) {
+  constexpr double kStiffnessError = 0.002;
+  constexpr double kZero_n = -1300.0;
+  const auto effects_at_zero = [&](double zero_n) {
+    const IdentificationProblem problem =
+        make_problem(made_model(), segments_of(made_recording(made_motion_m,
+                                                              [&](double t) {
+                                                                return (1.0 + kStiffnessError) *
+                                                                           kMadeStiffness_n_per_m * made_motion_m(t) +
+                                                                       zero_n;
+                                                              }),
+                                               0, 0));
+    Selection selection;
+    selection.baseline = fit_nothing(problem, false);
+    selection.by_numbers = refit_effects(problem, numbers_of(problem), false);
+    selection.library = {
+        {.type = find_effect(EffectInterface::specimen, "cubic_stiffness"), .fit = selection.baseline}};
+    const std::optional<FitOutcome> needed = needed_numbers(problem, selection);
+    std::vector<std::string> names;
+    if (needed) {
+      for (const EffectSetting& effect : needed->effects) names.emplace_back(effect.type->name);
+    }
+    return names;
+  };
+  EXPECT_THAT(effects_at_zero(kZero_n), UnorderedElementsAre("stiffness_error", "bias"));
+  EXPECT_THAT(effects_at_zero(0.0), UnorderedElementsAre("stiffness_error"));
 }
 
 TEST(FurtherEffect, IsFoundThoughItMovesANumberThatWasFoundBefore) {
