@@ -63,15 +63,13 @@ class Security : public SystemTest {
     if (!credentials.empty()) settings.credentials = directory() / credentials;
     return settings;
   }
-  [[nodiscard]] Arguments secured(const Arguments& more) const {
+  [[nodiscard]] Arguments unsecured(const Arguments& more) const {
     Arguments arguments = short_;
-    arguments.insert(arguments.end(), {"--credentials", directory_of("true").string()});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-
-  [[nodiscard]] Arguments unsecured(const Arguments& more) const {
-    Arguments arguments = short_;
+  [[nodiscard]] Arguments secured(const Arguments& more) const {
+    Arguments arguments = unsecured({"--credentials", directory_of("true").string()});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
