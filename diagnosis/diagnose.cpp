@@ -420,6 +420,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   settle_set(report);
   report.set_leaves_a_part =
       report.verdict == Verdict::set && std::ranges::any_of(judgements, &Judgement::leaves_a_part);
+  report.is_pieced_together =
+      report.verdict == Verdict::partial && std::ranges::any_of(judgements, &Judgement::is_pieced_together);
   report.corrections = corrections_of(stages);
   report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
   add_traces(traces, parts, report.ranking);

@@ -294,7 +294,7 @@ namespace {
 
 /// As read_site_model(), with overrides of the file.
 SiteModelFile read_with(std::vector<std::string> overrides, const std::filesystem::path& file,
-                        std::string_view substructure, const std::string& compensators, PowerDampers power_dampers) {
+                        std::string_view substructure, const std::string& compensators, Dampers dampers) {
   config::Document document = config::Document::load(file, overrides);
   Section root = document.root();
   const bool is_scenario = root.has("substructures");
@@ -342,9 +342,9 @@ SiteModelFile read_with(std::vector<std::string> overrides, const std::filesyste
     place.rig.error("", error.what());
   }
   document.throw_if_errors();
-  if (power_dampers == PowerDampers::beside_law) {
+  if (dampers == Dampers::beside_law) {
     std::vector<std::string> moved = dampers_beside_law(place.rig);
-    if (!moved.empty()) return read_with(std::move(moved), file, substructure, compensators, PowerDampers::in_law);
+    if (!moved.empty()) return read_with(std::move(moved), file, substructure, compensators, Dampers::in_law);
   }
   const bool is_flat = !is_scenario && !root.has("rig");
   if (!is_flat) {
@@ -364,8 +364,8 @@ SiteModelFile read_with(std::vector<std::string> overrides, const std::filesyste
 }  // namespace
 
 SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure,
-                              const std::string& compensators, PowerDampers power_dampers) {
-  return read_with({}, file, substructure, compensators, power_dampers);
+                              const std::string& compensators, Dampers dampers) {
+  return read_with({}, file, substructure, compensators, dampers);
 }
 
 }  // namespace hybridtest

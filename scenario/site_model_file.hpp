@@ -45,16 +45,15 @@ struct SiteModelFile : SiteModelText {
 /// @throws ConfigError when it cannot be read at all.
 [[nodiscard]] bool is_site_file(const std::filesystem::path& file);
 
-/// Where the fluid dampers of a specimen's law stand in what is read; see dampers_beside_law().
-enum class PowerDampers : std::uint8_t { in_law, beside_law };
+/// Where the dampers of a specimen's law stand in what is read; see dampers_beside_law().
+enum class Dampers : std::uint8_t { in_law, beside_law };
 
 /// @param substructure   of a whole scenario: the id; empty where it has one site only.
 /// @param compensators   for a site file that names none, as SiteModelFile::compensators. A scenario's site without
 ///                       `compensator` has none.
 /// @throws ConfigError with everything that is wrong.
 [[nodiscard]] SiteModelFile read_site_model(const std::filesystem::path& file, std::string_view substructure = {},
-                                            const std::string& compensators = {},
-                                            PowerDampers power_dampers = PowerDampers::in_law);
+                                            const std::string& compensators = {}, Dampers dampers = Dampers::in_law);
 
 /// The compensators of a section with the key `compensator`, as SiteModelFile::compensators. Errors go to the document.
 [[nodiscard]] std::string written_compensators(config::Section section);

@@ -152,6 +152,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   }
   json["verdict"] = report::name_of(report.verdict);
   if (report.set_leaves_a_part) json["leaves_a_part"] = true;
+  if (report.is_pieced_together) json["pieced_together"] = true;
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
   for (const report::RankedCause& cause : report.ranking) {

@@ -159,8 +159,18 @@ std::string doubt_sentence(const DiagnosisReport& report) {
                      kNoBreak, names);
 }
 
+/// Why causes are told in part only.
+std::string doubts(const DiagnosisReport& report) {
+  std::string text = doubt_sentence(report);
+  if (report.is_pieced_together) {
+    text +=
+        " So many effects of the specimen together are rarely right: they may stand for one that the library lacks.";
+  }
+  return text;
+}
+
 std::string partial_sentence(const DiagnosisReport& report) {
-  const std::string doubt = doubt_sentence(report);
+  const std::string doubt = doubts(report);
   return named_sentence(report) + remainder(report) +
          (doubt.empty() ? " No effect in the library explains what is left." : doubt);
 }

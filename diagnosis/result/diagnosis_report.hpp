@@ -176,7 +176,9 @@ struct DiagnosisReport {
   std::string made_by{};      // version of the software
   std::vector<ReportedRecording> recordings;
   Verdict verdict = Verdict::not_excited;
-  bool set_leaves_a_part = false;   // of a set: no member explains all that is above the floor
+  bool set_leaves_a_part = false;  // of a set: no member explains all that is above the floor
+  bool is_pieced_together =
+      false;  // of `partial`: the causes are so many that they may stand for one that the library lacks
   std::vector<InterfaceGap> where;  // every interface of the chain, in its order or by share
   std::vector<RankedCause> ranking;
   // Numbers of the model that are slightly off: corrected in the augmented model, but no causes.

@@ -29,7 +29,7 @@ std::vector<const SubstructureScenario*> sites_of(const Scenario& scenario) {
 std::string diagnose_one(const std::string& id, const std::filesystem::path& run,
                          const std::filesystem::path& directory, const std::string& made_at_utc,
                          const PartProgress& progress) {
-  SiteModelFile model = read_site_model(run / "scenario.yaml", id, {}, PowerDampers::beside_law);
+  SiteModelFile model = read_site_model(run / "scenario.yaml", id, {}, Dampers::beside_law);
   model.name = id;
   const std::vector<Recording> recordings{read_recording(run, RecordingRole::fit, id)};
   DiagnoseSettings settings;

@@ -65,8 +65,9 @@ std::string other_dof_in_words(const SiteDiagnosis& other) {
   return text + ".";
 }
 
-std::string in_words(Verdict verdict) {
-  switch (verdict) {
+std::string in_words(const report::DiagnosisReport& report) {
+  if (report.is_pieced_together) return "causes are named, but so many may stand for one that the library lacks";
+  switch (report.verdict) {
     case Verdict::none: return "no gap is above the noise floor";
     case Verdict::named: return "the cause is named";
     case Verdict::set: return "one of several effects that these recordings cannot distinguish";
@@ -297,7 +298,7 @@ void write_diagnosis(const SiteDiagnosis& diagnosis, const SiteModelFile& model,
 
 std::string summary_of(const SiteDiagnosis& site) {
   const report::DiagnosisReport& report = site.diagnosis.report;
-  std::string text = fmt::format("{}: {}{}\n", report::name_of(report.verdict), in_words(report.verdict),
+  std::string text = fmt::format("{}: {}{}\n", report::name_of(report.verdict), in_words(report),
                                  report.set_leaves_a_part ? "; none explains all of the gap" : "");
   if (!report.where.empty()) text += "\n  where                      share of the gap        NRMSE      floor\n";
   for (const report::InterfaceGap& gap : report.where) {

@@ -199,7 +199,7 @@ std::string site_of_run(const std::filesystem::path& run, std::string_view site)
 
 SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings, const std::filesystem::path& model,
                              std::string_view site) {
-  SiteModelFile given = read_site_model(model, site, {}, PowerDampers::beside_law);
+  SiteModelFile given = read_site_model(model, site, {}, Dampers::beside_law);
   if (!given.compensators.empty()) return given;
   std::optional<std::string> of_runs;
   for (const std::filesystem::path& run : recordings) {
@@ -212,7 +212,7 @@ SiteModelFile read_model_for(std::span<const std::filesystem::path> recordings, 
     }
     of_runs = of_run;
   }
-  return of_runs && !of_runs->empty() ? read_site_model(model, site, *of_runs, PowerDampers::beside_law) : given;
+  return of_runs && !of_runs->empty() ? read_site_model(model, site, *of_runs, Dampers::beside_law) : given;
 }
 
 std::filesystem::path site_run_file(const std::filesystem::path& run, std::string_view site) {

@@ -37,6 +37,21 @@ bool is_patchwork(const IdentificationProblem& problem, const Selection& selecti
          gap_energy(problem, selection.library.front().fit).excess() > policy.partial_leaves * total;
 }
 
+/// Several effects of the specimen that are no numbers of the model: more than two of any kind, or two that bend the
+/// curve, as a law without a loop does. Few specimens have so many, and a curve that the library lacks is made of as
+/// many as it takes.
+bool is_pieced_together(const IdentificationProblem& problem, const FitOutcome& chosen) {
+  std::size_t effects = 0;
+  std::size_t curves = 0;
+  for (std::size_t i = 0; i < chosen.effects.size(); ++i) {
+    const EffectType& type = *chosen.effects[i].type;
+    if (type.interface != EffectInterface::specimen || is_number(problem, type)) continue;
+    ++effects;
+    if (type.traits.bends_curve || is_law_without_loop(problem, chosen, i)) ++curves;
+  }
+  return effects > 2 || curves > 1;
+}
+
 }  // namespace
 
 double nats_that_decide(double probability) noexcept {
@@ -173,6 +188,11 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
     judgement.may_be_set = false;
   }
   judgement.corrections = slightly_off(problem, selection, policy.numbers_within);
+  if (is_pieced_together(problem, selection.chosen)) {
+    judgement.is_pieced_together = true;
+    judgement.verdict = Verdict::partial;
+    judgement.may_be_set = false;
+  }
   // Nor is a name given to what may be absent by the interval that is reported with it.
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
     if (judgement.is_correction(i) || !may_be_absent(problem, selection.chosen, i)) continue;
@@ -323,12 +343,12 @@ void add_gap(const IdentificationProblem& problem, const Selection& selection, c
 }
 
 void settle_corrections(std::span<Judgement* const> judgements) {
-  const auto has_causes = [](const Judgement* one) {
-    return report::names_a_cause(one->verdict) && !one->only_corrects;
+  const auto is_wrong_besides = [](const Judgement* one) {
+    return one->verdict == Verdict::unknown || (report::names_a_cause(one->verdict) && !one->only_corrects);
   };
   std::size_t numbers = 0;
   for (const Judgement* one : judgements) numbers += one->corrections.size();
-  const bool is_a_cause = numbers == 1 && std::ranges::none_of(judgements, has_causes);
+  const bool is_a_cause = numbers == 1 && std::ranges::none_of(judgements, is_wrong_besides);
   for (Judgement* const one : judgements) {
     if (!one->only_corrects) continue;
     if (is_a_cause) {

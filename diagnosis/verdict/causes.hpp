@@ -27,6 +27,7 @@ struct Judgement {
   std::vector<std::size_t> corrections;
   // Likewise of causes that are absent at a value within the interval that is reported with them.
   std::vector<std::size_t> may_be_absent;
+  bool is_pieced_together = false;  // the causes are so many that they may stand for one that the library lacks
   std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
   bool may_be_set = false;     // what is left allows one, and no search ran into its limit

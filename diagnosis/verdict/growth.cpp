@@ -74,16 +74,27 @@ bool may_be_off(const IdentificationProblem& problem, const EffectType& type) {
   return is_number(problem, type) && type.traits.number != ModelNumber::offset;
 }
 
+/// The judged effects of this kind that the model does not have, each absent.
+template <class Predicate>
+std::vector<EffectSetting> absent_ones(const IdentificationProblem& problem, Predicate&& is_of_kind) {
+  std::vector<EffectSetting> effects;
+  for (const EffectType* const type : judged_effects(problem)) {
+    if (is_of_kind(*type) && place_of(problem.model, *type) == nullptr) effects.push_back(absent(*type));
+  }
+  return effects;
+}
+
 }  // namespace
 
 std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem) {
-  std::vector<EffectSetting> numbers;
-  for (const EffectType* const type : judged_effects(problem)) {
+  return absent_ones(problem, [&](const EffectType& type) {
     // Strength and hardening free beside a stiffness make any law that softens of one that yields.
-    if (type->traits.number == ModelNumber::hardening) continue;
-    if (may_be_off(problem, *type) && place_of(problem.model, *type) == nullptr) numbers.push_back(absent(*type));
-  }
-  return numbers;
+    return may_be_off(problem, type) && type.traits.number != ModelNumber::hardening;
+  });
+}
+
+std::vector<EffectSetting> zeros_of(const IdentificationProblem& problem) {
+  return absent_ones(problem, [](const EffectType& type) { return type.traits.number == ModelNumber::offset; });
 }
 
 namespace {

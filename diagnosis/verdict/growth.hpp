@@ -55,6 +55,9 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
 /// which are known exactly before a test, effects that the model has, and the hardening.
 [[nodiscard]] std::vector<EffectSetting> numbers_of(const IdentificationProblem& problem);
 
+/// The zeros of sensors that are judged, each as an effect that changes nothing yet.
+[[nodiscard]] std::vector<EffectSetting> zeros_of(const IdentificationProblem& problem);
+
 /// Drops what the other effects can do without, the least needed first, and what is needless.
 void prune(const IdentificationProblem& problem, const FitOutcome& by_numbers, FitOutcome& fit);
 

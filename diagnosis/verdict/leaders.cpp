@@ -7,6 +7,7 @@
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/held_out_loss.hpp"
+#include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
 
@@ -81,6 +82,13 @@ std::optional<Leader> leader_of_numbers(const IdentificationProblem& problem, co
   return Leader{position, {gap_energy(problem, *needed).is_clear() ? all : *needed, {{first->type, 1.0}}}};
 }
 
+/// Whether numbers of the model would have to take an effect back.
+bool is_taken_back(const IdentificationProblem& problem, const FitOutcome& fit, const EffectType& effect) {
+  const auto found = std::ranges::find(fit.effects, &effect, &EffectSetting::type);
+  return found != fit.effects.end() &&
+         is_cancelled(problem, fit, static_cast<std::size_t>(found - fit.effects.begin()));
+}
+
 /// The best candidate of the library with the numbers that it needs, if it is no number itself and scores higher.
 /// Beside a candidate in the library numbers are free to first order only, and each recording has its own.
 std::optional<Leader> decidedly_better(const IdentificationProblem& problem, const IdentificationProblem& coarse,
@@ -88,7 +96,8 @@ std::optional<Leader> decidedly_better(const IdentificationProblem& problem, con
   const Candidate& best = selection.library.front();
   if (is_number(problem, *best.type) || !best.fit.with_nuisance) return {};
   Leader leader{0, with_its_numbers(problem, coarse, selection, 0)};
-  if (score_of(problem, leader.growth.fit) <= score) return {};
+  const FitOutcome& fit = leader.growth.fit;
+  if (score_of(problem, fit) <= score || is_taken_back(problem, fit, *best.type)) return {};
   return leader;
 }
 
@@ -111,7 +120,9 @@ std::vector<Leader> leaders_of(const IdentificationProblem& problem, const Ident
   const std::size_t count = std::min(tuning::kLeadersPaired, selection.library.size());
   for (std::size_t i = 0; i < count; ++i) {
     if (!may_lead(problem, selection, i) || (!leaders.empty() && leaders.front().position == i)) continue;
-    leaders.push_back({i, with_its_numbers(problem, coarse, selection, i)});
+    Growth leader = with_its_numbers(problem, coarse, selection, i);
+    if (!leaders.empty() && is_taken_back(problem, leader.fit, *selection.library[i].type)) continue;
+    leaders.push_back({i, std::move(leader)});
     if (i == 0 && is_enough(leaders.back())) break;
   }
   return leaders;
@@ -178,10 +189,9 @@ void weigh_numbers(const IdentificationProblem& problem, std::size_t position, G
 /// best.
 FitOutcome with_a_zero(const IdentificationProblem& problem, const FitOutcome& numbers) {
   FitOutcome best = numbers;
-  for (const EffectType* const type : judged_effects(problem)) {
-    if (type->traits.number != ModelNumber::offset || place_of(problem.model, *type) != nullptr) continue;
+  for (const EffectSetting& zero : zeros_of(problem)) {
     std::vector<EffectSetting> effects = numbers.effects;
-    effects.push_back(absent(*type));
+    effects.push_back(zero);
     FitOutcome fit = refit_effects(problem, effects, false);
     if (held_out_score(problem, fit) > held_out_score(problem, best)) best = std::move(fit);
   }

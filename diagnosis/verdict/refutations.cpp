@@ -198,11 +198,13 @@ std::string drift_refuted(const Suspect& suspect, std::string_view name, std::st
   return {};
 }
 
-/// T of y = g (x - T x'): how late y is behind x, whatever their gain and zero.
-double lateness_s(const Eigen::VectorXd& x, const Eigen::VectorXd& rate, const Eigen::VectorXd& y) {
-  Eigen::MatrixX3d columns{x.size(), 3};
-  columns << x, rate, Eigen::VectorXd::Ones(x.size());
-  const Eigen::Vector3d solution = columns.colPivHouseholderQr().solve(y);
+/// T of y = g (x - T x'): how late y is behind x, whatever their gain and zero, and the size of what else may be in y.
+double lateness_s(const Eigen::VectorXd& x, const Eigen::VectorXd& rate, const Eigen::VectorXd& y,
+                  const Eigen::MatrixXd& others = {}) {
+  Eigen::MatrixXd columns{x.size(), 3 + others.cols()};
+  columns.leftCols(3) << x, rate, Eigen::VectorXd::Ones(x.size());
+  if (others.cols() > 0) columns.rightCols(others.cols()) = others;
+  const Eigen::VectorXd solution = columns.colPivHouseholderQr().solve(y);
   return -solution[1] / solution[0];
 }
 
@@ -219,15 +221,25 @@ double reading_lateness_s(const FitSegment& fit) {
   return lateness_s(x, rate, Eigen::Map<const Eigen::VectorXd>{fit.segment.measured.data(), size});
 }
 
-/// How late the measured force is behind the one that the model has for the reading.
-double force_lateness_s(const FitSegment& fit) {
+/// What a wrong strength of the model's law changes; no columns where the law has none.
+Eigen::MatrixXd strength_slope(const IdentificationProblem& problem, const FitSegment& fit) {
+  const EffectSetting stronger{find_effect(specimen, ModelNumber::strength), {tuning::kResolution}};
+  if (!problem.law_has_strength || !fit.segment.touched_by(*stronger.type)) return {};
+  return predict(problem, fit, std::span{&stronger, 1}) - fit.baseline;
+}
+
+/// How late the measured force is behind the one that the model has for the reading. The loop of a law that is too
+/// strong would look late, too, so its strength is free.
+double force_lateness_s(const IdentificationProblem& problem, const FitSegment& fit) {
   const Eigen::MatrixXd& directions = fit.numbers.directions;
   Eigen::VectorXd read = fit.measured;
   if (directions.cols() > 0) read += directions * fit.numbers.off;  // as it was before the numbers were free
   const Eigen::Index size = read.size() - 2;
   const double step_s = fit.segment.period_s * static_cast<double>(fit.averaged);
+  Eigen::MatrixXd slope = strength_slope(problem, fit);
+  if (slope.rows() > 0) slope = slope.middleRows(1, size).eval();
   return lateness_s(fit.baseline.segment(1, size), (fit.baseline.tail(size) - fit.baseline.head(size)) / (2.0 * step_s),
-                    read.segment(1, size));
+                    read.segment(1, size), slope);
 }
 
 /// What a transducer that lags reads is late behind the command, as no actuator is early; and the force is early before
@@ -244,7 +256,7 @@ std::string transducer_lag_refuted(const Suspect& suspect) {
     }
     if (fit.segment.to == Channel::measured_force && fit.segment.touched_by(*suspect.effect.type) &&
         fit.baseline.squaredNorm() > 0.0) {
-      const double early_s = -force_lateness_s(fit);
+      const double early_s = -force_lateness_s(suspect.problem, fit);
       if (is_nearer_to_none(early_s, lag_s)) {
         return fmt::format("{}: the force comes {} before what the model has for the reading", claim,
                            report::quantity(early_s, "s"));
@@ -456,8 +468,6 @@ std::string absence_not_excluded(const Suspect& suspect) {
   return fmt::format("{}: the interval of {} holds the value at which it is absent", suspect.name(), absent->name);
 }
 
-/// Whether the others take back all but a tenth of what an effect changes, as a damping does of a lag: of such two the
-/// recordings show the difference, and neither.
 bool is_cancelled(const Suspect& suspect) {
   if (suspect.outcome.effects.size() < 2) return false;
   double alone = 0.0;
@@ -477,6 +487,10 @@ bool is_cancelled(const Suspect& suspect) {
 
 bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   return slides_as_in_model(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});
+}
+
+bool is_cancelled(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  return is_cancelled(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});
 }
 
 bool may_be_absent(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {

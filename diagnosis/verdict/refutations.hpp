@@ -27,6 +27,11 @@ namespace hybridtest {
 [[nodiscard]] bool is_law_without_loop(const IdentificationProblem& problem, const FitOutcome& fit,
                                        std::size_t position);
 
+/// Whether the others take back all but a tenth of what an effect changes, as a damping does of a lag: of such two the
+/// recordings show the difference, and neither.
+/// @param position   in the fit's effects.
+[[nodiscard]] bool is_cancelled(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position);
+
 /// Whether a friction that the model has slides no later than it does there. What the user calls a friction is one,
 /// however late it slides.
 /// @param position   in the fit's effects.

@@ -69,6 +69,7 @@ struct EffectTraits {
   bool needs_time = false;           // it follows rate, time or acceleration: without time it has no meaning
   bool takes_place = false;          // beside one that the model has, it takes its place; see add_effect()
   bool takes_input = false;          // it follows a recorded input beside the motion; see with_input()
+  bool bends_curve = false;          // its force follows the displacement along a curve, the same way back
 };
 
 struct EffectParameter {

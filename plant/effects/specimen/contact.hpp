@@ -16,7 +16,7 @@ class Contact final : public Effect {
   static constexpr std::string_view kEquation =
       "F = F0 + s k (max(0, s x - |p|) - r max(0, -s x - q |p|)), s = 1 for p >= 0, -1 for p < 0";
   static constexpr std::string_view kSource = "Chopra (2012), section 22.1";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position, .bends_curve = true};
   static constexpr std::array kParameters{EffectParameter{.name = "stiffness_n_per_m",
                                                           .unit = "N/m",
                                                           .what = "k, of the stop",

@@ -13,7 +13,7 @@ class CubicStiffness final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 + k3 x^3";
   static constexpr std::string_view kSource = "Duffing (1918)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .bends_curve = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "stiffness_n_per_m3", .unit = "N/m3", .what = "k3", .low = -1e18, .high = 1e18, .is_linear = true}};
 

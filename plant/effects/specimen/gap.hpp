@@ -14,7 +14,7 @@ class Gap final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0(x - clamp(x, -g, g))";
   static constexpr std::string_view kSource = "Chopra (2012), section 22.1";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::position};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::position, .bends_curve = true};
   static constexpr std::array kParameters{
       EffectParameter{.name = "gap_m", .unit = "m", .what = "g, on either side", .low = 0.0, .high = kUnbounded}};
 

@@ -15,7 +15,7 @@ class GeometricStiffness final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 - P x / sqrt(h^2 - x^2)";
   static constexpr std::string_view kSource = "Chopra (2012), section 9.7";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::scale};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::scale, .bends_curve = true};
   static constexpr std::array kParameters{EffectParameter{.name = "axial_force_n",
                                                           .unit = "N",
                                                           .what = "P, compression",

@@ -14,7 +14,7 @@ class Pinching final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0 (1 - p exp(-(x / w)^2))";
   static constexpr std::string_view kSource = "after Baber and Noori (1986)";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .bends_curve = true};
   static constexpr std::array kParameters{EffectParameter{.name = "pinching_ratio",
                                                           .unit = "",
                                                           .what = "p, of the force that is missing at zero",

@@ -17,7 +17,7 @@ class StrengthAsymmetry final : public Effect {
  public:
   static constexpr std::string_view kEquation = "F = F0(x - d) - F0(-d)";
   static constexpr std::string_view kSource = "ANSI/AISC 341-16, section F4.2a";
-  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude};
+  static constexpr EffectTraits kTraits{.family = EffectFamily::amplitude, .bends_curve = true};
   static constexpr std::array kParameters{EffectParameter{
       .name = "shift_m",
       .unit = "m",

@@ -269,6 +269,14 @@ TEST(DiagnosisPage, CauseThatMayBeAbsentIsSaidToBeInTheFirstSentence) {
           Not(HasSubstr("No effect in the library"))));
 }
 
+TEST(DiagnosisPage, SoManyCausesThatTheyMayStandForAnotherAreSaidToBe) {
+  DiagnosisReport report = example();
+  report.verdict = Verdict::partial;
+  report.is_pieced_together = true;
+  EXPECT_THAT(verdict_sentence(report), testing::AllOf(HasSubstr("they may stand for one that the library lacks."),
+                                                       Not(HasSubstr("No effect in the library"))));
+}
+
 TEST(DiagnosisPage, PartOfWhichAnotherMayBeTheCauseSaysSo) {
   DiagnosisReport report = example();
   report.verdict = Verdict::partial;

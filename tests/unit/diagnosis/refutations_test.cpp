@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/verdict/causes.hpp"
+#include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -224,6 +226,57 @@ TEST(Judge, GivesNoNameToWhatMayBeAbsentByItsInterval) {
   estimate.beside_wrong_numbers = 0.6 * estimate.value;
   EXPECT_EQ(judge(problem, selection).verdict, report::Verdict::partial);
   EXPECT_THAT(judge(problem, selection).may_be_absent, testing::ElementsAre(0U));
+}
+
+/// A law that is a little too strong has a loop that looks late, and the force before it early.
+TEST(Refutation, TransducerLagThatTheForceOfALawThatYieldsDoesNotShow) {
+  constexpr double kLate_s = 1.1e-3;
+  const auto law = [](double strength_n) {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{
+        .stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = strength_n, .hardening_ratio = 0.05});
+  };
+  SiteModel model = made_model();
+  model.make_law = [&] { return law(1.03 * 1.5e4); };
+  const auto moved_m = [](double t) { return made_motion_m(std::max(0.0, t - kLate_s)); };
+  const auto refuted = [&](double lag_s) {
+    const std::unique_ptr<Law> specimen = law(1.5e4);
+    const auto force_n = [&](double t) {
+      const double force = specimen->trial(moved_m(t + lag_s), 0.0);
+      specimen->commit();
+      return force;
+    };
+    const IdentificationProblem problem = make_problem(model, segments_of(made_recording(moved_m, force_n), 0, 0));
+    return refutation(problem, fit_of(displacement_sensor, "lag", {kLate_s, 0.0}));
+  };
+  EXPECT_THAT(refuted(0.0), HasSubstr("the force comes"));
+  EXPECT_THAT(refuted(kLate_s), IsEmpty()) << "the force is as early as the reading is late";
+}
+
+TEST(Judge, GivesNoNameToSoManyEffectsThatTheyMayStandForAnother) {
+  const EffectSetting damper{find_effect(specimen, "viscous_damping"), {3e4}};
+  const EffectSetting cubic{find_effect(specimen, "cubic_stiffness"), {1e10}};
+  const EffectSetting stop{find_effect(specimen, "contact"), {4e6, 0.004, 0.0, 1.0}};
+  const EffectSetting friction{find_effect(specimen, "coulomb_friction"), {3e3, 0.0, 1e-4, 0.0}};
+  const EffectSetting fading{find_effect(specimen, "relaxation"), {1e6, 0.1}};
+  const auto judged = [&](const std::vector<EffectSetting>& effects) {
+    std::vector<Segment> segments = segments_of(made_recording(made_motion_m, spring_n), 0, 0);
+    Segment& segment = segments.back();
+    const std::vector<double> with_n = predict(made_model(), segment, effects);
+    const std::vector<double> without_n = predict(made_model(), segment);
+    for (std::size_t i = 0; i < with_n.size(); ++i) segment.measured[i] += with_n[i] - without_n[i];
+    const IdentificationProblem problem = make_problem(made_model(), segments);
+    Selection selection;
+    selection.baseline = fit_nothing(problem, false);
+    selection.chosen = refit_effects(problem, effects, false);
+    selection.library.push_back({.type = effects.front().type, .fit = selection.chosen, .probability = 0.9});
+    return judge(problem, selection);
+  };
+  EXPECT_EQ(judged({cubic, friction, damper}).verdict, report::Verdict::named) << "damping is a number of the model";
+  EXPECT_FALSE(judged({cubic, friction, damper}).is_pieced_together);
+  EXPECT_EQ(judged({cubic, stop}).verdict, report::Verdict::partial) << "two curves";
+  EXPECT_TRUE(judged({cubic, stop}).is_pieced_together);
+  EXPECT_EQ(judged({cubic, friction, fading}).verdict, report::Verdict::partial) << "three effects";
+  EXPECT_TRUE(judged({cubic, friction, fading}).is_pieced_together);
 }
 
 TEST(Refutation, IntervalsOfEarlierEffectsMayBeWide) {

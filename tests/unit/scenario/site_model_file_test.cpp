@@ -114,7 +114,7 @@ TEST_F(SiteFile, FluidDampersStandBesideTheLaw) {
              true, 2}}) {
     SCOPED_TRACE(one.text);
     const SiteModelFile plain = read(one.text);
-    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, PowerDampers::beside_law);
+    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, Dampers::beside_law);
     EXPECT_EQ(static_cast<bool>(moved.dofs[0].make_law), one.has_law);
     ASSERT_EQ(moved.dofs[0].effects.size(), one.effects);
     const EffectSetting& effect = moved.dofs[0].effects.back();
@@ -130,13 +130,33 @@ TEST_F(SiteFile, FluidDampersStandBesideTheLaw) {
   }
 }
 
-/// A linear damper has a number of its own already, and of two dampers neither could take the other's place.
-TEST_F(SiteFile, OtherDampersStayInTheLaw) {
+/// Linear dampers and a friction, too; the friction follows the displacement.
+TEST_F(SiteFile, LinearDampersAndAFrictionStandBesideTheLaw) {
+  const SiteModelFile plain = read(
+      "specimen: {type: parallel, laws: [{type: elastic, stiffness_n_per_m: 100.0}, {type: viscous, damping_n_s_per_m: "
+      "3.0}, {type: viscous, damping_n_s_per_m: 4.0}, {type: friction, friction_force_n: 50.0, "
+      "presliding_displacement_m: 0.03}]}\n");
+  const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, Dampers::beside_law);
+  const std::vector<EffectSetting>& effects = moved.dofs[0].effects;
+  ASSERT_EQ(effects.size(), 3U);
+  EXPECT_EQ(effects[0].type->name, "viscous_damping");
+  EXPECT_EQ(effects[1].values, std::vector<double>{4.0});
+  EXPECT_EQ(effects[2].type->name, "coulomb_friction");
+  EXPECT_EQ(effects[2].values, (std::vector<double>{50.0, 0.0, 0.03, 0.0}));
+  for (const double displacement : {0.01, 0.02, -0.4}) {
+    const Motion motion{.displacement_m = displacement, .velocity_m_per_s = 0.7, .acceleration_m_per_s2 = 1.5};
+    EXPECT_NEAR(force_at(moved.dofs[0], motion), force_at(plain.dofs[0], motion), 1e-12);
+  }
+}
+
+/// Of two such dampers neither could take the other's place.
+TEST_F(SiteFile, TwoDampersThatTakeAPlaceStayInTheLaw) {
   const std::string damper = "{type: viscous, damping_n_s_per_m: 3.0e4, exponent: 0.5}";
-  for (const std::string& law : {std::string{"{type: viscous, damping_n_s_per_m: 3.0e4}"},
-                                 fmt::format("{{type: parallel, laws: [{}, {}]}}", damper, damper)}) {
+  const std::string friction = "{type: friction, friction_force_n: 50.0}";
+  for (const std::string& law : {fmt::format("{{type: parallel, laws: [{}, {}]}}", damper, damper),
+                                 fmt::format("{{type: parallel, laws: [{}, {}]}}", friction, friction)}) {
     const SiteModelFile plain = read("specimen: " + law + "\n");
-    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, PowerDampers::beside_law);
+    const SiteModelFile moved = read_site_model(directory_ / "site.yaml", {}, {}, Dampers::beside_law);
     EXPECT_EQ(moved.text, plain.text);
     EXPECT_TRUE(moved.dofs[0].effects.empty());
   }
