@@ -88,6 +88,26 @@ double ColouredNoise::independent_samples() const {
   return std::clamp(n / std::max(time, 1.0), 1.0, n);
 }
 
+std::optional<double> noise_of_neighbours(const Eigen::VectorXd& values) {
+  if (values.size() <= static_cast<Eigen::Index>(tuning::kSamplesMin)) return {};
+  const auto apart = [&](Eigen::Index lag) {
+    const Eigen::Index count = values.size() - lag;
+    return 0.5 * (values.tail(count) - values.head(count)).squaredNorm() / static_cast<double>(count);
+  };
+  const double one = apart(1);
+  const double grown = apart(2) - one;
+  if (!(grown > 0.0)) return std::sqrt(one);  // white
+  // Of c (1 - r^lag) with a correlation r of neighbours, the growth from 2 to 4 over that from 1 to 2 is r (1 + r).
+  const double growth = std::max(0.0, (apart(4) - apart(2)) / grown);
+  const double correlation = 0.5 * (std::sqrt(1.0 + 4.0 * growth) - 1.0);
+  if (!(correlation < 1.0)) return {};
+  const double coloured = correlation > 0.0 ? grown / (correlation * (1.0 - correlation)) : 0.0;
+  const double all = correlation > 0.0 ? one + coloured * correlation : apart(2);
+  const double expected = all - coloured * std::pow(correlation, 8);
+  if (std::abs(apart(8) - expected) > (tuning::kSmoothingLeaves - 1.0) * expected) return {};
+  return std::sqrt(all);
+}
+
 double independent_samples(const Eigen::VectorXd& values) {
   // Of none there is one.
   return values.size() == 0 ? 1.0 : ColouredNoise{values}.independent_samples();

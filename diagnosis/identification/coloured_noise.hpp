@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace hybridtest {
 
@@ -24,6 +25,11 @@ class ColouredNoise {
   Eigen::Index samples_ = 0;
   Eigen::VectorXd covariances_;  // times the number of samples, from lag 0 on
 };
+
+/// Root mean square of noise that is white, first-order autoregressive, or both together, in a remainder that may hold
+/// something slower besides: by half the mean squares of differences between values 1, 2 and 4 samples apart, which
+/// grow towards the noise's. Nothing where those 8 samples apart are not as these say: there is something else in it.
+[[nodiscard]] std::optional<double> noise_of_neighbours(const Eigen::VectorXd& values);
 
 /// See ColouredNoise::independent_samples().
 [[nodiscard]] double independent_samples(const Eigen::VectorXd& values);

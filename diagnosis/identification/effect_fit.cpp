@@ -146,6 +146,20 @@ bool has_optional_at_limit(const FitOutcome& fit) {
   return false;
 }
 
+/// Whether an effect has parameters that a scenario may leave out, and each of them may as well be what it then is.
+bool may_be_simpler(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
+  const EffectType& type = *fit.effects[position].type;
+  bool is_free = false;
+  for (std::size_t j = 0; j < type.parameters.size(); ++j) {
+    const ParameterEstimate& estimate = fit.parameters[position][j];
+    const double without = left_out(problem, type, j);
+    if (std::isnan(without) || type.parameters[j].is_linear || estimate.value == without) continue;
+    if (!(std::abs(estimate.value - without) <= half_interval_95(estimate))) return false;
+    is_free = true;
+  }
+  return is_free;
+}
+
 /// Held-out log predictive density that the one fit has over the other [nats].
 double lost_without(const IdentificationProblem& problem, const FitOutcome& all, const FitOutcome& required) {
   double lost = 0.0;
@@ -178,10 +192,23 @@ FitOutcome fit_all(const IdentificationProblem& problem, const std::vector<const
   return left < tuning::kMainShare ? all : without;
 }
 
+/// Only the parameters of an effect that a scenario has to give, where the others are not worth their place in the
+/// score: a second stop whose stiffness may be none says nothing, and makes the first one doubtful.
+FitOutcome without_needless_parameters(const IdentificationProblem& problem,
+                                       const std::vector<const EffectType*>& effects, FitOutcome fit) {
+  std::vector<Freedom> freedoms(effects.size(), Freedom::all);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (may_be_simpler(problem, fit, i)) freedoms[i] = Freedom::required;
+  }
+  if (std::ranges::find(freedoms, Freedom::required) == freedoms.end()) return fit;
+  FitOutcome simpler = fit_free(problem, effects, fit.effects, Look::from_start, fit.with_nuisance, freedoms);
+  return lost_without(problem, fit, simpler) < tuning::kParameterPrior ? simpler : fit;
+}
+
 /// Parameters that a scenario may leave out are left out where the blocks cannot hold them: when they are fitted, but
-/// predict a block that was left out much worse than the others alone do; and where one of them goes to a limit of its
-/// range but is not worth its place in the score. The shape of an effect that the model has is the model's where
-/// nothing is left of it.
+/// predict a block that was left out much worse than the others alone do; where one of them goes to a limit of its
+/// range but is not worth its place in the score; and where none of an effect's is. The shape of an effect that the
+/// model has is the model's where nothing is left of it.
 FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<const EffectType*>& effects,
                     const std::vector<EffectSetting>& start, Look look, bool with_nuisance) {
   FitOutcome all = fit_all(problem, effects, start, look, with_nuisance);
@@ -197,10 +224,12 @@ FitOutcome fit_from(const IdentificationProblem& problem, const std::vector<cons
   if (!has_fewer(problem, effects, freedoms)) return all;
   const bool is_held = squares.held_out < tuning::kHeldOutBeyondFitted * squares.fitted;
   const bool is_at_limit = has_optional_at_limit(all);
-  if (is_held && !is_at_limit) return all;
-  FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, freedoms);
-  const bool is_as_good = is_at_limit && lost_without(problem, all, required) < tuning::kParameterPrior;
-  return is_as_good || squares_of(problem, required).held_out < squares.held_out ? required : all;
+  if (!is_held || is_at_limit) {
+    FitOutcome required = fit_free(problem, effects, start, look, with_nuisance, freedoms);
+    const bool is_as_good = is_at_limit && lost_without(problem, all, required) < tuning::kParameterPrior;
+    if (is_as_good || squares_of(problem, required).held_out < squares.held_out) return required;
+  }
+  return without_needless_parameters(problem, effects, std::move(all));
 }
 
 }  // namespace

@@ -68,6 +68,17 @@ class Sandwich {
       covariance_(i, i) = variances[i];
     }
   }
+  /// Where parameters stand for each other exactly, no residual moves them, and nothing is known of them. The columns
+  /// are of length one.
+  /// @param noise   of one sample.
+  void add_untold(double noise) {
+    for (Eigen::Index i = 0; i < root_.cols(); ++i) {
+      const double untold = root_.col(i).squaredNorm();
+      if (untold > tuning::kMainShare / tuning::kCovarianceRidge) {
+        covariance_ += noise * root_.col(i) * root_.col(i).transpose();
+      }
+    }
+  }
   void add_block(const Eigen::VectorXd& residual, Eigen::Index first, Eigen::Index size) {
     const Eigen::VectorXd pull = pull_of_block(columns_.middleRows(first, size), residual.segment(first, size), root_);
     covariance_ += pull * pull.transpose();
@@ -206,6 +217,8 @@ Doubt doubt_of(const VariableProjection& projection, const IdentificationProblem
   Sandwich right{own, Eigen::VectorXd::Zero(count)};
   Sandwich wrong{all, precision};
   Sandwich predicting = right;
+  right.add_untold(noise);
+  wrong.add_untold(noise);
   Eigen::VectorXd by_noise = Eigen::VectorXd::Zero(count);
   Eigen::VectorXd by_noise_alone = by_noise;
   double blocks = 0.0;

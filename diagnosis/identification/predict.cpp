@@ -1,9 +1,11 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
 #include "plant/site_stages.hpp"
 
@@ -94,6 +96,48 @@ std::vector<double> predict_force(const SiteModel& model, const Segment& segment
   return predicted;
 }
 
+/// Whether a force has corners that do not follow from corners of the motion: of a law, a friction, a play, a stop or a
+/// sensor at its limit. What a lag, a delay or a relaxation makes of a smoothed motion is smoothed with it.
+bool has_corners(const SiteModel& model, const std::vector<Motion>& motion) {
+  const auto makes_corners = [](const EffectSetting& effect) {
+    const EffectTraits& traits = effect.type->traits;
+    const bool is_at_force =
+        effect.type->interface == EffectInterface::specimen || effect.type->interface == EffectInterface::force_sensor;
+    const bool follows_place = traits.family == EffectFamily::amplitude || traits.family == EffectFamily::position;
+    return is_at_force && (follows_place || traits.takes_place);
+  };
+  double largest_m = 0.0;
+  for (const Motion& at : motion) largest_m = std::max(largest_m, std::abs(at.displacement_m));
+  return std::ranges::any_of(model.effects, makes_corners) || !is_spring(model, largest_m);
+}
+
+/// What of a force no spring, damper, mass and constant make of the motion.
+Eigen::VectorXd not_linear_in(const std::vector<Motion>& motion, const std::vector<double>& force_n) {
+  const auto samples = static_cast<Eigen::Index>(force_n.size());
+  Eigen::MatrixX4d columns(samples, 4);
+  for (Eigen::Index row = 0; row < samples; ++row) {
+    const Motion& at = motion[static_cast<std::size_t>(row)];
+    columns.row(row) << at.displacement_m, at.velocity_m_per_s, at.acceleration_m_per_s2, 1.0;
+  }
+  for (auto column : columns.colwise()) {
+    const double largest = column.cwiseAbs().maxCoeff();
+    if (largest > 0.0) column /= largest;
+  }
+  const Eigen::Map<const Eigen::VectorXd> force{force_n.data(), samples};
+  const Eigen::Vector4d sizes = (columns.transpose() * columns).ldlt().solve(columns.transpose() * force);
+  return force - columns * sizes;
+}
+
+/// The force of a smoothed motion, smoothed as the measured one is: a corner of the force is round there. What is
+/// linear in the motion has been smoothed with it.
+void smooth_corners(const Segment& segment, std::vector<double>& force_n) {
+  const Eigen::VectorXd corners = not_linear_in(segment.input, force_n);
+  const Eigen::Map<const Eigen::VectorXd> force{force_n.data(), corners.size()};
+  if (!(corners.norm() > tuning::kRounding * force.norm())) return;
+  const std::vector<double> smooth = FlatSmoother{segment.smoothed_by}.smooth({corners.data(), force_n.size()});
+  for (std::size_t i = 0; i < force_n.size(); ++i) force_n[i] += smooth[i] - corners[static_cast<Eigen::Index>(i)];
+}
+
 /// At an end that is not judged, the prediction is set to the measured value.
 void leave_out_ends(const Segment& segment, std::vector<double>& predicted) {
   const auto end = static_cast<std::ptrdiff_t>(segment.unjudged);
@@ -112,6 +156,15 @@ std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& 
 
 }  // namespace
 
+bool is_spring(const SiteModel& model, double largest_m) {
+  if (!model.make_law) return true;
+  const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
+  const double whole_n = force_n(largest_m);
+  return std::ranges::all_of(tuning::kSpringProbes, [&](double share) {
+    return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kRounding * std::abs(whole_n);
+  });
+}
+
 std::vector<double> predict(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
   SiteModel extended = model;
   extended.inputs = segment.inputs.names;
@@ -129,6 +182,7 @@ std::vector<double> predict(const SiteModel& model, const Segment& segment, std:
   }
   std::vector<double> predicted = segment.to == Channel::measured_force ? predict_force(extended, segment)
                                                                         : predict_displacement(extended, segment);
+  if (segment.smoothed_by > 0.0 && has_corners(extended, segment.input)) smooth_corners(segment, predicted);
   leave_out_ends(segment, predicted);
   return predicted;
 }

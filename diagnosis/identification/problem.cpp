@@ -304,6 +304,21 @@ GapSignals signals_of(const FitSegment& fit, const Eigen::VectorXd& input_m, con
   return {period_s, span_of(input_m), span_of(fit.measured), span_of(remainder)};
 }
 
+/// Noise by the spectrum; of smoothed signals at the rate up to which smoothing leaves them: above it hardly any noise
+/// is left.
+std::optional<double> noise_by_spectrum_of(const FitSegment& fit, const GapSignals& signals) {
+  const auto stride =
+      static_cast<std::size_t>(std::ceil(2.0 * fit.segment.smoothed_by / static_cast<double>(fit.averaged)));
+  if (stride < 2) return noise_by_spectrum(signals.measured, signals.residual, signals.period_s);
+  const auto every = [stride](std::span<const double> values) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
+    return kept;
+  };
+  return noise_by_spectrum(every(signals.measured), every(signals.residual),
+                           signals.period_s * static_cast<double>(stride));
+}
+
 /// Root mean square of the noise in a remainder. Noise is as large in every phase of the motion and all the time; a
 /// part of the specimen that the features do not hold is not. So the typical group of samples counts: by place and
 /// direction of the motion, and by time.
@@ -330,9 +345,7 @@ double noise_level(const FitSegment& fit, const Eigen::VectorXd& place_m, const 
   // Where cycles repeat, what does not repeat is seen.
   const GapSignals signals = signals_of(fit, place_m, remainder);
   if (const auto cycles = floor_of_cycles(signals)) level = std::min(level, cycles->rms);
-  if (const auto fast = noise_by_spectrum(signals.measured, signals.residual, signals.period_s)) {
-    level = std::min(level, *fast);
-  }
+  if (const auto fast = noise_by_spectrum_of(fit, signals)) level = std::min(level, *fast);
   // Noise is there at rest as well. Jumps of a friction that passes from place to place look like noise, and are not.
   const Eigen::VectorXd& told_m = fit.command_m.size() > 0 ? fit.command_m : place_m;
   if (const auto rest = floor_at_rest(signals_of(fit, told_m, remainder))) {
@@ -374,8 +387,8 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right
   const Eigen::VectorXd residual = without_zero(left);
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
-  // Points of a test without time have the noise of single readings. What a law leaves of them beside that is the
-  // specimen's history, which features of the motion hold badly, and no noise.
+  // Points of a test without time have the noise of readings that follow each other. What a law leaves of them beside
+  // that is the specimen's history, which features of the motion hold badly, and no noise.
   const bool is_noise = !fit.segment.is_quasi_static && parts.repeatable < parts.total - parts.repeatable;
   const double independent = independent_samples(parts.remainder);
   const double period_s = fit.segment.period_s * static_cast<double>(fit.averaged);
@@ -385,6 +398,9 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right
     const Eigen::VectorXd place_m = places_m(fit);
     deviation = noise_level(fit, place_m, parts.remainder, independent);
     still = noise_while_still(signals_of(fit, place_m, parts.remainder));
+  } else if (fit.segment.is_quasi_static) {
+    still = noise_of_neighbours(parts.remainder);
+    deviation = still.value_or(0.0);
   }
   // Noise does not wait for the motion, as what a form misses does; of slow noise a short stretch shows a part.
   if (!form_is_right && still) deviation = std::min(deviation, tuning::kNearFloor * *still);
@@ -455,16 +471,6 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
   add_found_changes(model, found, fit);
   fit.discrepancy = std::make_shared<Discrepancy>(fit);
   return fit;
-}
-
-/// Whether the force is zero or proportional to the displacement, within rounding, in the whole range.
-bool is_spring(const SiteModel& model, double largest_m) {
-  if (!model.make_law) return true;
-  const auto force_n = [&](double displacement_m) { return model.make_law()->trial(displacement_m, 0.0); };
-  const double whole_n = force_n(largest_m);
-  return std::ranges::all_of(tuning::kSpringProbes, [&](double share) {
-    return std::abs(force_n(share * largest_m) - share * whole_n) <= tuning::kRounding * std::abs(whole_n);
-  });
 }
 
 /// A floor is an estimate: a small excess does not count as a gap beside a clear one.

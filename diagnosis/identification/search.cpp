@@ -363,7 +363,8 @@ Eigen::VectorXd VariableProjection::slope(const Eigen::VectorXd& places, const E
   Eigen::VectorXd moved_places = places;
   Eigen::VectorXd moved_coefficients = coefficients;
   if (parameter < places.size()) {
-    const double step = places[parameter] < 0.5 ? tuning::kResolution : -tuning::kResolution;
+    // In the middle as if it were above: a stop at zero is one on the positive side.
+    const double step = places[parameter] <= 0.5 ? tuning::kResolution : -tuning::kResolution;
     moved_places[parameter] += step;
     return (predicted(moved_places, moved_coefficients) - here) / step;
   }

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <type_traits>
 
 #include "core/random.hpp"
 #include "diagnosis/identification/quasi_static.hpp"
+#include "diagnosis/identification/search_table.hpp"
 #include "diagnosis/signals/between_steps.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
@@ -232,6 +234,7 @@ Segment thinned(const Segment& segment, double rate_hz) {
   };
   Segment result = segment;
   result.period_s = segment.period_s * static_cast<double>(stride);
+  result.smoothed_by = segment.smoothed_by / static_cast<double>(stride);
   result.unjudged = (segment.unjudged + stride - 1) / stride;
   result.noise_span = std::max(1.0, segment.noise_span / static_cast<double>(stride));
   result.input = every(segment.input);
@@ -287,10 +290,16 @@ bool can_be_smoothed(const Segment& segment) {
   return segment.to == Channel::measured_force && !segment.is_quasi_static;
 }
 
+/// The corners of its force are predicted as they are, not smoothed with the measured ones.
+Segment with_corners(Segment segment) {
+  segment.smoothed_by = 0.0;
+  return segment;
+}
+
 /// See Segment::smoothing_errors.
 std::vector<double> smoothing_errors(const SiteModel& model, const Segment& smooth, const DofRecording& dof,
                                      double deviation) {
-  Segment plain = smooth;
+  Segment plain = with_corners(smooth);
   plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(input_of(smooth, dof));
   plain.reversal_noise_m =
       reversal_noise_m(std::hypot(smooth.input_noise, smooth.input_step / std::sqrt(12.0)), plain.input.size());
@@ -316,14 +325,14 @@ struct Deviation {
   double squares = std::numeric_limits<double>::infinity();
 };
 
-/// @param squares   that one deviation leaves of the recorded force.
+/// @param squares   that one deviation of the motion leaves of the recorded force.
 template <class Squares>
 Deviation best_deviation(const Segment& segment, const DofRecording& dof, const PartProgress& progress,
                          Squares&& squares) {
   Deviation best;
   for (const double deviation : tuning::kSmoothingDeviations) {
     progress.alive();
-    const double here = squares(smoothed_alike(segment, dof, deviation));
+    const double here = squares(with_corners(smoothed_alike(segment, dof, deviation)));
     if (here < best.squares) best = {deviation, here};
   }
   return best;
@@ -345,24 +354,71 @@ Segment best_smoothed(const SiteModel& model, const Segment& segment, const DofR
   return smoothed_by(model, segment, dof, best.value);
 }
 
-/// What a spring and a damper beside the model, and with them perhaps a mass, leave of a force along the motion of a
-/// smoothed segment [mean square]. A mass is not negative: dry friction would be one in part.
-double left_beside(const SiteModel& model, const std::vector<double>& force_n, const Segment& smooth, bool with_mass) {
-  const auto judged = static_cast<Eigen::Index>(force_n.size() - 2 * smooth.unjudged);
+/// What may stand beside the model and a spring and a damper.
+struct MayStand {
+  bool friction = false;  // dry friction and other hysteresis
+  bool mass = false;
+};
+
+/// The way of sliders that are held by springs and slide after distances in the range of a friction's, beside each
+/// other: what they carry is any hysteresis that does not depend on the rate (Iwan, 1966). One column for each slider.
+Eigen::MatrixXd held_back(const std::vector<Motion>& motion) {
+  const EffectType* const friction = find_effect(specimen, "coulomb_friction");
+  const SearchRange& range = *search_range(
+      *friction, *std::ranges::find(friction->parameters, "presliding_displacement_m", &EffectParameter::name));
+  const std::array after{range.low, std::sqrt(range.low * range.high), range.high};
+  const auto [low, high] = std::ranges::minmax(motion | std::views::transform(&Motion::displacement_m));
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(motion.size()), std::ssize(after));
+  for (Eigen::Index column = 0; column < columns.cols(); ++column) {
+    const double slides_m = after[static_cast<std::size_t>(column)] * 0.5 * (high - low);
+    double held_m = 0.0;
+    for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      const double moved_m = i == 0 ? 0.0 : motion[i].displacement_m - motion[i - 1].displacement_m;
+      held_m = std::clamp(held_m + moved_m, -slides_m, slides_m);
+      columns(row, column) = held_m;
+    }
+  }
+  return columns;
+}
+
+/// What least squares leave of a right side, the columns from `free` on with no size below zero [sum of squares].
+double left_by(Eigen::MatrixXd columns, const Eigen::VectorXd& right, Eigen::Index free) {
+  while (true) {
+    const Eigen::VectorXd sizes = columns.colPivHouseholderQr().solve(right);
+    Eigen::Index least = columns.cols();
+    if (columns.cols() == free || sizes.tail(columns.cols() - free).minCoeff(&least) >= 0.0) {
+      return (right - columns * sizes).squaredNorm();
+    }
+    columns.col(free + least) = columns.rightCols(1).eval();
+    columns.conservativeResize(Eigen::NoChange, columns.cols() - 1);
+  }
+}
+
+/// What the model and what may stand beside it leave of a force along the motion of a smoothed segment [mean square].
+/// A friction and a mass are not negative: dry friction would be such a mass in part, and a force that comes late such
+/// a friction.
+double left_beside(const SiteModel& model, const std::vector<double>& force_n, const Segment& smooth, MayStand beside) {
+  const auto first = static_cast<Eigen::Index>(smooth.unjudged);
+  const auto judged = static_cast<Eigen::Index>(force_n.size()) - 2 * first;
   if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return std::numeric_limits<double>::infinity();
   const std::vector<double> predicted = predict(model, smooth);
-  Eigen::MatrixXd columns(judged, with_mass ? 5 : 4);
-  Eigen::VectorXd right(judged);
-  for (Eigen::Index row = 0; row < judged; ++row) {
-    const auto i = static_cast<std::size_t>(row) + smooth.unjudged;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(force_n.size()), 5);
+  for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+    const auto i = static_cast<std::size_t>(row);
     const Motion& motion = smooth.input[i];
-    columns.row(row).head(4) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0;
-    if (with_mass) columns(row, 4) = motion.acceleration_m_per_s2;
-    right[row] = force_n[i];
+    columns.row(row) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0, motion.acceleration_m_per_s2;
   }
-  const Eigen::VectorXd sizes = columns.colPivHouseholderQr().solve(right);
-  if (with_mass && sizes[4] < 0.0) return left_beside(model, force_n, smooth, false);
-  return (right - columns * sizes).squaredNorm() / static_cast<double>(judged);
+  const Eigen::Index free = columns.cols() - 1;  // all but the mass
+  if (!beside.mass) columns.conservativeResize(Eigen::NoChange, free);
+  if (beside.friction) {
+    const Eigen::MatrixXd sliders = held_back(smooth.input);
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + sliders.cols());
+    columns.rightCols(sliders.cols()) = sliders;
+  }
+  const Eigen::VectorXd right =
+      Eigen::Map<const Eigen::VectorXd>{force_n.data(), columns.rows()}.segment(first, judged);
+  return left_by(columns.middleRows(first, judged), right, free) / static_cast<double>(judged);
 }
 
 /// A specimen that is simulated turns at reversals that are as small as the noise, too, and a real one does not: they
@@ -371,8 +427,8 @@ void settle_reversals(const SiteModel& model, Segment& segment) {
   if (segment.to != Channel::measured_force || !(segment.reversal_noise_m > 0.0)) return;
   Segment with_all = segment;
   with_all.reversal_noise_m = 0.0;
-  const bool are_nearer =
-      left_beside(model, segment.measured, with_all, false) < left_beside(model, segment.measured, segment, false);
+  const bool are_nearer = left_beside(model, segment.measured, with_all, MayStand{}) <
+                          left_beside(model, segment.measured, segment, MayStand{});
   if (are_nearer) segment.reversal_noise_m = 0.0;
 }
 
@@ -385,17 +441,20 @@ Segment with_smooth_motion(const Segment& segment, double deviation) {
 
 /// Smoothed alike where there is a gap of which a mass that the model lacks explains more than half: the noise of an
 /// acceleration that is not smoothed hides most of such a mass.
+/// @param friction   beside dry friction.
 std::optional<Segment> smoothed_for_mass(const SiteModel& model, const Segment& segment, const DofRecording& dof,
-                                         const PartProgress& progress) {
-  const Deviation best = best_deviation(
-      segment, dof, progress, [&](const Segment& tried) { return left_beside(model, segment.measured, tried, true); });
+                                         bool friction, const PartProgress& progress) {
+  const MayStand with_mass{.friction = friction, .mass = true};
+  const Deviation best = best_deviation(segment, dof, progress, [&](const Segment& tried) {
+    return left_beside(model, segment.measured, tried, with_mass);
+  });
   if (!(best.value > 0.0)) return {};
   Segment smooth = smoothed_by(model, segment, dof, best.value);
   const double output = std::sqrt(mean_square(segment.measured));
   const double floor = std::hypot(smooth.measured_noise, tuning::kModelAllowance * output);
   // Force and motion are smoothed alike, so that what smoothing takes off the one does not look like a mass.
-  const double without = left_beside(model, smooth.measured, smooth, false);
-  const double with = left_beside(model, smooth.measured, smooth, true);
+  const double without = left_beside(model, smooth.measured, smooth, {.friction = friction});
+  const double with = left_beside(model, smooth.measured, smooth, with_mass);
   // Of a law with hysteresis, smoothing may take off as much as the gap.
   const double unseen = std::max(floor, smooth.smoothing_error);
   const bool explains_a_gap = without > std::pow(tuning::kNearFloor * unseen, 2) && with < tuning::kMainShare * without;
@@ -408,7 +467,8 @@ std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& s
   if (!can_be_smoothed(segment) || segment.noise.empty() || segment.is_smoothed()) return {};
   std::vector<Deviation> tried;
   for (const double deviation : tuning::kSmoothingDeviations) {
-    tried.push_back({deviation, left_beside(model, segment.measured, with_smooth_motion(segment, deviation), false)});
+    tried.push_back(
+        {deviation, left_beside(model, segment.measured, with_smooth_motion(segment, deviation), MayStand{})});
   }
   const double least = std::ranges::min(tried, {}, &Deviation::squares).squares;
   // Wider ones cut the corners of the law off.
@@ -444,7 +504,12 @@ std::vector<Segment> segments_to_search(const SiteModel& model, const Recording&
   std::vector<Segment> segments = modelled_segments(model, recording, dof, position, model, progress);
   for (Segment& segment : segments) {
     if (!can_be_smoothed(segment) || follows_derivatives(model)) continue;
-    if (auto smooth = smoothed_for_mass(model, segment, recording.dofs[dof], progress)) segment = std::move(*smooth);
+    for (const bool friction : {false, true}) {
+      auto smooth = smoothed_for_mass(model, segment, recording.dofs[dof], friction, progress);
+      if (!smooth) continue;
+      segment = *std::move(smooth);
+      break;
+    }
   }
   return segments;
 }

@@ -111,6 +111,9 @@ struct Segment {
 /// stays as it is.
 [[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
 
+/// Whether the force of a model's law is zero or proportional to the displacement, within rounding, in the whole range.
+[[nodiscard]] bool is_spring(const SiteModel& model, double largest_m);
+
 /// Whether the model predicts `to`; a force only with a law or an effect of the specimen.
 [[nodiscard]] bool is_modelled(const SiteModel& model, const Segment& segment);
 

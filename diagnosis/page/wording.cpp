@@ -328,11 +328,12 @@ std::string corrections_sentence(const DiagnosisReport& report) {
   std::vector<std::string> numbers;
   for (const RankedCause& correction : report.corrections) {
     for (const ReportedParameter& parameter : correction.parameters) {
-      if (!parameter.ci95) continue;
+      if (!parameter.ci95 && !parameter.is_at_bound) continue;
+      const std::string known =
+          parameter.ci95 ? between(*parameter.ci95, parameter.unit) : "the limit of its search range";
       numbers.push_back(fmt::format("{} of the {}: {} {} ({})", plain(correction.effect), plain(correction.interface),
                                     plain_parameter(parameter.name, parameter.unit),
-                                    quantity(parameter.value, parameter.unit),
-                                    between(*parameter.ci95, parameter.unit)));
+                                    quantity(parameter.value, parameter.unit), known));
     }
   }
   if (numbers.empty()) return {};

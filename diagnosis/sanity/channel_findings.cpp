@@ -106,6 +106,26 @@ std::optional<Words> frozen(const Followed& pair) {
                "Export the part of the recording without this stretch, and check cable and amplifier."};
 }
 
+/// A reading that is nothing but noise to the end from some sample on, hum or not, while the motion goes to and fro
+/// over half its range as before.
+std::optional<Words> died(const Followed& pair) {
+  const std::size_t stretch = pair.values.size() / tuning::kTimeWindows;
+  if (stretch < tuning::kSamplesMin) return {};
+  const auto last = pair.values.last(stretch);
+  const double noise = spread_of(last);
+  if (noise > tuning::kExcitedOverNoise * white_noise_level(last)) return {};
+  std::size_t begin = pair.values.size() - stretch;
+  while (begin >= stretch && spread_of(pair.values.subspan(begin - stretch, stretch)) <= tuning::kNearFloor * noise) {
+    begin -= stretch;
+  }
+  if (begin < stretch || spread_of(pair.values.first(begin)) < tuning::kWellExcitedOverNoise * noise) return {};
+  const auto motion_m = pair.motion_m.subspan(begin);
+  if (reversals_of(motion_m, tuning::kMainShare * span_of(pair.motion_m)).size() < 2) return {};
+  return Words{fmt::format("is nothing but noise of {} from about sample {} on, while the motion goes on",
+                           report::quantity(noise, pair.unit()), begin + 1),
+               "Check cable and specimen: the sensor came off, or the specimen broke. Export the part before."};
+}
+
 /// Single readings that hold most of a channel's energy about its median, as a bad contact makes them, or a number that
 /// stands for a missing value: at most the square root of all, and no more in a row than a blow has at least.
 struct WildReadings {
@@ -384,7 +404,8 @@ void check_channel_of(const SiteModel& model, std::span<const Recording> recordi
   const auto add = [&](const std::optional<Words>& words, bool is_unusable) {
     return add_to(name_of(segment.interface), words, is_unusable);
   };
-  if (add(frozen(pair), true) || add(reversed(pair), true) || add(unrelated(pair), true)) return;
+  if (add(frozen(pair), true) || add(died(pair), true) || add(reversed(pair), true) || add(unrelated(pair), true))
+    return;
   if (!pair.is_quasi_static) {
     const bool is_of_derivatives = pair.is_force() && needs_derivatives(model.effects);
     add(sampled_too_slowly(pair.values, pair.period_s, is_of_derivatives ? "the model needs" : ""), false);

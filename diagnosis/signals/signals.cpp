@@ -1,5 +1,6 @@
 #include "diagnosis/signals/signals.hpp"
 
+#include <Eigen/Core>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
@@ -231,22 +232,34 @@ FlatSmoother::FlatSmoother(double deviation) {
 }
 
 std::vector<double> FlatSmoother::smooth(std::span<const double> values) const {
+  // In stretches that stay in the cache while all weights go over them.
+  const auto length = static_cast<Eigen::Index>(16 * weights_.size());
+  const auto samples = static_cast<Eigen::Index>(values.size());
+  const Eigen::Map<const Eigen::ArrayXd> given{values.data(), samples};
   std::vector<double> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    double sum = weights_.front() * values[i];
-    double weight = weights_.front();
-    for (std::size_t k = 1; k < weights_.size(); ++k) {
-      if (k <= i) {
-        sum += weights_[k] * values[i - k];
-        weight += weights_[k];
-      }
-      if (i + k < values.size()) {
-        sum += weights_[k] * values[i + k];
-        weight += weights_[k];
-      }
+  Eigen::Map<Eigen::ArrayXd> sums{result.data(), samples};
+  for (Eigen::Index begin = 0; begin < samples; begin += length) {
+    const Eigen::Index end = std::min(samples, begin + length);
+    auto stretch = sums.segment(begin, end - begin);
+    stretch = weights_.front() * given.segment(begin, end - begin);
+    for (Eigen::Index k = 1; k < std::ssize(weights_); ++k) {
+      const double weight = weights_[static_cast<std::size_t>(k)];
+      const Eigen::Index before = std::max(begin, k);
+      const Eigen::Index after = std::min(end, samples - k);
+      if (before < end) sums.segment(before, end - before) += weight * given.segment(before - k, end - before);
+      if (after > begin) sums.segment(begin, after - begin) += weight * given.segment(begin + k, after - begin);
     }
-    result[i] = sum / weight;
   }
+  // At the ends, by the weights of the samples that exist.
+  Eigen::ArrayXd existing = Eigen::ArrayXd::Ones(samples);
+  double missing = 0.0;
+  for (Eigen::Index k = std::ssize(weights_) - 1; k > 0; --k) {
+    missing += weights_[static_cast<std::size_t>(k)];
+    if (k > samples) continue;
+    existing[k - 1] -= missing;
+    existing[samples - k] -= missing;
+  }
+  sums /= existing;
   return result;
 }
 

@@ -195,7 +195,11 @@ Judgement judge(const IdentificationProblem& problem, const Selection& selection
   }
   // Nor is a name given to what may be absent by the interval that is reported with it.
   for (std::size_t i = 0; i < selection.chosen.effects.size(); ++i) {
-    if (judgement.is_correction(i) || !may_be_absent(problem, selection.chosen, i)) continue;
+    if (!may_be_absent(problem, selection.chosen, i)) continue;
+    if (judgement.is_correction(i)) {
+      judgement.may_be_right = !is_clear;
+      continue;
+    }
     judgement.may_be_absent.push_back(i);
     judgement.verdict = Verdict::partial;
   }
@@ -348,7 +352,8 @@ void settle_corrections(std::span<Judgement* const> judgements) {
   };
   std::size_t numbers = 0;
   for (const Judgement* one : judgements) numbers += one->corrections.size();
-  const bool is_a_cause = numbers == 1 && std::ranges::none_of(judgements, is_wrong_besides);
+  const bool may_be_right = std::ranges::any_of(judgements, [](const Judgement* one) { return one->may_be_right; });
+  const bool is_a_cause = numbers == 1 && !may_be_right && std::ranges::none_of(judgements, is_wrong_besides);
   for (Judgement* const one : judgements) {
     if (!one->only_corrects) continue;
     if (is_a_cause) {

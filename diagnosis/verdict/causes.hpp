@@ -27,6 +27,8 @@ struct Judgement {
   std::vector<std::size_t> corrections;
   // Likewise of causes that are absent at a value within the interval that is reported with them.
   std::vector<std::size_t> may_be_absent;
+  // A number of the model that is corrected may as well be right, and the gap hardly stands above its floor.
+  bool may_be_right = false;
   bool is_pieced_together = false;  // the causes are so many that they may stand for one that the library lacks
   std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
@@ -44,7 +46,7 @@ struct Judgement {
                               const VerdictPolicy& policy = {});
 
 /// A gap that nothing causes but numbers of the model that are slightly off is `none`: the numbers of a model never are
-/// exact. But where a single number is off and nothing else is wrong at any interface, it is the cause.
+/// exact. But where a single number is off for certain and nothing else is wrong at any interface, it is the cause.
 void settle_corrections(std::span<Judgement* const> judgements);
 
 /// An effect with its parameters and their 95 % intervals, where they have a standard error; its probability, its share

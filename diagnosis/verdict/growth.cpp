@@ -50,6 +50,11 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   return rest;
 }
 
+bool both_degrade(const EffectType& one, const EffectType& other) noexcept {
+  const auto degrades = [](const EffectType& type) { return type.traits.family == EffectFamily::degradation; };
+  return degrades(one) && degrades(other);
+}
+
 bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
   return std::ranges::all_of(problem.segments, [&](const FitSegment& fit) {
     if (!fit.is_suspect || !fit.segment.touched_by(*effect.type)) return true;
@@ -259,7 +264,7 @@ bool pushes_numbers(const IdentificationProblem& problem, const std::vector<Effe
 }
 
 /// What is tried in the place of an effect, and its fit beside the others.
-struct Instead {
+struct Tried {
   const EffectType* type = nullptr;
   std::vector<EffectSetting> start;
   std::optional<Candidate> fitted;
@@ -283,15 +288,17 @@ std::optional<Candidate> whole_law_instead(const IdentificationProblem& problem,
 
 /// The chosen effect against others in its place, beside the effects that were found with it: by itself a candidate is
 /// judged without them. Of a law all laws are tried and the numbers of the model's own, which by themselves may not
-/// show that they are off, and of everything the best few; but a number of the model's law stays a number, and does not
-/// become a law of the same form. A number of the model is expected to be off: an effect that is none has to be
-/// decidedly better. But it is expected to be off by itself: than what needs several others to be far off, an
-/// effect beside which they are slightly off is decidedly better.
+/// show that they are off, of what fades all that it may fade with, and of everything the best few; but a number of the
+/// model's law stays a number, and does not become a law of the same form. A number of the model is expected to be off:
+/// an effect that is none has to be decidedly better. But it is expected to be off by itself: than what needs several
+/// others to be far off, an effect beside which they are slightly off is decidedly better.
 void exchange(const IdentificationProblem& problem, const Selection& selection, std::size_t position, Growth& growth) {
   const std::vector<EffectSetting> effects = growth.fit.effects;
   const bool is_law = replaces_law(effects[position]);
   const double own = score_of(problem, growth.fit) + expected(problem, *effects[position].type);
+  // Of all that were compared, this one first.
   std::vector<double> scores{own};
+  std::vector<Instead> compared{{.type = effects[position].type, .fit = growth.fit}};
   std::optional<Candidate> best;
   double highest = own + tuning::kParameterPrior;  // a tie changes nothing
   const auto compare = [&](std::optional<Candidate> instead) {
@@ -301,23 +308,25 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     if (pushes_numbers(problem, instead->fit.effects, effects)) {
       score += decisive_gain(problem) + expected(problem, *effects[position].type);
     }
-    scores.push_back(score);
-    if (score <= highest) return;
-    // What is no simpler has to predict better for certain.
+    // What is no simpler has to predict better for certain; else they are even.
     const bool is_simpler = instead->fit.effects.size() < effects.size();
-    if (!is_simpler && !loss_by(problem, growth.fit, instead->fit).is_certain()) return;
+    const bool is_better = score > highest && (is_simpler || loss_by(problem, growth.fit, instead->fit).is_certain());
+    scores.push_back(is_better ? score : std::min(score, own));
+    compared.push_back({.type = instead->type, .fit = instead->fit});
+    if (!is_better) return;
     highest = score;
     best = std::move(instead);
   };
-  std::vector<Instead> tried;
+  std::vector<Tried> tried;
   std::size_t others = 0;
   for (const Candidate& candidate : selection.library) {
     const bool is_another_law = candidate.type->replacement != nullptr;
     if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
     const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
-    if (!is_of_law_too && others >= tuning::kRefittedPairs) continue;
+    const bool is_of_kind = is_of_law_too || both_degrade(*candidate.type, *effects[position].type);
+    if (!is_of_kind && others >= tuning::kRefittedPairs) continue;
     std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
-    if (!is_of_law_too && !starts.empty()) ++others;
+    if (!is_of_kind && !starts.empty()) ++others;
     for (std::vector<EffectSetting>& start : starts) tried.push_back({candidate.type, std::move(start), {}});
   }
   // Beside what was found the simpler law may do, which by itself took that up and may be refuted.
@@ -335,7 +344,7 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     if (fitted && is_law && !is_another_law) fitted = without_needless_numbers(problem, *std::move(fitted));
     if (fitted && !refutation(problem, *fitted).empty()) fitted.reset();
   });
-  for (Instead& instead : tried) compare(std::move(instead.fitted));
+  for (Tried& instead : tried) compare(std::move(instead.fitted));
   // Which of the numbers are needed is asked at the end.
   if (is_law) {
     const std::vector<EffectSetting> start = with_all_numbers(problem, without(effects, position));
@@ -345,12 +354,17 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     // All of them are expected to be off, so they are the simpler answer.
     const double score = score_of(problem, numbers->fit) + decisive_gain(problem);
     scores.push_back(score);
+    compared.push_back({.type = numbers->type, .fit = numbers->fit});
     if (score > highest) best = std::move(numbers);
   }
-  if (!best) return;
-  const auto place = std::ranges::max_element(scores) - scores.begin();
-  growth.accepted.push_back({best->type, softmax(scores)[static_cast<std::size_t>(place)]});
-  growth.fit = std::move(best->fit);
+  if (scores.size() < 2) return;
+  const std::vector<double> probabilities = softmax(scores);
+  for (std::size_t i = 0; i < compared.size(); ++i) compared[i].probability = probabilities[i];
+  const auto place = best ? std::ranges::max_element(scores) - scores.begin() : 0;
+  Instead chosen = std::move(compared[static_cast<std::size_t>(place)]);
+  compared.erase(compared.begin() + place);
+  growth.accept({chosen.type, chosen.probability, std::move(compared)});
+  if (best) growth.fit = std::move(best->fit);
 }
 
 /// Each chosen effect in turn; first the hardening, which is not expected to be off as other numbers of a law are.
@@ -392,7 +406,7 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
   std::vector<EffectSetting> numbers = numbers_of(problem);
   std::erase_if(numbers, [&](const EffectSetting& number) { return holds(effects, number.type); });
   const EffectType* const two_strengths = find_effect(EffectInterface::specimen, "strength_asymmetry");
-  std::vector<Instead> tried;
+  std::vector<Tried> tried;
   for (std::size_t second = 1; second < effects.size(); ++second) {
     for (std::size_t first = 0; first < second; ++first) {
       const EffectType& one = *effects[first].type;
@@ -415,7 +429,7 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
   });
   std::optional<Candidate> best;
   double highest = both - decisive_gain(problem);
-  for (Instead& one : tried) {
+  for (Tried& one : tried) {
     if (!one.fitted) continue;
     const double score = score_of(problem, one.fitted->fit);
     if (score <= highest) continue;
@@ -423,7 +437,7 @@ void merge(const IdentificationProblem& problem, Growth& growth) {
     best = std::move(one.fitted);
   }
   if (!best) return;
-  growth.accepted.push_back({best->type, softmax({highest + decisive_gain(problem), both}).front()});
+  growth.accept({best->type, softmax({highest + decisive_gain(problem), both}).front()});
   growth.fit = std::move(best->fit);
 }
 

@@ -2,16 +2,26 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/verdict/selection.hpp"
 
 namespace hybridtest {
 
-/// An effect and its probability against the others that were tried in its place.
+/// Another effect in the place of one that was accepted, and what stands beside it.
+struct Instead {
+  const EffectType* type = nullptr;
+  double probability = 0.0;
+  FitOutcome fit;
+};
+
+/// An effect and its probability against the others that were tried in its place; and these, where all of them stood
+/// beside the same others.
 struct Accepted {
   const EffectType* type = nullptr;
   double probability = 1.0;
+  std::vector<Instead> others{};
 };
 
 /// Effects accepted so far, fitted together.
@@ -19,6 +29,11 @@ struct Growth {
   FitOutcome fit;
   std::vector<Accepted> accepted;
 
+  /// What was known of its probability before is forgotten.
+  void accept(Accepted one) {
+    std::erase_if(accepted, [&](const Accepted& other) { return other.type == one.type; });
+    accepted.push_back(std::move(one));
+  }
   [[nodiscard]] double probability_of(const EffectType* type) const {
     const auto found = std::ranges::find(accepted, type, &Accepted::type);
     return found == accepted.end() ? 1.0 : found->probability;
@@ -40,6 +55,9 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
 
 /// Effects without one of them.
 [[nodiscard]] std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position);
+
+/// What fades with the one and with the other may be hard to tell apart: the path, the work and the time grow together.
+[[nodiscard]] bool both_degrade(const EffectType& one, const EffectType& other) noexcept;
 
 /// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
 [[nodiscard]] bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/cause_shares.hpp"
 #include "diagnosis/verdict/leaders.hpp"
+#include "diagnosis/verdict/others_in_place.hpp"
 #include "diagnosis/verdict/refutations.hpp"
 
 namespace hybridtest {
@@ -268,8 +270,13 @@ bool is_gone(const IdentificationProblem& problem, const EffectSetting& effect) 
 void drop_gone(const IdentificationProblem& problem, FitOutcome& fit) {
   std::vector<EffectSetting> left = fit.effects;
   std::erase_if(left, [&](const EffectSetting& effect) { return is_gone(problem, effect); });
-  if (left.empty() || left.size() == fit.effects.size()) return;
-  fit = refit_effects(problem, left, false);
+  if (!left.empty() && left.size() < fit.effects.size()) fit = refit_effects(problem, left, false);
+  for (std::size_t i = fit.effects.size(); i-- > 0 && fit.effects.size() > 1;) {
+    if (!may_be_absent(problem, fit, i)) continue;
+    FitOutcome rest = refit_effects(problem, without(fit.effects, i), false);
+    const double lost = held_out_score(problem, fit) - held_out_score(problem, rest);
+    if (lost < tuning::kParameterPrior) fit = std::move(rest);
+  }
 }
 
 Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse, const VerdictPolicy& policy,
@@ -313,6 +320,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   for (const EffectSetting& effect : selection.chosen.effects) {
     selection.chosen_probabilities.push_back(growth.probability_of(effect.type));
   }
+  put_others_beside(problem, policy, growth, selection);
   return selection;
 }
 

@@ -40,7 +40,8 @@ struct Selection {
 [[nodiscard]] Selection select_effects(IdentificationProblem& problem, IdentificationProblem& coarse,
                                        const VerdictPolicy& policy, const PartProgress& progress);
 
-/// Of several effects, drops those that a fit left nothing of and that the model does not have.
+/// Of several effects that the model does not have, drops those that a fit left nothing of, and those that may be
+/// absent by their intervals where the others predict as well without them.
 void drop_gone(const IdentificationProblem& problem, FitOutcome& fit);
 
 /// Whether the gap of a suspect segment exceeds this multiple of its floor.

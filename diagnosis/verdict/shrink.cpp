@@ -78,10 +78,9 @@ double settled_floor(std::span<const EffectSetting> causes, const FitSegment& fi
 
 /// Residual that a correct model leaves [standard deviation]. Coloured noise and hum of the force show only in a
 /// residual, so that they are taken from the fitted segments; those of the motion where the actuator's channel tells
-/// them.
-/// @param after   the prediction with the causes.
+/// them. What noise does by what the specimen went through, as cycles that it adds, is none.
 double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, const Segment& segment,
-                std::span<const double> after, std::span<const FitSegment> fitted) {
+                std::span<const FitSegment> fitted) {
   double energy = 0.0;
   double alike = 0.0;
   for (const FitSegment& fit : fitted) {
@@ -92,8 +91,11 @@ double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, c
   const double floor =
       std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
   if (segment.told_noise.empty()) return floor;
-  std::vector<double> without = predict(model, with_noise(segment, segment.told_noise, -1.0), causes);
-  for (std::size_t i = 0; i < without.size(); ++i) without[i] -= after[i];
+  std::vector<EffectSetting> acting{causes.begin(), causes.end()};
+  std::erase_if(acting, [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; });
+  std::vector<double> without = predict(model, with_noise(segment, segment.told_noise, -1.0), acting);
+  const std::vector<double> with = predict(model, segment, acting);
+  for (std::size_t i = 0; i < without.size(); ++i) without[i] -= with[i];
   return std::max(floor, std::hypot(segment.measured_noise, std::sqrt(mean_square(without))));
 }
 
@@ -102,7 +104,7 @@ void add_blocks(const SiteModel& model, std::span<const EffectSetting> causes, c
   const std::vector<double> before = predict(model, segment);
   const std::vector<double> after = predicted_with(model, causes, segment);
   const std::size_t n = segment.measured.size();
-  const double floor = floor_of(model, causes, segment, after, fitted);
+  const double floor = floor_of(model, causes, segment, fitted);
   double output = 0.0;
   for (const double value : segment.measured) output += value * value / static_cast<double>(n);
   if (output <= 0.0) return;

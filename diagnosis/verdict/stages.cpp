@@ -119,6 +119,32 @@ bool is_larger_with(std::span<const report::Shrink> with, std::span<const report
   return false;
 }
 
+/// Something that degrades with a quantity that carries over, in the place of what degrades with one that does not:
+/// that which predicts the fitted recordings about as well, and is nearest to the held-out ones.
+std::optional<FitOutcome> degrading_otherwise(const SiteModel& model, std::span<const Segment> held_out,
+                                              std::uint64_t seed, const std::vector<Stage>& stages, Stage& stage,
+                                              std::size_t position, double left) {
+  const FitOutcome all = stage.selection.chosen;
+  const double enough = score_of(stage.problem, all) - decisive_gain(stage.problem);
+  std::optional<FitOutcome> nearest;
+  for (const Candidate& candidate : stage.selection.library) {
+    const EffectType& type = *candidate.type;
+    if (holds(all.effects, &type) || !both_degrade(type, *all.effects[position].type)) continue;
+    std::vector<EffectSetting> effects = all.effects;
+    effects[position] = candidate.fit.effects.front();
+    if (effects[position].type != &type) continue;
+    FitOutcome fit = refit_effects(stage.problem, effects, false);
+    if (score_of(stage.problem, fit) < enough) continue;
+    stage.selection.chosen = fit;
+    const std::vector<report::Shrink> shrinks = left_by_all(model, held_out, seed, stages, stage);
+    if (std::ranges::any_of(shrinks, is_worse) || share_left(shrinks) >= left) continue;
+    left = share_left(shrinks);
+    nearest = std::move(fit);
+  }
+  stage.selection.chosen = all;
+  return nearest;
+}
+
 /// Of several effects, leaves out those with which a held-out recording is further from the model than without any, or
 /// than without that one, the worst first. The others are fitted again to the recordings they were found in.
 void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
@@ -145,6 +171,16 @@ void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> hel
     chosen = all;
     if (share_left(least) >= share_left(shrinks)) return;
     if (std::ranges::none_of(shrinks, is_worse) && !is_larger_with(shrinks, least)) return;
+    if (auto other = degrading_otherwise(model, held_out, seed, stages, stage, worst, share_left(least))) {
+      notes.push_back(std::string{other->effects[worst].type->name} + " takes the place of " +
+                      std::string{all.effects[worst].type->name} +
+                      ": with that, held-out recordings are further from the model than without.");
+      stage.selection.chosen = *std::move(other);
+      stage.selection.alike.clear();
+      stage.judgement = judge(stage.problem, stage.selection, policy);
+      shrinks = left_by_all(model, held_out, seed, stages, stage);
+      continue;
+    }
     notes.push_back(std::string{all.effects[worst].type->name} +
                     " is left out: with it, held-out recordings are further from the model than without.");
     leave_out(policy, worst, std::move(best), stage);

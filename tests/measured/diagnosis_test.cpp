@@ -228,8 +228,10 @@ TEST_F(ServoAxis, NamesViscousAndDryFriction) {
   const Diagnosis diagnosis = answer(mass_only_, {stretch(*excitation_, 0.0, 0.4, RecordingRole::fit),
                                                   stretch(*excitation_, 0.6, 1.0, RecordingRole::fit),
                                                   stretch(*excitation_, 0.4, 0.6, RecordingRole::held_out)});
-  // What is left is 4 % of the force, above the noise of a voltage, which has hardly any.
-  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::partial);
+  // What is left is 4 % of the force, above the noise of a voltage, which has hardly any. Whether the friction is
+  // larger before it slides, these recordings do not tell.
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::set);
+  EXPECT_TRUE(diagnosis.report.set_leaves_a_part);
   EXPECT_TRUE(names(diagnosis, "specimen", "viscous_damping"));
   EXPECT_TRUE(names(diagnosis, "specimen", "coulomb_friction"));
   for (const char* rejected : {"stiffness_error", "cubic_stiffness", "stribeck_friction"}) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,20 @@ TEST(ChannelFindings, DeadForceIsNotJudged) {
   const Recording noise = made_recording(made_motion_m, [](double) { return 0.0; });
   EXPECT_THAT(found_in(noise), ElementsAre(HasSubstr("! specimen: measured_force_n is nothing but noise of 20")));
   expect_not_judged(noise, "is nothing but noise");
+}
+
+/// The plug of the load cell comes off after two thirds of the test; its amplifier has hum besides.
+TEST(ChannelFindings, ForceThatDiesIsNotJudged) {
+  const auto comes_off = [](double until_s, double left_n) {
+    return made_recording(made_motion_m, [=](double t) {
+      return t < until_s ? spring_n(t) : 10.0 * std::sin(2.0 * std::numbers::pi * 50.0 * t) + left_n * spring_n(t);
+    });
+  };
+  EXPECT_THAT(found_in(comes_off(8.0, 0.0)),
+              ElementsAre(HasSubstr("! specimen: measured_force_n is nothing but noise of 19.2")));
+  expect_not_judged(comes_off(8.0, 0.0), "is nothing but noise of 19.2");
+  EXPECT_THAT(found_in(comes_off(8.0, 0.05)), IsEmpty()) << "control: a twentieth of the specimen is left";
+  EXPECT_THAT(found_in(comes_off(11.9, 0.0)), IsEmpty()) << "control: the motion does not go to and fro after that";
 }
 
 /// As a load cell whose range is far below the force, which is fast: at every sample at one end or the other.

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "tests/unit/diagnosis/made_noise.hpp"
@@ -20,6 +21,27 @@ TEST(IndependentSamples, FollowTheAutocorrelation) {
     // The sum over five times of N samples is known to sqrt(2 (2 * 5 + 1) time / N): 33 % at 200 samples (Sokal).
     EXPECT_NEAR(independent_samples(Eigen::Map<const Eigen::VectorXd>(noise.data(), kCount)), exact, 0.33 * exact);
   }
+}
+
+TEST(NoiseOfNeighbours, IsThatOfWhiteAndOfSlowNoise) {
+  constexpr std::size_t kCount = 4'000;
+  for (const double correlation : {0.0, 0.5, 0.8}) {
+    std::vector<double> noise = made_noise({.correlation = correlation}, kCount, 0.8, 0.001, 3);
+    const std::vector<double> white = made_noise({}, kCount, 0.6, 0.001, 4);
+    for (std::size_t i = 0; i < kCount; ++i) noise[i] += white[i];
+    // Of one, root mean square: 0.8 and 0.6. The growth of the differences is known to a tenth at 0.8.
+    EXPECT_NEAR(noise_of_neighbours(Eigen::Map<const Eigen::VectorXd>(noise.data(), kCount)).value(), 1.0, 0.07)
+        << correlation;
+  }
+}
+
+/// What a law misses changes with the displacement, over a hundred samples from one reversal to the next.
+TEST(NoiseOfNeighbours, IsNotToldBesideWhatALawMisses) {
+  constexpr std::size_t kCount = 4'000;
+  std::vector<double> values = made_noise({.correlation = 0.5}, kCount, 1.0, 0.001, 3);
+  for (std::size_t i = 0; i < kCount; ++i)
+    values[i] += 4.0 * std::sin(std::numbers::pi * static_cast<double>(i) / 50.0);
+  EXPECT_FALSE(noise_of_neighbours(Eigen::Map<const Eigen::VectorXd>(values.data(), kCount)));
 }
 
 TEST(VariancesAlong, CountNeighboursThatGoTogether) {

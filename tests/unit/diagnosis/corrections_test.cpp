@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
@@ -12,7 +11,6 @@
 #include "diagnosis/verdict/library_fits.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "plant/transfer_systems/delay.hpp"
-#include "plant/transfer_systems/second_order.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 /// Numbers of the user's model that are slightly off: corrected, and no causes.
@@ -200,8 +198,9 @@ TEST(Corrections, SingleWrongNumberIsTheCause) {
 }
 
 TEST(Corrections, SingleWrongNumberBesideAGapOfNoKnownCauseIsNone) {
-  const auto settled_beside = [](Verdict verdict) {
+  const auto settled_beside = [](Verdict verdict, bool may_be_right = false) {
     Judgement number;
+    number.may_be_right = may_be_right;
     number.verdict = Verdict::named;
     number.corrections = {0};
     number.only_corrects = true;
@@ -215,28 +214,7 @@ TEST(Corrections, SingleWrongNumberBesideAGapOfNoKnownCauseIsNone) {
   EXPECT_THAT(settled_beside(Verdict::unknown).corrections, testing::SizeIs(1));
   EXPECT_EQ(settled_beside(Verdict::none).verdict, Verdict::named);  // control: nothing else is wrong
   EXPECT_THAT(settled_beside(Verdict::none).corrections, testing::IsEmpty());
-}
-
-/// The damping ratio of the actuator, which no number of the diagnosis is, and its bandwidth are off. A frame that
-/// gives way under a spring, taken back by a gain, has something of both.
-TEST(Corrections, FrameThatAGainTakesBackIsNoCauseBesideABandwidth) {
-  constexpr double kFrequency_hz = 12.0;
-  constexpr double kDampingRatio = 0.9;
-  SiteModel model = made_model();
-  model.make_transfer_system = [](double sample_period_s, double) {
-    return std::make_unique<SecondOrder>(SecondOrder::Parameters{kFrequency_hz, kDampingRatio, {}},
-                                         from_seconds(sample_period_s));
-  };
-  model.has_bandwidth = true;
-  SecondOrder actuator{{0.99 * kFrequency_hz, 0.99 * kDampingRatio, {}}, from_seconds(kSitePeriod_s)};
-  std::vector<double> moved_m;
-  for (std::size_t i = 0; i < 6000; ++i) {
-    moved_m.push_back(actuator.step(made_motion_m(kSitePeriod_s * static_cast<double>(i))));
-  }
-  const auto at = [&](double t) { return moved_m[static_cast<std::size_t>(std::lround(t / kSitePeriod_s))]; };
-  const Diagnosis diagnosis =
-      diagnosis_with(model, made_recording(at, [&](double t) { return kMadeStiffness_n_per_m * at(t); }));
-  EXPECT_THAT(names_in(diagnosis.report.ranking, true), Not(testing::Contains("transfer_system compliance")));
+  EXPECT_EQ(settled_beside(Verdict::none, true).verdict, Verdict::none) << "hardly a gap, and the number may be right";
 }
 
 TEST(Corrections, DampingThatTheModelLacksIsACause) {

@@ -277,6 +277,18 @@ TEST(DiagnosisPage, SoManyCausesThatTheyMayStandForAnotherAreSaidToBe) {
                                                        Not(HasSubstr("No effect in the library"))));
 }
 
+TEST(DiagnosisPage, CorrectionThatRanIntoALimitIsListedToo) {
+  DiagnosisReport report = example();
+  RankedCause correction;
+  correction.interface = "specimen";
+  correction.effect = "strength_error";
+  correction.parameters = {{.name = "strength_error_ratio", .unit = "", .value = -0.9, .is_at_bound = true}};
+  report.corrections = {correction};
+  EXPECT_THAT(corrections_sentence(report), HasSubstr("strength error ratio -0.9 (the limit of its search range)"));
+  report.corrections.front().parameters.front().is_at_bound = false;  // control: a number that was not searched
+  EXPECT_EQ(corrections_sentence(report), "");
+}
+
 TEST(DiagnosisPage, PartOfWhichAnotherMayBeTheCauseSaysSo) {
   DiagnosisReport report = example();
   report.verdict = Verdict::partial;

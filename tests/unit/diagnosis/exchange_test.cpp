@@ -152,5 +152,26 @@ TEST(DropGone, EffectOfSizeZeroIsDropped) {
   }
 }
 
+/// A stiffness 5 % off, beside damping or none.
+TEST(DropGone, EffectThatMayBeAbsentIsDroppedWhereTheOthersPredictAsWell) {
+  for (const double damping_n_s_per_m : {0.0, 1.0e4}) {
+    const Recording recording = made_recording(
+        made_motion_m,
+        [&](double t) {
+          return 1.05 * kMadeStiffness_n_per_m * made_motion_m(t) + damping_n_s_per_m * made_velocity_m_per_s(t);
+        },
+        20.0, 4);
+    const IdentificationProblem problem = make_problem(made_model(), modelled_segments(made_model(), recording, 0, 0));
+    FitOutcome fit = refit_effects(
+        problem,
+        {{find_effect(EffectInterface::specimen, "stiffness_error"), {0.0, 0.05 * kMadeStiffness_n_per_m}},
+         {find_effect(EffectInterface::specimen, "viscous_damping"), {10.0}}},
+        false);
+    ASSERT_NE(fit.effects.back().values.front(), 0.0) << "not gone, but within what is not known of it";
+    drop_gone(problem, fit);
+    EXPECT_EQ(fit.effects.size(), damping_n_s_per_m > 0.0 ? 2U : 1U);  // control: damping that is there stays
+  }
+}
+
 }  // namespace
 }  // namespace hybridtest

@@ -7,6 +7,7 @@
 
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/problem.hpp"
+#include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/told_noise.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -163,6 +164,21 @@ TEST(NoiseOfInput, FloorHasTheNoiseThatIsTold) {
   segments.back().told_noise = motion_of_readings(segments.back(), noise);
   // Beside it the load cell has noise of a hundredth.
   EXPECT_NEAR(force().channel_floor, left_n, 0.02 * left_n);
+}
+
+/// Noise adds cycles, by which the specimen would lose its stiffness.
+TEST(NoiseOfInput, CyclesThatItAddsAreNoFloor) {
+  const std::vector<double> noise = made_noise({0.7, 0.0}, 6000, 1e-4, kSitePeriod_s, 1);
+  const Recording recording = with_slow_noise(noise, 0.0);
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  segments.back().told_noise = motion_of_readings(segments.back(), noise);
+  const EffectSetting fading{find_effect(EffectInterface::specimen, "stiffness_degradation_with_cycles"), {50.0, 0.0}};
+  const double floor =
+      shrink_on(made_model(), {&fading, 1}, std::span<const Segment>{segments}.last(1), 1, {}).floor_nrmse;
+  const double of_motion =
+      std::sqrt(mean_square(noise) / mean_square(recording.dofs[0].of(Channel::measured_displacement)));
+  // The specimen is a spring: noise over motion. The window over the readings leaves a little less of the noise.
+  EXPECT_NEAR(floor, of_motion, 0.15 * of_motion);
 }
 
 TEST(NoiseOfInput, ErrorOfReadingsBecomesMotionAsTheReadingsDo) {

@@ -20,6 +20,7 @@
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/viscous.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
+#include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
 namespace hybridtest {
@@ -151,6 +152,34 @@ TEST(QuasiStaticRecording, WrongNumbersBesideAZeroThatDriftsAreCorrected) {
   EXPECT_THAT(causes_of(diagnosis), testing::ElementsAre("bias"));
   // In the middle of the recording, to half of what it drifts.
   EXPECT_NEAR(diagnosis.report.ranking.front().parameters.front().value, 171.0, 36.0);
+}
+
+/// Readings that follow each other share most of their noise, of both sensors.
+TEST(QuasiStaticRecording, RightLawIsNoneBesideSlowNoise) {
+  Recording recording = accepted(slow_test("", nullptr));
+  std::vector<double>& place_m = recording.dofs[0].of(Channel::measured_displacement);
+  std::vector<double>& force_n = recording.dofs[0].of(Channel::measured_force);
+  recording.samples = 4200;
+  const std::vector<double> noise_m = made_noise({.correlation = 0.7}, recording.samples, 5e-6, 1.0, 1);
+  const std::vector<double> noise_n = made_noise({.correlation = 0.7}, recording.samples, 25.0, 1.0, 2);
+  place_m.clear();
+  force_n.clear();
+  Bilinear specimen{{.stiffness_n_per_m = kMadeStiffness_n_per_m, .yield_force_n = 2e4, .hardening_ratio = 0.03}};
+  for (std::size_t i = 0; i < recording.samples; ++i) {
+    const double way = static_cast<double>(i) / 300.0;  // cycles
+    const double moved_m = 0.002 * (1.0 + way) * std::asin(std::sin(2.0 * std::numbers::pi * way)) / 1.5708;
+    place_m.push_back(moved_m + noise_m[i]);
+    force_n.push_back(specimen.trial(moved_m, 0.0) + noise_n[i]);
+    specimen.commit();
+  }
+  SiteModel model = made_model();
+  model.make_law = [] {
+    return std::make_unique<Bilinear>(Bilinear::Parameters{
+        .stiffness_n_per_m = 1.02 * kMadeStiffness_n_per_m, .yield_force_n = 0.985 * 2e4, .hardening_ratio = 0.03});
+  };
+  const Diagnosis diagnosis = diagnose(model, {&recording, 1}, {});
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::none);
+  EXPECT_EQ(diagnosis.report.corrections.size(), 2U) << "stiffness and strength";
 }
 
 TEST(QuasiStaticRecording, EvenTimeIsTimeUnlessTheModelSaysNot) {

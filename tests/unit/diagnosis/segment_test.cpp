@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <numbers>
@@ -105,6 +106,22 @@ TEST(ModelledSegments, ConverterStepsAreSmoothed) {
   EXPECT_LT(residual_n(coarse, smooth), 0.5 * 200.0 / std::sqrt(12.0));
 }
 
+/// A force that is cut off has corners, which smoothing makes round.
+TEST(SmoothedAlike, CornersOfTheForceAreSmoothedInThePrediction) {
+  constexpr double kLimit_n = 3e4;
+  const Recording recording = made_recording(
+      motion_m, [kLimit_n](double t) { return std::clamp(kMadeStiffness_n_per_m * motion_m(t), -kLimit_n, kLimit_n); },
+      0.0);
+  SiteModel model = made_model();
+  model.effects.push_back({find_effect(EffectInterface::force_sensor, "saturation"), {kLimit_n}});
+  Segment smooth = smoothed_alike(of_force(segments_of(recording, 0, 0)), recording.dofs[0], 8.0);
+  const double left_n = residual_n(model, smooth);
+  // 1 um of noise times the stiffness, of which smoothing leaves a part.
+  EXPECT_LT(left_n, 2.0);
+  smooth.smoothed_by = 0.0;  // control: a force of the smoothed motion has its corners
+  EXPECT_GT(residual_n(model, smooth), 20.0 * left_n);
+}
+
 TEST(ChangeBySmoothing, IsWhatNoiseOnTheMotionOfAYieldingLawChanged) {
   SiteModel model = made_model();
   model.make_law = [] {
@@ -188,6 +205,39 @@ TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {
   const FitOutcome fit = fit_effects(make_problem(made_model(), {of_force(segments)}),
                                      {find_effect(EffectInterface::specimen, "inertia")}, false);
   EXPECT_NEAR(fit.effects[0].values[0], 0.1 * kMass_kg, 0.02 * 0.1 * kMass_kg);
+}
+
+/// Dry friction explains more of the gap than the mass does.
+TEST(SegmentsToSearch, MassBesideDryFrictionIsLookedForSmoothed) {
+  constexpr double kFriction_n = 6e3;
+  constexpr double kHeld_m = 2e-4;
+  const std::vector<double> noise_m = made_noise({.correlation = 0.75}, 6000, 1e-5, kSitePeriod_s, 1);
+  double before_m = motion_m(0.0);
+  double held_m = 0.0;
+  const auto rubs_n = [&](double t) {
+    held_m = std::clamp(held_m + motion_m(t) - before_m, -kHeld_m, kHeld_m);
+    before_m = motion_m(t);
+    return kFriction_n * held_m / kHeld_m;
+  };
+  const auto measured_m = [&](double t) {
+    return motion_m(t) + noise_m[static_cast<std::size_t>(std::llround(t / kSitePeriod_s))];
+  };
+  const Recording recording = made_recording(measured_m, [&](double t) {
+    return kMadeStiffness_n_per_m * motion_m(t) + rubs_n(t) + 0.1 * kMass_kg * acceleration_m_per_s2(t);
+  });
+  const auto mass_in = [](const Segment& segment) {
+    const FitOutcome fit = fit_effects(
+        make_problem(made_model(), {segment}),
+        {find_effect(EffectInterface::specimen, "coulomb_friction"), find_effect(EffectInterface::specimen, "inertia")},
+        false);
+    return fit.effects[1].values[0];
+  };
+  const auto segments = segments_to_search(made_model(), recording, 0, 0);
+  ASSERT_TRUE(of_force(segments).is_smoothed());
+  // The noise that smoothing leaves hides a twentieth.
+  EXPECT_NEAR(mass_in(of_force(segments)), 0.1 * kMass_kg, 0.06 * 0.1 * kMass_kg);
+  // Control: the noise of an acceleration that is not smoothed hides more.
+  EXPECT_LT(mass_in(of_force(segments_of(recording, 0, 0))), 0.9 * 0.1 * kMass_kg);
 }
 
 TEST(SegmentsToSearch, WithoutAMissingMassNothingIsSmoothed) {

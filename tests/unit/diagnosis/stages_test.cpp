@@ -20,11 +20,12 @@ const EffectType* const kWithPath = find_effect(specimen, "stiffness_degradation
 const EffectType* const kDamping = find_effect(specimen, "viscous_damping");
 
 /// A spring that loses 30 % of its stiffness in 12 s, in proportion to time, beside a damper; the motion is `reach`
-/// times the made one.
-std::vector<Segment> softened(double reach, double damping_n_s_per_m) {
+/// times the made one. With its path it loses as much of the stiffness less.
+std::vector<Segment> softened(double reach, double damping_n_s_per_m, bool with_path = false) {
   const auto moved_m = [=](double t) { return reach * made_motion_m(t); };
+  const double lost_per_s = (with_path ? reach : 1.0) / 40.0;
   const Recording recording = made_recording(moved_m, [&](double t) {
-    return (1.0 - t / 40.0) * kMadeStiffness_n_per_m * moved_m(t) +
+    return (1.0 - lost_per_s * t) * kMadeStiffness_n_per_m * moved_m(t) +
            damping_n_s_per_m * reach * made_velocity_m_per_s(t);
   });
   std::vector<Segment> segments = segments_of(recording, 0, 0);
@@ -32,22 +33,27 @@ std::vector<Segment> softened(double reach, double damping_n_s_per_m) {
   return segments;
 }
 
-/// A softening with time and another effect were found in one recording. What stays of them beside another one of half
-/// the motion, whose path is half as long.
-std::vector<const EffectType*> kept_with(const EffectType* other, double damping_n_s_per_m) {
+/// A softening with time and another effect were found in one recording, and what else was looked at. What stays of
+/// them beside another recording.
+std::vector<const EffectType*> kept_with(const EffectType* other, const std::vector<Segment>& fitted,
+                                         const std::vector<Segment>& held_out,
+                                         const std::vector<const EffectType*>& looked_at = {}) {
   const SiteModel model = made_model();
-  Stage stage{.problem = make_problem(model, softened(1.0, damping_n_s_per_m)), .selection = {}, .judgement = {}};
+  Stage stage{.problem = make_problem(model, fitted), .selection = {}, .judgement = {}};
   Selection& selection = stage.selection;
   selection.baseline = fit_nothing(stage.problem, false);
   selection.by_numbers = selection.baseline;
   selection.library = {{.type = kWithTime, .fit = fit_effects(stage.problem, {kWithTime}, false)}};
+  for (const EffectType* const type : looked_at) {
+    selection.library.push_back({.type = type, .fit = fit_effects(stage.problem, {type}, false)});
+  }
   selection.chosen = fit_effects(stage.problem, {kWithTime, other}, false);
   selection.chosen_probabilities = {0.9, 0.9};
   selection.shares = {0.5, 0.5};
   stage.judgement = judge(stage.problem, selection, {});
   std::vector<Stage> stages{stage};
   std::vector<std::string> notes;
-  drop_what_does_not_carry_over(model, softened(0.5, damping_n_s_per_m), 1, {}, stages, notes);
+  drop_what_does_not_carry_over(model, held_out, 1, {}, stages, notes);
   std::vector<const EffectType*> types;
   for (const EffectSetting& effect : stages.front().selection.chosen.effects) types.push_back(effect.type);
   return types;
@@ -56,11 +62,19 @@ std::vector<const EffectType*> kept_with(const EffectType* other, double damping
 /// The effects fall with the inverse of time and of path. A specimen that softens in proportion to time does not: the
 /// path makes up for the difference where it was fitted.
 TEST(CarryingOver, LeavesOutACauseThatMakesTheHeldOutGapLarger) {
-  EXPECT_THAT(kept_with(kWithPath, 0.0), ElementsAre(kWithTime));
+  EXPECT_THAT(kept_with(kWithPath, softened(1.0, 0.0), softened(0.5, 0.0)), ElementsAre(kWithTime));
 }
 
 TEST(CarryingOver, KeepsACauseThatMakesTheHeldOutGapSmaller) {  // control
-  EXPECT_THAT(kept_with(kDamping, 2e4), ElementsAre(kWithTime, kDamping));
+  EXPECT_THAT(kept_with(kDamping, softened(1.0, 2e4), softened(0.5, 2e4)), ElementsAre(kWithTime, kDamping));
+}
+
+/// Over one motion of even size time and path tell the same.
+TEST(CarryingOver, TakesPathForTimeWhereLessMotionSoftensLess) {
+  const std::vector<Segment> fitted = softened(1.0, 2e4, true);
+  const std::vector<Segment> held_out = softened(0.1, 2e4, true);
+  EXPECT_THAT(kept_with(kDamping, fitted, held_out, {kWithPath}), ElementsAre(kWithPath, kDamping));
+  EXPECT_THAT(kept_with(kDamping, fitted, held_out), ElementsAre(kDamping)) << "control: nothing else was looked at";
 }
 
 }  // namespace

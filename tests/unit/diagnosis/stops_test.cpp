@@ -59,6 +59,24 @@ TEST(Stops, OnOneSideHaveNoOther) {
   EXPECT_LT(find_parameter(cause, "other_stiffness_ratio")->value, 0.01);
 }
 
+/// A tendon that pulls one way only, from rest on, beside a frame that is softer than the model: two stops at rest that
+/// differ would be the same beside another stiffness.
+TEST(Stops, OneAtRestIsOneTendon) {
+  constexpr double kTendon_n_per_m = 8.0e4;
+  const Recording recording = made_recording(made_motion_m, [](double t) {
+    const double x = made_motion_m(t);
+    return 0.97 * kMadeStiffness_n_per_m * x + kTendon_n_per_m * std::max(0.0, x);
+  });
+  const Diagnosis diagnosis = diagnosis_of(made_model(), recording);
+  EXPECT_EQ(diagnosis.report.verdict, report::Verdict::named);
+  ASSERT_THAT(causes_of(diagnosis), ElementsAre("contact"));
+  const report::RankedCause& cause = diagnosis.report.ranking.front();
+  EXPECT_EQ(find_parameter(cause, "other_stiffness_ratio")->value, 0.0);
+  // 20 N of noise over 6000 readings, of a force of 1 kN; the form of a stop is known no better than a twentieth.
+  EXPECT_NEAR(find_parameter(cause, "stiffness_n_per_m")->value, kTendon_n_per_m, 0.01 * kTendon_n_per_m);
+  EXPECT_GT(find_parameter(cause, "stiffness_n_per_m")->ci95->low, 0.9 * kTendon_n_per_m);
+}
+
 /// With no spring between them, stops are the specimen itself, beyond a gap: a fifth softer than the model here. The
 /// gap is not in the middle of what the transducer reads, whose zero is off, nor is the zero of the load cell right.
 TEST(Stops, WithoutASpringBetweenThemAreAGap) {
