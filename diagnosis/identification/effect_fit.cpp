@@ -30,8 +30,8 @@ SegmentResult untouched(const FitSegment& fit) {
 /// @param numbers   coefficients of the segment's nuisances, the first of them; empty: not free.
 double more_noise_of(const IdentificationProblem& problem, const FitSegment& fit, std::vector<EffectSetting> effects,
                      std::span<const double> numbers) {
-  const auto degrades = [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; };
-  if (effects.empty() || fit.numbers.directions.cols() > 0 || std::ranges::any_of(effects, degrades)) return 0.0;
+  const auto has_history = [](const EffectSetting& effect) { return degrades(*effect.type); };
+  if (effects.empty() || fit.numbers.directions.cols() > 0 || std::ranges::any_of(effects, has_history)) return 0.0;
   for (std::size_t i = 0; i < fit.nuisance_types.size() && !numbers.empty(); ++i) {
     const EffectType& type = *fit.nuisance_types[i];
     // What the model has is moved along a direction, and not by its parameter.

@@ -106,24 +106,20 @@ bool has_corners(const SiteModel& model, const std::vector<Motion>& motion) {
     const bool follows_place = traits.family == EffectFamily::amplitude || traits.family == EffectFamily::position;
     return is_at_force && (follows_place || traits.takes_place);
   };
+  if (std::ranges::any_of(model.effects, makes_corners)) return true;
   double largest_m = 0.0;
   for (const Motion& at : motion) largest_m = std::max(largest_m, std::abs(at.displacement_m));
-  return std::ranges::any_of(model.effects, makes_corners) || !is_spring(model, largest_m);
+  return !is_spring(model, largest_m);
 }
 
 /// What of a force no spring, damper, mass and constant make of the motion.
 Eigen::VectorXd not_linear_in(const std::vector<Motion>& motion, const std::vector<double>& force_n) {
-  const auto samples = static_cast<Eigen::Index>(force_n.size());
-  Eigen::MatrixX4d columns(samples, 4);
-  for (Eigen::Index row = 0; row < samples; ++row) {
-    const Motion& at = motion[static_cast<std::size_t>(row)];
-    columns.row(row) << at.displacement_m, at.velocity_m_per_s, at.acceleration_m_per_s2, 1.0;
-  }
+  Eigen::MatrixX4d columns = motion_columns(motion);
   for (auto column : columns.colwise()) {
     const double largest = column.cwiseAbs().maxCoeff();
     if (largest > 0.0) column /= largest;
   }
-  const Eigen::Map<const Eigen::VectorXd> force{force_n.data(), samples};
+  const Eigen::Map<const Eigen::VectorXd> force{force_n.data(), columns.rows()};
   const Eigen::Vector4d sizes = (columns.transpose() * columns).ldlt().solve(columns.transpose() * force);
   return force - columns * sizes;
 }
@@ -155,6 +151,15 @@ std::vector<Motion> sum(std::vector<Motion> motions, const std::vector<Motion>& 
 }
 
 }  // namespace
+
+Eigen::MatrixX4d motion_columns(const std::vector<Motion>& motion) {
+  Eigen::MatrixX4d columns(static_cast<Eigen::Index>(motion.size()), 4);
+  for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+    const Motion& at = motion[static_cast<std::size_t>(row)];
+    columns.row(row) << at.displacement_m, at.velocity_m_per_s, 1.0, at.acceleration_m_per_s2;
+  }
+  return columns;
+}
 
 bool is_spring(const SiteModel& model, double largest_m) {
   if (!model.make_law) return true;

@@ -16,6 +16,7 @@
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/gap_shares.hpp"
+#include "diagnosis/signals/signals.hpp"
 #include "diagnosis/tuning.hpp"
 #include "plant/effects/recorded_input.hpp"
 
@@ -310,12 +311,7 @@ std::optional<double> noise_by_spectrum_of(const FitSegment& fit, const GapSigna
   const auto stride =
       static_cast<std::size_t>(std::ceil(2.0 * fit.segment.smoothed_by / static_cast<double>(fit.averaged)));
   if (stride < 2) return noise_by_spectrum(signals.measured, signals.residual, signals.period_s);
-  const auto every = [stride](std::span<const double> values) {
-    std::vector<double> kept;
-    for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
-    return kept;
-  };
-  return noise_by_spectrum(every(signals.measured), every(signals.residual),
+  return noise_by_spectrum(every_nth(signals.measured, stride), every_nth(signals.residual, stride),
                            signals.period_s * static_cast<double>(stride));
 }
 

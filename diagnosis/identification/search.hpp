@@ -68,6 +68,11 @@ enum class Freedom : std::uint8_t { all, without_last, required };
 /// library; NaN where it has to be given.
 [[nodiscard]] double left_out(const IdentificationProblem& problem, const EffectType& effect, std::size_t parameter);
 
+/// By what the specimen went through before.
+[[nodiscard]] inline bool degrades(const EffectType& effect) noexcept {
+  return effect.traits.family == EffectFamily::degradation;
+}
+
 /// The parameter is not searched: it is left_out().
 [[nodiscard]] bool is_fixed(const IdentificationProblem& problem, const EffectType& effect,
                             const EffectParameter& parameter);

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <ranges>
-#include <type_traits>
 
 #include "core/random.hpp"
 #include "diagnosis/identification/quasi_static.hpp"
@@ -227,11 +226,7 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
 Segment thinned(const Segment& segment, double rate_hz) {
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
   if (stride == 1 || passes(segment, compensator)) return segment;
-  const auto every = [stride](const auto& values) {
-    std::remove_cvref_t<decltype(values)> kept;
-    for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
-    return kept;
-  };
+  const auto every = [stride](const auto& values) { return every_nth(values, stride); };
   Segment result = segment;
   result.period_s = segment.period_s * static_cast<double>(stride);
   result.smoothed_by = segment.smoothed_by / static_cast<double>(stride);
@@ -367,10 +362,11 @@ Eigen::MatrixXd held_back(const std::vector<Motion>& motion) {
   const SearchRange& range = *search_range(
       *friction, *std::ranges::find(friction->parameters, "presliding_displacement_m", &EffectParameter::name));
   const std::array after{range.low, std::sqrt(range.low * range.high), range.high};
-  const auto [low, high] = std::ranges::minmax(motion | std::views::transform(&Motion::displacement_m));
+  const auto [low, high] = std::ranges::minmax_element(motion, {}, &Motion::displacement_m);
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(motion.size()), std::ssize(after));
   for (Eigen::Index column = 0; column < columns.cols(); ++column) {
-    const double slides_m = after[static_cast<std::size_t>(column)] * 0.5 * (high - low);
+    const double slides_m =
+        after[static_cast<std::size_t>(column)] * 0.5 * (high->displacement_m - low->displacement_m);
     double held_m = 0.0;
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
       const auto i = static_cast<std::size_t>(row);
@@ -404,11 +400,7 @@ double left_beside(const SiteModel& model, const std::vector<double>& force_n, c
   if (judged < static_cast<Eigen::Index>(tuning::kSamplesMin)) return std::numeric_limits<double>::infinity();
   const std::vector<double> predicted = predict(model, smooth);
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(force_n.size()), 5);
-  for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    const Motion& motion = smooth.input[i];
-    columns.row(row) << predicted[i], motion.displacement_m, motion.velocity_m_per_s, 1.0, motion.acceleration_m_per_s2;
-  }
+  columns << Eigen::Map<const Eigen::VectorXd>{predicted.data(), columns.rows()}, motion_columns(smooth.input);
   const Eigen::Index free = columns.cols() - 1;  // all but the mass
   if (!beside.mass) columns.conservativeResize(Eigen::NoChange, free);
   if (beside.friction) {

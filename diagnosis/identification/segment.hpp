@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -110,6 +111,10 @@ struct Segment {
 /// `rate_hz`. A segment with a compensator between its channels, whose command depends on its own rate,
 /// stays as it is.
 [[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);
+
+/// One row per sample: displacement, velocity, 1, acceleration, of which a spring, a damper, a constant and a mass make
+/// their forces.
+[[nodiscard]] Eigen::MatrixX4d motion_columns(const std::vector<Motion>& motion);
 
 /// Whether the force of a model's law is zero or proportional to the displacement, within rounding, in the whole range.
 [[nodiscard]] bool is_spring(const SiteModel& model, double largest_m);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,14 @@ struct GapSignals {
 [[nodiscard]] double mean_square(std::span<const double> values) noexcept;
 /// Mean square about the mean.
 [[nodiscard]] double variance(std::span<const double> values) noexcept;
+
+/// The first value and every one that many samples behind the one before.
+template <class Values>
+[[nodiscard]] auto every_nth(const Values& values, std::size_t stride) {
+  std::vector<std::ranges::range_value_t<Values>> kept;
+  for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
+  return kept;
+}
 
 /// One per sample.
 [[nodiscard]] std::vector<double> displacements_of(std::span<const Motion> motion);

@@ -50,11 +50,6 @@ std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, st
   return rest;
 }
 
-bool both_degrade(const EffectType& one, const EffectType& other) noexcept {
-  const auto degrades = [](const EffectType& type) { return type.traits.family == EffectFamily::degradation; };
-  return degrades(one) && degrades(other);
-}
-
 bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share) {
   return std::ranges::all_of(problem.segments, [&](const FitSegment& fit) {
     if (!fit.is_suspect || !fit.segment.touched_by(*effect.type)) return true;
@@ -323,7 +318,7 @@ void exchange(const IdentificationProblem& problem, const Selection& selection, 
     const bool is_another_law = candidate.type->replacement != nullptr;
     if (is_another_law && !is_law && has_own_form(problem.model, candidate.fit.effects.front())) continue;
     const bool is_of_law_too = is_law && (is_another_law || is_of_law(*candidate.type));
-    const bool is_of_kind = is_of_law_too || both_degrade(*candidate.type, *effects[position].type);
+    const bool is_of_kind = is_of_law_too || (degrades(*candidate.type) && degrades(*effects[position].type));
     if (!is_of_kind && others >= tuning::kRefittedPairs) continue;
     std::vector<std::vector<EffectSetting>> starts = with_instead(problem, effects, position, candidate);
     if (!is_of_kind && !starts.empty()) ++others;

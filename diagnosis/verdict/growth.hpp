@@ -56,9 +56,6 @@ void weigh(std::vector<Candidate>& candidates, std::vector<double> scores);
 /// Effects without one of them.
 [[nodiscard]] std::vector<EffectSetting> without(const std::vector<EffectSetting>& effects, std::size_t position);
 
-/// What fades with the one and with the other may be hard to tell apart: the path, the work and the time grow together.
-[[nodiscard]] bool both_degrade(const EffectType& one, const EffectType& other) noexcept;
-
 /// The effect's change of what it acts on is small, in every suspect segment [rms over rms].
 [[nodiscard]] bool changes_at_most(const IdentificationProblem& problem, const EffectSetting& effect, double share);
 

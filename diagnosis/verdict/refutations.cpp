@@ -438,7 +438,7 @@ const EffectParameter* absent_in_interval(const Suspect& suspect, HalfOf half_of
 /// Whether the life of something that degrades may be endless, by the interval that is reported. Its inverse is then
 /// zero: to first order that is in its interval where the life's own is as wide as the life.
 bool may_be_endless(const Suspect& suspect) {
-  if (suspect.effect.type->traits.family != EffectFamily::degradation) return false;
+  if (!degrades(*suspect.effect.type)) return false;
   for (std::size_t i = 0; i < suspect.estimates.size(); ++i) {
     const ParameterEstimate& life = suspect.estimates[i];
     if (suspect.effect.type->parameters[i].neutral == kUnbounded && life.value <= half_interval_95(life)) return true;

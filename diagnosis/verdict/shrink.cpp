@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
 #include "diagnosis/tuning.hpp"
@@ -92,7 +93,7 @@ double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, c
       std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
   if (segment.told_noise.empty()) return floor;
   std::vector<EffectSetting> acting{causes.begin(), causes.end()};
-  std::erase_if(acting, [](const EffectSetting& e) { return e.type->traits.family == EffectFamily::degradation; });
+  std::erase_if(acting, [](const EffectSetting& effect) { return degrades(*effect.type); });
   std::vector<double> without = predict(model, with_noise(segment, segment.told_noise, -1.0), acting);
   const std::vector<double> with = predict(model, segment, acting);
   for (std::size_t i = 0; i < without.size(); ++i) without[i] -= with[i];

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/growth.hpp"
@@ -125,11 +126,12 @@ std::optional<FitOutcome> degrading_otherwise(const SiteModel& model, std::span<
                                               std::uint64_t seed, const std::vector<Stage>& stages, Stage& stage,
                                               std::size_t position, double left) {
   const FitOutcome all = stage.selection.chosen;
-  const double enough = score_of(stage.problem, all) - decisive_gain(stage.problem);
   std::optional<FitOutcome> nearest;
+  if (!degrades(*all.effects[position].type)) return nearest;
+  const double enough = score_of(stage.problem, all) - decisive_gain(stage.problem);
   for (const Candidate& candidate : stage.selection.library) {
     const EffectType& type = *candidate.type;
-    if (holds(all.effects, &type) || !both_degrade(type, *all.effects[position].type)) continue;
+    if (holds(all.effects, &type) || !degrades(type)) continue;
     std::vector<EffectSetting> effects = all.effects;
     effects[position] = candidate.fit.effects.front();
     if (effects[position].type != &type) continue;
