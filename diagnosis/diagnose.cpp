@@ -9,6 +9,7 @@
 #include "diagnosis/identification/continuation.hpp"
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"

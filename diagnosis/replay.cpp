@@ -6,6 +6,7 @@
 
 #include "diagnosis/identification/continuation.hpp"
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/signals/signals.hpp"
 
 namespace hybridtest {

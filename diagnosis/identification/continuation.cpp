@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/tuning.hpp"
 
 namespace hybridtest {

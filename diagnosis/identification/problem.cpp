@@ -14,6 +14,7 @@
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/noise_spectrum.hpp"
 #include "diagnosis/identification/search.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/gap_shares.hpp"
 #include "diagnosis/signals/signals.hpp"

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnosis/progress.hpp"
 #include "diagnosis/recording.hpp"
 #include "plant/effects/effect.hpp"
 #include "plant/effects/effect_type.hpp"
@@ -144,12 +143,6 @@ struct InputErrors {
 /// The motion that readings, or an error of them, give as an input of the segment: smoothed as its own is.
 [[nodiscard]] std::vector<Motion> motion_of_readings(const Segment& segment, std::span<const double> readings);
 
-/// What the prediction of a force changes by where the motion alone is smoothed, just as far as it helps: until it is
-/// about as near to the recorded force as it gets, beside a spring and a damper that the model may lack. So much the
-/// noise that rides on the motion has changed it, coloured noise too. One value per sample; empty where nothing helps,
-/// and of other channels.
-[[nodiscard]] std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& segment);
-
 /// Standard deviation of the error of the prediction due to noise of the input and due to smoothing; 0 if the input is
 /// exact. The error due to smoothing is estimated from the change of the prediction with half the window, minus the
 /// noise of that window.
@@ -164,23 +157,5 @@ struct InputErrors {
 /// @param of_input      what the errors of the input leave of these means.
 /// @param independent   at least 1.
 [[nodiscard]] double noise_floor_of_means(const Segment& segment, double of_input, double independent);
-
-/// The segments of one degree of freedom that a model predicts, along the chain. If the modelled force depends on
-/// velocity or acceleration, which displacement sensors measure badly, force and motion are smoothed equally
-/// (smoothed_alike()). The deviation is chosen so that the prediction is nearest to the recorded force: less smoothing
-/// leaves noise in the derivatives, more smoothing reduces their peaks.
-/// @param completed   the model whose force decides on the smoothing: the same, or with the causes that were found.
-/// @param progress    told of each smoothing that is tried.
-[[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
-                                                     std::size_t dof, std::size_t position, const SiteModel& completed,
-                                                     const PartProgress& progress = {});
-[[nodiscard]] std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording,
-                                                     std::size_t dof, std::size_t position);
-
-/// The same for a search of causes: force and motion are smoothed equally, too, where a mass that the model lacks would
-/// explain most of its residual.
-[[nodiscard]] std::vector<Segment> segments_to_search(const SiteModel& model, const Recording& recording,
-                                                      std::size_t dof, std::size_t position,
-                                                      const PartProgress& progress = {});
 
 }  // namespace hybridtest

@@ -189,6 +189,15 @@ std::string set_sentence(const DiagnosisReport& report) {
                                   : text;
 }
 
+/// What is wrong with the channel for which an interface is not judged.
+std::optional<std::string> unusable_channel(const DiagnosisReport& report) {
+  for (const Finding& finding : report.findings) {
+    const auto is_reason = [&](const InterfaceGap& gap) { return !gap.is_judged && gap.why_not == finding.what; };
+    if (std::ranges::any_of(report.where, is_reason)) return finding.what;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<const RankedCause*> indistinguishable(const DiagnosisReport& report) {
@@ -353,8 +362,9 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     case Verdict::unknown:
       return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
     case Verdict::not_excited:
-      return "These recordings are not sufficient to check the model: the motion is too small against the noise, or "
-             "channels are missing or cannot be used.";
+      return fmt::format("These recordings are not sufficient to check the model: {}.",
+                         unusable_channel(report).value_or("the motion is too small against the noise, or channels are "
+                                                           "missing"));
   }
   return "";
 }

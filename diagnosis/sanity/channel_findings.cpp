@@ -121,8 +121,11 @@ std::optional<Words> died(const Followed& pair) {
   if (begin < stretch || spread_of(pair.values.first(begin)) < tuning::kWellExcitedOverNoise * noise) return {};
   const auto motion_m = pair.motion_m.subspan(begin);
   if (reversals_of(motion_m, tuning::kMainShare * span_of(pair.motion_m)).size() < 2) return {};
-  return Words{fmt::format("is nothing but noise of {} from about sample {} on, while the motion goes on",
-                           report::quantity(noise, pair.unit()), begin + 1),
+  const std::string at = pair.is_quasi_static
+                             ? std::string{}
+                             : fmt::format(" ({})", report::quantity(static_cast<double>(begin) * pair.period_s, "s"));
+  return Words{fmt::format("is nothing but noise of {} from about sample {}{} on, while the motion goes on",
+                           report::quantity(noise, pair.unit()), begin + 1, at),
                "Check cable and specimen: the sensor came off, or the specimen broke. Export the part before."};
 }
 

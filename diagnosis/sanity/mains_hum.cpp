@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/signals/signals.hpp"
 #include "diagnosis/traces/traces.hpp"
@@ -54,6 +55,8 @@ class Lines {
 struct Hum {
   double frequency_hz = 0.0;
   std::complex<double> amplitude;
+  double mains_hz = 0.0;
+  bool is_followed = false;  // by the force, as by that of a spring
 };
 
 /// The largest line within 1 % of a frequency of the mains, if it stands out of its neighbours.
@@ -69,7 +72,7 @@ std::optional<Hum> line_near(const Lines& lines, double mains_hz, double duratio
     const double frequency_hz = mains_hz + reach_hz * step / steps;
     const std::complex<double> amplitude = lines.at(frequency_hz);
     if (std::norm(amplitude) <= std::norm(hum.amplitude)) return;
-    hum = {frequency_hz, amplitude};
+    hum = {.frequency_hz = frequency_hz, .amplitude = amplitude, .mains_hz = mains_hz};
     best = step;
   };
   // A line is four resolutions wide: looked for at every half of one, and then around the largest.
@@ -92,24 +95,25 @@ std::optional<Hum> line_near(const Lines& lines, double mains_hz, double duratio
   return hum;
 }
 
-/// The hum of a displacement that the force does not follow.
-std::optional<Hum> hum_of_reading(const std::vector<double>& displacement_m, const std::vector<double>& force_n,
-                                  double period_s) {
+/// The lines of the mains in a displacement, at 50 and at 60 Hz.
+std::vector<Hum> lines_of(const std::vector<double>& displacement_m, const std::vector<double>& force_n,
+                          double period_s) {
   const double duration_s = period_s * static_cast<double>(displacement_m.size());
   const Lines displacement{displacement_m, period_s};
   const Lines force{force_n, period_s};
   const double secant_n_per_m = std::sqrt(variance(force_n) / variance(displacement_m));
-  std::optional<Hum> largest;
+  std::vector<Hum> found;
   for (const double mains_hz : kMains_hz) {
     // All neighbours lie between rest and half of the sample rate.
     const double neighbours_hz = 0.01 * mains_hz + 2.0 * static_cast<double>(tuning::kSpectrumAverages) / duration_s;
     if (neighbours_hz >= mains_hz || mains_hz + neighbours_hz >= 0.5 / period_s) continue;
-    const std::optional<Hum> hum = line_near(displacement, mains_hz, duration_s);
-    if (!hum || (largest && std::norm(hum->amplitude) <= std::norm(largest->amplitude))) continue;
+    std::optional<Hum> hum = line_near(displacement, mains_hz, duration_s);
+    if (!hum) continue;
     const double followed_n = secant_n_per_m * std::abs(hum->amplitude);
-    if (std::abs(force.at(hum->frequency_hz)) < 0.5 * followed_n) largest = hum;
+    hum->is_followed = std::abs(force.at(hum->frequency_hz)) >= 0.5 * followed_n;
+    found.push_back(*hum);
   }
-  return largest;
+  return found;
 }
 
 void take_off(const Hum& hum, double period_s, std::vector<double>& readings) {
@@ -123,7 +127,7 @@ void take_off(const Hum& hum, double period_s, std::vector<double>& readings) {
 
 std::span<const Recording> without_mains_hum(std::span<const Recording> recordings, std::size_t dof,
                                              std::vector<Recording>& copy, std::vector<std::string>& notes) {
-  std::vector<std::pair<std::size_t, Hum>> found;
+  std::vector<std::vector<Hum>> lines(recordings.size());
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const Recording& recording = recordings[i];
     if (recording.is_quasi_static || recording.dofs.size() <= dof) continue;
@@ -132,18 +136,33 @@ std::span<const Recording> without_mains_hum(std::span<const Recording> recordin
     if (readings.empty() || !channels.has(Channel::measured_force)) continue;
     if (static_cast<double>(readings.size()) * recording.sample_period_s > tuning::kHumDurationMax_s) continue;
     if (steps_of_readings(readings).step > 0.0) continue;
-    const auto hum = hum_of_reading(readings, channels.of(Channel::measured_force), recording.sample_period_s);
-    if (hum) found.emplace_back(i, *hum);
+    lines[i] = lines_of(readings, channels.of(Channel::measured_force), recording.sample_period_s);
+  }
+  const auto is_of_reading = [&](const Hum& hum) {
+    return std::ranges::any_of(lines, [&](const std::vector<Hum>& others) {
+      return std::ranges::any_of(
+          others, [&](const Hum& other) { return other.mains_hz == hum.mains_hz && !other.is_followed; });
+    });
+  };
+  std::vector<std::pair<std::size_t, Hum>> found;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Hum* largest = nullptr;
+    for (const Hum& hum : lines[i]) {
+      const bool is_larger = largest == nullptr || std::norm(hum.amplitude) > std::norm(largest->amplitude);
+      if (is_larger && is_of_reading(hum)) largest = &hum;
+    }
+    if (largest != nullptr) found.emplace_back(i, *largest);
   }
   if (found.empty()) return recordings;
   if (copy.empty()) copy.assign(recordings.begin(), recordings.end());
   for (const auto& [position, hum] : found) {
     Recording& recording = copy[position];
     take_off(hum, recording.sample_period_s, recording.dofs[dof].of(Channel::measured_displacement));
-    notes.push_back(
-        fmt::format("{}: hum of the mains, {:.2f} Hz and {:.2g} mm high, is taken off the measured "
-                    "displacement. The force does not follow it. Check the shield of that sensor's cable.",
-                    recording.file, hum.frequency_hz, 1000.0 * std::abs(hum.amplitude)));
+    notes.push_back(fmt::format(
+        "{}: hum of the mains, {:.2f} Hz and {:.2g} mm high, is taken off the measured "
+        "displacement. {} Check the shield of that sensor's cable.",
+        recording.file, hum.frequency_hz, 1000.0 * std::abs(hum.amplitude),
+        hum.is_followed ? "In another recording the force does not follow it." : "The force does not follow it."));
   }
   return copy;
 }

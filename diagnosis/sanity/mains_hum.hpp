@@ -15,8 +15,9 @@ namespace hybridtest {
 /// The hum is one sine of 50 or 60 Hz within 1 %, fitted to the whole recording under a Hann window. It is there where
 /// its line stands out of its neighbours by more than chance allows (F test of 2 and 32 degrees of freedom, at the rate
 /// of false alarms over the lines that are tried), and the force does not follow it where its own line is less than
-/// half of what a spring of the recording's secant stiffness would make of it. Not asked: quasi-static recordings,
-/// those without a force or longer than two minutes, over which the mains are no one sine, and readings of a coarse
+/// half of what a spring of the recording's secant stiffness would make of it. What is the reading's in one recording
+/// is in all of them: the force has a hum of its own, which may be as large. Not asked: quasi-static recordings, those
+/// without a force or longer than two minutes, over which the mains are no one sine, and readings of a coarse
 /// converter, whose steps would be lost.
 /// @param copy    holds them.
 /// @param notes   what was taken off which recordings, in words.

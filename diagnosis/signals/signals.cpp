@@ -263,6 +263,16 @@ std::vector<double> FlatSmoother::smooth(std::span<const double> values) const {
   return result;
 }
 
+std::vector<Motion> FlatSmoother::smooth(std::vector<Motion> motion) const {
+  for (double Motion::*channel : {&Motion::displacement_m, &Motion::velocity_m_per_s, &Motion::acceleration_m_per_s2}) {
+    std::vector<double> values(motion.size());
+    std::ranges::transform(motion, values.begin(), [channel](const Motion& at) { return at.*channel; });
+    values = smooth(values);
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i].*channel = values[i];
+  }
+  return motion;
+}
+
 double FlatSmoother::noise_share() const noexcept {
   double sum = -weights_.front() * weights_.front();
   for (const double weight : weights_) sum += 2.0 * weight * weight;

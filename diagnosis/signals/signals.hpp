@@ -127,6 +127,8 @@ class FlatSmoother {
   explicit FlatSmoother(double deviation);
 
   [[nodiscard]] std::vector<double> smooth(std::span<const double> values) const;
+  /// Displacement, velocity and acceleration alike.
+  [[nodiscard]] std::vector<Motion> smooth(std::vector<Motion> motion) const;
   /// Samples on either side that take part.
   [[nodiscard]] std::size_t reach() const noexcept { return weights_.size() - 1; }
   /// Share of white noise variance that smoothing leaves.

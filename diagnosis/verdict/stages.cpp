@@ -190,6 +190,26 @@ void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> hel
   }
 }
 
+/// Whether the causes of a stage that are no corrections change what is predicted of a held-out recording, beside all
+/// others.
+bool acts_on(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
+             const std::vector<Stage>& stages, const Stage& stage) {
+  SiteModel beside = model;
+  std::vector<EffectSetting> causes;
+  for (const Stage& other : stages) {
+    if (!other.changes_model()) continue;
+    const std::vector<EffectSetting>& effects = other.selection.chosen.effects;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      const bool is_cause = &other == &stage && !stage.judgement.is_correction(i);
+      is_cause ? causes.push_back(effects[i]) : add_effect(beside, effects[i]);
+    }
+  }
+  const std::vector<report::Shrink> changed =
+      shrinks(beside, causes, at_suspects(stage.problem, held_out), stage.problem.segments, seed);
+  return std::ranges::any_of(
+      changed, [](const report::Shrink& one) { return one.changed_nrmse > tuning::kCauseActs * one.floor_nrmse; });
+}
+
 }  // namespace
 
 void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
@@ -203,6 +223,12 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     Verdict verdict =
         verdict_carried_over(stage.judgement.verdict, left_by_all(model, held_out, seed, stages, stage), policy);
     if (verdict == stage.judgement.verdict) continue;
+    if (!report::names_a_cause(verdict) && !acts_on(model, held_out, seed, stages, stage)) {
+      notes.push_back("The causes at the " + std::string{name_of(stage.problem.segments.front().segment.interface)} +
+                      " do not act in the held-out recordings, which therefore do not check them.");
+      if (stage.judgement.verdict == Verdict::named) stage.judgement.verdict = Verdict::partial;
+      continue;
+    }
     // A gap that is clear where it was fitted stays one: with causes that do not hold, noise may be taken for anything.
     if (verdict == Verdict::none && stands_above_floor(stage.problem, stage.selection.baseline, tuning::kNearFloor)) {
       verdict = Verdict::unknown;

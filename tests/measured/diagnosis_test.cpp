@@ -12,6 +12,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"

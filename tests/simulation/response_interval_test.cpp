@@ -11,6 +11,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/runs/rerun.hpp"
 #include "diagnosis/runs/run_records.hpp"
 #include "diagnosis/tuning.hpp"

@@ -13,6 +13,7 @@
 #include "core/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/page/diagnosis_json.hpp"
+#include "diagnosis/page/wording.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 
@@ -78,6 +79,10 @@ TEST(ChannelFindings, ForceThatDiesIsNotJudged) {
   EXPECT_THAT(found_in(comes_off(8.0, 0.0)),
               ElementsAre(HasSubstr("! specimen: measured_force_n is nothing but noise of 19.2")));
   expect_not_judged(comes_off(8.0, 0.0), "is nothing but noise of 19.2");
+  const Recording dies = comes_off(8.0, 0.0);
+  const std::string sentence = report::verdict_sentence(diagnose(made_model(), {&dies, 1}, {}).report);
+  EXPECT_THAT(sentence, HasSubstr("not sufficient to check the model: measured_force_n is nothing but noise"));
+  EXPECT_THAT(sentence, HasSubstr("(8.10\u00a0s) on"));
   EXPECT_THAT(found_in(comes_off(8.0, 0.05)), IsEmpty()) << "control: a twentieth of the specimen is left";
   EXPECT_THAT(found_in(comes_off(11.9, 0.0)), IsEmpty()) << "control: the motion does not go to and fro after that";
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/intake/intake.hpp"
 #include "diagnosis/replay.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"

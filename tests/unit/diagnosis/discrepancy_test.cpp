@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "diagnosis/identification/problem.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/tuning.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"

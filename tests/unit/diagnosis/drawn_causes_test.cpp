@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/tuning.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 

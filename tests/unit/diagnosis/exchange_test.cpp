@@ -8,6 +8,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/selection.hpp"
 #include "mechanics/laws/bouc_wen.hpp"

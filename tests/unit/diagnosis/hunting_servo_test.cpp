@@ -6,6 +6,7 @@
 #include "core/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "tests/unit/diagnosis/answers.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 

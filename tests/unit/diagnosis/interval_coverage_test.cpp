@@ -8,6 +8,7 @@
 
 #include "core/time.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "mechanics/laws/bilinear.hpp"

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "diagnosis/diagnose.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
@@ -35,7 +37,8 @@ double beside_motion_m(const Recording& recording) {
 }
 
 struct Cleaned {
-  explicit Cleaned(const Recording& recording) : given{recording} {
+  explicit Cleaned(const Recording& recording) : Cleaned{std::vector{recording}} {}
+  explicit Cleaned(std::vector<Recording> all) : given{std::move(all)} {
     recordings = without_mains_hum(given, 0, copy, notes);
   }
   std::vector<Recording> given;
@@ -63,6 +66,20 @@ TEST(MainsHum, MotionThatTheForceFollowsStays) {
   const Cleaned cleaned{made_recording(vibration_m, [&](double t) { return spring_n(vibration_m(t)); })};
   EXPECT_EQ(cleaned.recordings.data(), cleaned.given.data());
   EXPECT_THAT(cleaned.notes, IsEmpty());
+}
+
+TEST(MainsHum, IsTakenOffWhereTheForceHasOneOfItsOwn) {
+  const auto with_hum_of_force = [](double hum_n) {
+    return made_recording(
+        [](double t) { return made_motion_m(t) + hum_m(t); },
+        [=](double t) { return spring_n(made_motion_m(t)) + hum_n * std::cos(2.0 * std::numbers::pi * 50.0 * t); });
+  };
+  const double as_of_spring_n = 0.8 * spring_n(kHum_m);
+  const Cleaned both{std::vector{with_hum_of_force(as_of_spring_n), with_hum_of_force(0.0)}};
+  ASSERT_EQ(both.notes.size(), 2U);
+  EXPECT_THAT(both.notes[0], HasSubstr("In another recording the force does not follow it."));
+  EXPECT_LT(beside_motion_m(both.recordings[0]), 1e-6 + 0.04 * kHum_m);
+  EXPECT_THAT(Cleaned{with_hum_of_force(as_of_spring_n)}.notes, IsEmpty()) << "control: it alone";
 }
 
 TEST(MainsHum, IsSeenInNoiseAsOftenAsAsked) {

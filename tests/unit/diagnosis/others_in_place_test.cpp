@@ -11,6 +11,7 @@
 
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/segment.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "tests/unit/diagnosis/made_recording.hpp"
 

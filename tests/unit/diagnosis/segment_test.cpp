@@ -10,6 +10,7 @@
 
 #include "core/random.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
+#include "diagnosis/identification/smoothing_choice.hpp"
 #include "mechanics/laws/bilinear.hpp"
 #include "mechanics/laws/giuffre_menegotto_pinto.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"

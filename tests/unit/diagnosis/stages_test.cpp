@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "diagnosis/identification/segment.hpp"
@@ -75,6 +77,47 @@ TEST(CarryingOver, TakesPathForTimeWhereLessMotionSoftensLess) {
   const std::vector<Segment> held_out = softened(0.1, 2e4, true);
   EXPECT_THAT(kept_with(kDamping, fitted, held_out, {kWithPath}), ElementsAre(kWithPath, kDamping));
   EXPECT_THAT(kept_with(kDamping, fitted, held_out), ElementsAre(kDamping)) << "control: nothing else was looked at";
+}
+
+const EffectType* const kContact = find_effect(specimen, "contact");
+constexpr double kStop_m = 0.008;
+
+/// A spring that is softer than the model's by a ratio, and a stop; the motion is `reach` times the made one.
+std::vector<Segment> with_stop(double reach, double softer, double stop_n_per_m) {
+  const auto moved_m = [=](double t) { return reach * made_motion_m(t); };
+  const Recording recording = made_recording(moved_m, [&](double t) {
+    return (1.0 - softer) * kMadeStiffness_n_per_m * moved_m(t) + stop_n_per_m * std::max(0.0, moved_m(t) - kStop_m);
+  });
+  std::vector<Segment> segments = segments_of(recording, 0, 0);
+  std::erase_if(segments, [](const Segment& segment) { return segment.to != Channel::measured_force; });
+  return segments;
+}
+
+/// The verdict of a contact and a corrected stiffness beside a held-out recording, and what was said of it.
+report::Verdict verdict_beside(const std::vector<Segment>& held_out, std::vector<std::string>& notes) {
+  const SiteModel model = made_model();
+  Stage stage{
+      .problem = make_problem(model, with_stop(1.0, 0.01, kMadeStiffness_n_per_m)), .selection = {}, .judgement = {}};
+  Selection& selection = stage.selection;
+  selection.baseline = fit_nothing(stage.problem, false);
+  selection.by_numbers = selection.baseline;
+  selection.library = {{.type = kContact, .fit = fit_effects(stage.problem, {kContact}, false)}};
+  selection.chosen = fit_effects(stage.problem, {kContact, find_effect(specimen, ModelNumber::stiffness)}, false);
+  selection.chosen_probabilities = {0.9, 0.9};
+  selection.shares = {0.5, 0.5};
+  stage.judgement = judge(stage.problem, selection, {});
+  std::vector<Stage> stages{stage};
+  drop_what_does_not_carry_over(model, held_out, 1, {}, stages, notes);
+  return stages.front().judgement.verdict;
+}
+
+/// The spring of the held-out recording is softer by so much that its correction removes less than a part has to.
+TEST(CarryingOver, CauseThatDoesNotActIsNotChecked) {
+  std::vector<std::string> notes;
+  EXPECT_EQ(verdict_beside(with_stop(0.25, 0.04, kMadeStiffness_n_per_m), notes), report::Verdict::partial);
+  EXPECT_THAT(notes, ElementsAre(testing::HasSubstr("do not act in the held-out recordings")));
+  notes.clear();
+  EXPECT_EQ(verdict_beside(with_stop(1.0, 0.2, 0.0), notes), report::Verdict::unknown) << "control: it would act there";
 }
 
 }  // namespace
