@@ -208,6 +208,16 @@ Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double d
   return result;
 }
 
+Segment with_plain_motion(const Segment& smooth, const DofRecording& dof) {
+  Segment plain = smooth;
+  plain.smoothed_by = 0.0;
+  plain.input = LocalPolynomial{LocalPolynomial::kHalfWidthMin, smooth.period_s}.motion(input_of(smooth, dof));
+  plain.reversal_noise_m =
+      reversal_noise_m(std::hypot(smooth.input_noise, smooth.input_step / std::sqrt(12.0)), plain.input.size());
+  plain.unjudged = 0;
+  return plain;
+}
+
 Segment thinned(const Segment& segment, double rate_hz) {
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (rate_hz * segment.period_s))));
   if (stride == 1 || passes(segment, compensator)) return segment;

@@ -106,7 +106,10 @@ struct Segment {
 /// @param deviation   of the weights, in samples.
 [[nodiscard]] Segment smoothed_alike(const Segment& segment, const DofRecording& dof, double deviation);
 
-/// The same at a lower rate, for a first search: samples are skipped so that the rate is at most
+/// A smoothed segment with its motion over the narrowest window and not smoothed behind it; all samples are judged.
+[[nodiscard]] Segment with_plain_motion(const Segment& smooth, const DofRecording& dof);
+
+/// A segment at a lower rate, for a first search: samples are skipped so that the rate is at most
 /// `rate_hz`. A segment with a compensator between its channels, whose command depends on its own rate,
 /// stays as it is.
 [[nodiscard]] Segment thinned(const Segment& segment, double rate_hz);

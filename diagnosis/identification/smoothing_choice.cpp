@@ -35,13 +35,9 @@ Segment with_corners(Segment segment) {
 }
 
 /// See Segment::smoothing_errors.
-/// @param smooth   `segment` after smoothed_alike().
-std::vector<double> smoothing_errors(const SiteModel& model, const Segment& segment, const Segment& smooth,
-                                     const DofRecording& dof) {
-  Segment plain = smoothed_alike(segment, dof, 0.0);
-  plain.unjudged = 0;
-  std::vector<double> errors = FlatSmoother{smooth.smoothed_by}.smooth(predict(model, plain));
-  const std::vector<double> first_motion = predict(model, with_corners(smooth));
+std::vector<double> smoothing_errors(const SiteModel& model, const Segment& smooth, const DofRecording& dof) {
+  std::vector<double> errors = FlatSmoother{smooth.smoothed_by}.smooth(predict(model, with_plain_motion(smooth, dof)));
+  const std::vector<double> first_motion = predict(model, smooth);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const bool is_judged = i >= smooth.unjudged && i + smooth.unjudged < errors.size();
     errors[i] = is_judged ? errors[i] - first_motion[i] : 0.0;
@@ -76,7 +72,7 @@ Deviation best_deviation(const Segment& segment, const DofRecording& dof, const 
 
 Segment smoothed_by(const SiteModel& model, const Segment& segment, const DofRecording& dof, double best) {
   Segment smooth = smoothed_alike(segment, dof, tuning::kSmoothingNextStep * best);
-  smooth.smoothing_errors = smoothing_errors(model, segment, smooth, dof);
+  smooth.smoothing_errors = smoothing_errors(model, smooth, dof);
   smooth.smoothing_error = std::sqrt(mean_square(smooth.smoothing_errors));
   return smooth;
 }

@@ -167,11 +167,13 @@ bool is_worse(const Shrink& held_out) {
   return held_out.nrmse_after > std::hypot(held_out.nrmse_before, held_out.floor_nrmse);
 }
 
+bool acts(const Shrink& held_out) { return held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse; }
+
 namespace {
 
 /// Of the gap, what the causes of a part have to remove at least; nothing where they do not act.
 double least_removed(const Shrink& held_out, const VerdictPolicy& policy) {
-  if (!(held_out.changed_nrmse > tuning::kCauseActs * held_out.floor_nrmse)) return 0.0;
+  if (!acts(held_out)) return 0.0;
   const double explainable = std::max(0.0, 1.0 - std::pow(held_out.floor_nrmse / held_out.nrmse_before, 2));
   return (1.0 - policy.partial_leaves) * explainable;
 }

@@ -21,6 +21,9 @@ namespace hybridtest {
 /// Whether a held-out recording is further from the model with the causes than without them, by more than its floor.
 [[nodiscard]] bool is_worse(const report::Shrink& held_out);
 
+/// Whether the causes change the prediction of a held-out recording, beside its floor.
+[[nodiscard]] bool acts(const report::Shrink& held_out);
+
 /// The verdict after the check on held-out recordings. Causes that act there but certainly leave more of the gap above
 /// the floor than the policy allows are rejected, even if they fit the fitted recordings well; so are causes that make
 /// it larger. If they explain the gap of one channel, a new gap in another channel does not reject them.

@@ -190,8 +190,8 @@ void leave_out_what_worsens(const SiteModel& model, std::span<const Segment> hel
   }
 }
 
-/// Whether the causes of a stage that are no corrections change what is predicted of a held-out recording, beside all
-/// others.
+/// Whether the causes of a stage change what is predicted of a held-out recording, beside its corrections and the other
+/// stages. Corrections alone are what is asked of.
 bool acts_on(const SiteModel& model, std::span<const Segment> held_out, std::uint64_t seed,
              const std::vector<Stage>& stages, const Stage& stage) {
   SiteModel beside = model;
@@ -200,14 +200,17 @@ bool acts_on(const SiteModel& model, std::span<const Segment> held_out, std::uin
     if (!other.changes_model()) continue;
     const std::vector<EffectSetting>& effects = other.selection.chosen.effects;
     for (std::size_t i = 0; i < effects.size(); ++i) {
-      const bool is_cause = &other == &stage && !stage.judgement.is_correction(i);
-      is_cause ? causes.push_back(effects[i]) : add_effect(beside, effects[i]);
+      const Judgement& judged = stage.judgement;
+      const bool is_cause = &other == &stage && (judged.only_corrects || !judged.is_correction(i));
+      if (is_cause) {
+        causes.push_back(effects[i]);
+      } else {
+        add_effect(beside, effects[i]);
+      }
     }
   }
-  const std::vector<report::Shrink> changed =
-      shrinks(beside, causes, at_suspects(stage.problem, held_out), stage.problem.segments, seed);
   return std::ranges::any_of(
-      changed, [](const report::Shrink& one) { return one.changed_nrmse > tuning::kCauseActs * one.floor_nrmse; });
+      shrinks(beside, causes, at_suspects(stage.problem, held_out), stage.problem.segments, seed), acts);
 }
 
 }  // namespace
