@@ -195,6 +195,32 @@ TEST(ModelledSegments, SteelTurnsWhereItIsSeenToTurn) {
   EXPECT_EQ(segment.reversal_noise_m, 0.0);
 }
 
+/// What smoothing changes of a right model's force is none of it where its corners are smoothed too.
+TEST(ModelledSegments, CornersThatAreSmoothedAreNoErrorOfSmoothing) {
+  constexpr double kLimit_n = 3e4;
+  constexpr double kDamping_n_s_per_m = 2e4;
+  constexpr double kNoise_m = 5e-6;
+  Random random{5};
+  const Recording recording = made_recording(
+      [&](double t) { return made_motion_m(t) + kNoise_m * random.normal(); },
+      [kLimit_n](double t) {
+        return std::clamp(kMadeStiffness_n_per_m * made_motion_m(t) + kDamping_n_s_per_m * made_velocity_m_per_s(t),
+                          -kLimit_n, kLimit_n);
+      });
+  SiteModel model = made_model();
+  model.effects.push_back({find_effect(EffectInterface::specimen, "viscous_damping"), {kDamping_n_s_per_m}});
+  model.effects.push_back({find_effect(EffectInterface::force_sensor, "saturation"), {kLimit_n}});
+  const Segment smooth = modelled_segments(model, recording, 0, 0).back();
+  ASSERT_GT(smooth.smoothed_by, 0.0);
+  Segment cornered = smooth;
+  cornered.smoothed_by = 0.0;
+  std::vector<double> corners_n = predict(model, cornered);
+  const std::vector<double> rounded_n = predict(model, smooth);
+  for (std::size_t i = 0; i < corners_n.size(); ++i) corners_n[i] -= rounded_n[i];
+  // What is left: damping makes the noise that the narrowest window leaves a force, some of which is beyond the limit.
+  EXPECT_LT(smooth.smoothing_error, 0.3 * root_mean_square(corners_n));
+}
+
 TEST(SegmentsToSearch, MassThatTheModelLacksIsLookedForSmoothed) {
   // A transducer with noise, whose second derivative over windows that suit the displacement is mostly noise.
   Random random{5};
