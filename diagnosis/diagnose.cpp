@@ -10,6 +10,7 @@
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/identification/smoothing_choice.hpp"
+#include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"
@@ -19,6 +20,7 @@
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/causes.hpp"
 #include "diagnosis/verdict/experiments.hpp"
+#include "diagnosis/verdict/recurrence.hpp"
 #include "diagnosis/verdict/rivals.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/stages.hpp"
@@ -202,7 +204,8 @@ std::string next_experiment(std::span<const Stage> stages, const std::vector<rep
     for (const EffectInterface interface :
          {EffectInterface::network, EffectInterface::compensator, EffectInterface::transfer_system,
           EffectInterface::displacement_sensor, EffectInterface::specimen, EffectInterface::force_sensor}) {
-      if (gap.interface == name_of(interface)) return experiment_for_unknown(interface);
+      if (gap.interface != name_of(interface)) continue;
+      return experiment_for_unknown(interface, !gap.recurrence || gap.recurrence->is_seen());
     }
   }
   return {};
@@ -300,6 +303,16 @@ void add_input_notes(const IdentificationProblem& problem, std::span<const Recor
     if (without.empty()) continue;
     notes.push_back("Without the column " + column + ": " + report::joined(without) +
                     ". Whether the force depends on it cannot be judged there.");
+  }
+}
+
+void add_repetition_notes(report::DiagnosisReport& report) {
+  for (const report::InterfaceGap& gap : report.where) {
+    if (!gap.repeatability || gap.repeatability->source != name_of(FloorSource::repeated_recordings)) continue;
+    if (gap.repeatability->nrmse <= tuning::kModelAllowance) continue;
+    report.notes.push_back("Recordings of the same test scatter by " + report::percent(gap.repeatability->nrmse) +
+                           " of the output at the " + report::plain(gap.interface) +
+                           ": a gap that is smaller is not judged there.");
   }
 }
 
@@ -418,16 +431,15 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
     std::ranges::move(rank(stages[i], part), std::back_inserter(report.ranking));
   }
   put_causes_first(report.ranking);
-  settle_set(report);
-  report.set_leaves_a_part =
-      report.verdict == Verdict::set && std::ranges::any_of(judgements, &Judgement::leaves_a_part);
+  const bool leaves_a_part = std::ranges::any_of(judgements, &Judgement::leaves_a_part);
+  settle_set(report, leaves_a_part);
+  report.set_leaves_a_part = report.verdict == Verdict::set && leaves_a_part;
   report.is_pieced_together =
       report.verdict == Verdict::partial && std::ranges::any_of(judgements, &Judgement::is_pieced_together);
   report.corrections = corrections_of(stages);
   report.where = locate(problem, fit_nothing(problem, false), all_causes, settings.seed);
   add_traces(traces, parts, report.ranking);
   add_traces(traces, parts, report.where);
-  report.next_experiment = next_experiment(stages, report.where);
   for (report::InterfaceGap& gap : report.where) {
     if (!gap.is_at_fault) continue;
     for (const Stage& stage : stages) {
@@ -443,6 +455,8 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   const std::vector<Excitation> excitations = excitations_of(problem);
   leave_out_unexcited(excitations, report.where);
   add_repeatability(model, segments, report.where);
+  add_recurrence(problem, all_causes, report.where);
+  report.next_experiment = next_experiment(stages, report.where);
   add_unjudged(model, recordings, settings.dof, report.where);
   if (report.verdict == Verdict::none && cannot_tell(excitations)) {
     report.verdict = Verdict::not_excited;
@@ -460,6 +474,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   add_quasi_static_notes(model, recordings, report.notes);
   add_continuation_notes(recordings, settings.dof, report.notes);
   add_input_notes(problem, recordings, report.notes);
+  add_repetition_notes(report);
   add_notes(diagnosis, segments);
   add_findings(findings, report);
   add_findings(check_sampling(model, diagnosis.causes, recordings, settings.dof), report);

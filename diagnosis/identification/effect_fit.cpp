@@ -266,6 +266,12 @@ double SegmentResult::left(const FitSegment& segment) const {
   return more_noise > 0.0 && all < noise ? all * segment.noise_of_input / noise : all - more_noise;
 }
 
+Eigen::VectorXd left_by(const SegmentResult& result, const FitSegment& segment) {
+  Eigen::VectorXd left = segment.measured - segment.baseline;
+  if (result.change.size() > 0) left -= result.change;
+  return left;
+}
+
 Squares squares_of(const IdentificationProblem& problem, const FitOutcome& outcome) {
   Squares sum;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {

@@ -41,6 +41,9 @@ struct SegmentResult {
   [[nodiscard]] double left(const FitSegment& segment) const;
 };
 
+/// What it leaves of the segment: measured less predicted, averaged.
+[[nodiscard]] Eigen::VectorXd left_by(const SegmentResult& result, const FitSegment& segment);
+
 /// Effects fitted together.
 struct FitOutcome {
   std::vector<EffectSetting> effects;

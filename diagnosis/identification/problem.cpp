@@ -13,6 +13,7 @@
 #include "diagnosis/identification/discrepancy.hpp"
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/noise_spectrum.hpp"
+#include "diagnosis/identification/repetition.hpp"
 #include "diagnosis/identification/search.hpp"
 #include "diagnosis/identification/smoothing_choice.hpp"
 #include "diagnosis/localisation/floor.hpp"
@@ -379,8 +380,11 @@ Eigen::VectorXd without_zero(const Eigen::VectorXd& values) {
 }
 
 /// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
+/// @param place_m         see places_m().
 /// @param form_is_right   of the model that leaves it, with what was found.
-void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right) {
+/// @param repetition      see repetition_floors().
+void take_noise(FitSegment& fit, const Eigen::VectorXd& left, const Eigen::VectorXd& place_m, bool form_is_right,
+                double repetition) {
   const Eigen::VectorXd residual = without_zero(left);
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
@@ -392,7 +396,6 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right
   double deviation = 0.0;
   std::optional<double> still;
   if (is_noise) {
-    const Eigen::VectorXd place_m = places_m(fit);
     deviation = noise_level(fit, place_m, parts.remainder, independent);
     still = noise_while_still(signals_of(fit, place_m, parts.remainder));
   } else if (fit.segment.is_quasi_static) {
@@ -402,6 +405,8 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right
   // Noise does not wait for the motion, as what a form misses does; of slow noise a short stretch shows a part.
   if (!form_is_right && still) deviation = std::min(deviation, tuning::kNearFloor * *still);
   deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));
+  // What a repetition of the test does otherwise is no gap, though it follows the motion in each.
+  deviation = std::max(deviation, repetition);
   const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
   const auto floor_with = [&](double noise) {
     // What smoothing does to the prediction is no noise and comes on top.
@@ -411,10 +416,21 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, bool form_is_right
   };
   fit.floor = floor_with(deviation);
   fit.sample_floor = std::sqrt(std::pow(fit.floor, 2) + averaged_away);
-  fit.still_floor = still ? fit.sample_floor : std::sqrt(std::pow(floor_with(0.0), 2) + averaged_away);
+  fit.still_floor = still ? fit.sample_floor : std::sqrt(std::pow(floor_with(repetition), 2) + averaged_away);
   const double allowance = tuning::kModelAllowance * root_mean_square(fit.measured);
   fit.weight = 1.0 / std::max(std::hypot(fit.floor, allowance), std::numeric_limits<double>::min());
   fit.independent = independent;
+}
+
+void take_noise(std::vector<FitSegment>& fits, const std::vector<Eigen::VectorXd>& residuals, bool form_is_right,
+                const Workers& workers) {
+  std::vector<Eigen::VectorXd> places;
+  for (const FitSegment& fit : fits) places.push_back(places_m(fit));
+  std::vector<GapSignals> signals;
+  for (std::size_t i = 0; i < fits.size(); ++i) signals.push_back(signals_of(fits[i], places[i], residuals[i]));
+  const std::vector<double> repetition = repetition_floors(fits, signals);
+  workers.for_each(fits.size(),
+                   [&](std::size_t i) { take_noise(fits[i], residuals[i], places[i], form_is_right, repetition[i]); });
 }
 
 /// The model that makes a force of the noise of its input. A spring that is far off makes as much more or less of it
@@ -523,10 +539,10 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   std::vector<FitSegment>& fits = problem.segments;
   fits.resize(segments.size());
   workers.for_each(fits.size(), [&](std::size_t i) { fits[i] = prepare(problem, std::move(segments[i]), found); });
-  workers.for_each(fits.size(), [&](std::size_t i) {
-    relate_channels(fits, fits[i]);
-    take_noise(fits[i], fits[i].measured - fits[i].baseline, true);
-  });
+  workers.for_each(fits.size(), [&](std::size_t i) { relate_channels(fits, fits[i]); });
+  std::vector<Eigen::VectorXd> residuals;
+  for (const FitSegment& fit : fits) residuals.push_back(fit.measured - fit.baseline);
+  take_noise(fits, residuals, true, workers);
   mark_suspects(fits);
   return problem;
 }
@@ -537,14 +553,11 @@ bool are_numbers(std::span<const EffectSetting> effects) noexcept {
 }
 
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
-  const bool form_is_right = are_numbers(best.effects);
-  problem.workers.for_each(problem.segments.size(), [&](std::size_t i) {
-    FitSegment& fit = problem.segments[i];
-    const Eigen::VectorXd& change = best.segments[i].change;
-    Eigen::VectorXd residual = fit.measured - fit.baseline;
-    if (change.size() > 0) residual -= change;
-    take_noise(fit, residual, form_is_right);
-  });
+  std::vector<Eigen::VectorXd> residuals;
+  for (std::size_t i = 0; i < problem.segments.size(); ++i) {
+    residuals.push_back(left_by(best.segments[i], problem.segments[i]));
+  }
+  take_noise(problem.segments, residuals, are_numbers(best.effects), problem.workers);
 }
 
 namespace {

@@ -19,6 +19,10 @@ Json where_entry(const report::InterfaceGap& gap, const Diagnosis& diagnosis) {
   if (gap.repeatability) {
     entry["repeatability"] = {{"nrmse", gap.repeatability->nrmse}, {"source", gap.repeatability->source}};
   }
+  if (gap.recurrence) {
+    entry["repeats"] = gap.recurrence->is_seen();
+    entry["discovered_term"] = {{"variance_removed", gap.recurrence->removed_by_function}};
+  }
   const auto place = std::ranges::find(diagnosis.places, gap.interface, &GapPlace::interface);
   if (place == diagnosis.places.end()) return entry;
   for (const TimeWindow& window : place->time_windows) {

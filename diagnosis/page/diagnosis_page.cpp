@@ -228,13 +228,19 @@ namespace {
 
 using plot::escaped;
 
-/// A stacked bar of the energy of the gap: removed, repeatable but unexplained, other, noise floor.
-std::string energy_bar(const Shrink& shrink) {
+/// What was added to the model.
+std::string_view added(const DiagnosisReport& report) {
+  if (report.corrections.empty()) return "the causes";
+  return names_a_cause(report.verdict) ? "the causes and corrected numbers" : "the corrected numbers";
+}
+
+/// A stacked bar of the energy of the gap: removed, left above the noise floor, and below it.
+/// @param by   what removed it.
+std::string energy_bar(const Shrink& shrink, std::string_view by) {
   const double before = shrink.nrmse_before * shrink.nrmse_before;
   const double floor = before > 0.0 ? std::min(1.0, shrink.floor_nrmse * shrink.floor_nrmse / before) : 0.0;
   const double removed = std::clamp(shrink.variance_removed, 0.0, 1.0 - floor);
   const double unknown = std::clamp(shrink.unknown_share, 0.0, 1.0 - floor - removed);
-  const double other = 1.0 - floor - removed - unknown;
   std::string html = "<div class=\"stack\">";
   std::string legend = "<p class=\"key\">";
   const auto piece = [&](double share, std::string_view name, std::string_view text) {
@@ -242,9 +248,8 @@ std::string energy_bar(const Shrink& shrink) {
     html += fmt::format("<i class=\"{}\" style=\"width:{:.2f}%\"></i>", name, 100.0 * share);
     legend += fmt::format("<span><i class=\"{}\"></i>{} {}</span>", name, percent(share), text);
   };
-  piece(removed, "removed", "removed by the causes");
-  piece(unknown, "unknown", "repeatable, unexplained");
-  piece(other, "other", "not explained, not known to be repeatable");
+  piece(removed, "removed", fmt::format("removed by {}", by));
+  piece(unknown, "unknown", "not explained, above the noise floor");
   piece(floor, "floor", "noise floor: no model can remove it");
   return html + "</div>" + legend + "</p>\n";
 }
@@ -268,7 +273,7 @@ std::string response_sentence(const ResponseShrink& response) {
   if (response.explainable_fraction) {
     html += fmt::format(", {} of what a perfect model could remove", percent(*response.explainable_fraction));
   }
-  return html + fmt::format("; {} is repeatable and unexplained. Noise floor: NRMSE {}.</p>\n",
+  return html + fmt::format("; {} is not explained and above the noise floor, NRMSE {}.</p>\n",
                             percent(*response.unknown_share), percent(*response.floor_nrmse));
 }
 
@@ -280,11 +285,13 @@ std::string predicted_row(const PredictedNumber& number, std::string_view what, 
 }
 
 /// Peaks and energy of the whole test, as the completed model predicts them.
-std::string predicted_table(const ResponseShrink& response) {
+/// @param with   what was added to it.
+std::string predicted_table(const ResponseShrink& response, std::string_view with) {
   if (response.peaks.empty()) return "";
-  std::string html =
-      "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>whole test</th><th>recorded</th><th>predicted with the "
-      "causes</th><th>95 %</th><th></th></tr>\n";
+  std::string html = fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>whole test</th><th>recorded</th><th>predicted with "
+      "{}</th><th>95 %</th><th></th></tr>\n",
+      with);
   for (const PredictedNumber& peak : response.peaks) html += predicted_row(peak, "peak of " + peak.of, "m");
   if (response.energy_taken) {
     html += predicted_row(*response.energy_taken, "energy taken by the substructures", "J");
@@ -311,14 +318,14 @@ std::string shrink_part(const DiagnosisReport& report) {
   const Shrink& shrink = *report.interface_shrink;
   const bool is_held_out = std::ranges::any_of(
       report.recordings, [](const ReportedRecording& recording) { return recording.role == RecordingRole::held_out; });
-  std::string html = "<h2>Gap before and after adding the causes</h2>\n<p>Energy of the gap ";
+  std::string html = fmt::format("<h2>Gap before and after adding {}</h2>\n<p>Energy of the gap ", added(report));
   html +=
       is_held_out ? "on the held-out recordings: " : "on the fitted recordings, because no recording was held out: ";
   html += fmt::format("<b>{}</b> removed", percent(shrink.variance_removed));
   if (shrink.ci95) html += fmt::format(" (95 %: {})", between_percent(*shrink.ci95));
   if (shrink.explainable_fraction)
     html += fmt::format(", {} of what a perfect model could remove", percent(*shrink.explainable_fraction));
-  html += ".</p>\n" + energy_bar(shrink);
+  html += ".</p>\n" + energy_bar(shrink, added(report));
   if (report.response_shrink) html += response_sentence(*report.response_shrink);
   html +=
       "<div class=\"scroll\" tabindex=\"0\"><table "
@@ -326,7 +333,7 @@ std::string shrink_part(const DiagnosisReport& report) {
   html += before_after("at the interface, NRMSE", shrink.nrmse_before, shrink.nrmse_after);
   if (report.response_shrink) html += response_rows(*report.response_shrink);
   html += "</table></div>\n";
-  if (report.response_shrink) html += predicted_table(*report.response_shrink);
+  if (report.response_shrink) html += predicted_table(*report.response_shrink, added(report));
   html += "<p class=\"fine\">NRMSE: root mean square of the gap divided by that of the measured signal.";
   if (!report.response_shrink && !report.why_no_response.empty()) {
     html += " Response of the whole test not compared: " + escaped(report.why_no_response) + ".";
@@ -356,7 +363,6 @@ h1 { font-size: 17px; font-weight: normal; color: var(--soft); margin: 0; }
 .stack { display: flex; height: 26px; border: 1px solid var(--line); margin: 8px 0; }
 .stack i { display: block; height: 100%; }
 .removed { background: var(--good); } .unknown { background: var(--orange); } .floor { background: var(--grey); }
-.other { background: repeating-linear-gradient(45deg, var(--orange) 0 3px, transparent 3px 7px); }
 .key span { margin-right: 20px; white-space: nowrap; } .key i { display: inline-block; width: 13px; height: 13px;
   margin-right: 6px; vertical-align: -1px; }
 td small { display: block; } td .par { display: block; } td .par small { display: inline; }

@@ -169,10 +169,32 @@ std::string doubts(const DiagnosisReport& report) {
   return text;
 }
 
+/// Whether what no effect explains was seen to come back, after a sentence about it.
+std::string recurrence(const DiagnosisReport& report) {
+  const InterfaceGap* const gap = main_fault(report);
+  if (gap == nullptr || !gap->recurrence) return {};
+  const std::string repetitions = gap->repeatability ? fmt::format("repetitions of the test differ by {} of the output",
+                                                                   percent(gap->repeatability->nrmse))
+                                                     : std::string{};
+  if (!gap->recurrence->is_seen()) {
+    return fmt::format(" It was not seen to repeat: {}.",
+                       repetitions.empty()
+                           ? "no function of the motion predicts it in cycles to which it was not fitted"
+                           : repetitions);
+  }
+  if (gap->recurrence->follows_motion) {
+    return fmt::format(
+        " It repeats with the motion: a function of the motion without a name removes {} of its energy from cycles to "
+        "which it was not fitted.",
+        percent(gap->recurrence->removed_by_function));
+  }
+  return fmt::format(" It repeats: {}.", repetitions);
+}
+
 std::string partial_sentence(const DiagnosisReport& report) {
   const std::string doubt = doubts(report);
   return named_sentence(report) + remainder(report) +
-         (doubt.empty() ? " No effect in the library explains what is left." : doubt);
+         (doubt.empty() ? " No effect in the library explains what is left." + recurrence(report) : doubt);
 }
 
 std::string set_sentence(const DiagnosisReport& report) {
@@ -360,7 +382,7 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     case Verdict::set: return set_sentence(report);
     case Verdict::partial: return partial_sentence(report);
     case Verdict::unknown:
-      return where_it_lies(report) + ". The gap is repeatable, and no effect in the library explains it.";
+      return where_it_lies(report) + ". No effect in the library explains it." + recurrence(report);
     case Verdict::not_excited:
       return fmt::format("These recordings are not sufficient to check the model: {}.",
                          unusable_channel(report).value_or("the motion is too small against the noise, or channels are "

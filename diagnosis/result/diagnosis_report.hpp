@@ -39,6 +39,16 @@ struct Repeatability {
   std::string source;  // `repeated cycles`, `repeated recordings`
 };
 
+/// Whether what the causes leave of a gap was seen to come back when the motion does.
+struct Recurrence {
+  // Share of its energy that a function of the motion without a name removes from cycles to which it was not fitted.
+  double removed_by_function = 0.0;
+  bool follows_motion = false;     // that function removes so much that it would be a gap
+  bool repetitions_agree = false;  // they differ by much less than what is left
+
+  [[nodiscard]] bool is_seen() const noexcept { return follows_motion || repetitions_agree; }
+};
+
 /// One interface of the chain. Root mean squares are relative to that of the measured output.
 struct InterfaceGap {
   std::string interface;  // `transfer_system`
@@ -52,6 +62,7 @@ struct InterfaceGap {
   double nrmse = 0.0;
   double floor_nrmse = 0.0;                      // of noise
   std::optional<Repeatability> repeatability{};  // where the test repeats itself
+  std::optional<Recurrence> recurrence{};        // where the verdict on it is `unknown` or `partial`
 };
 
 /// Readings of a channel while the motion is at rest, in its unit.

@@ -71,8 +71,8 @@ std::string in_words(const report::DiagnosisReport& report) {
     case Verdict::none: return "no gap is above the noise floor";
     case Verdict::named: return "the cause is named";
     case Verdict::set: return "one of several effects that these recordings cannot distinguish";
-    case Verdict::partial: return "a cause is named, but it does not explain a repeatable part of the gap";
-    case Verdict::unknown: return "the gap is repeatable, and no effect in the library explains it";
+    case Verdict::partial: return "a cause is named, but it does not explain the whole gap";
+    case Verdict::unknown: return "no effect in the library explains the gap";
     case Verdict::not_excited: return "the recordings are not sufficient to check the model";
   }
   return {};

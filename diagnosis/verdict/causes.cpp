@@ -375,13 +375,15 @@ Verdict verdict_of(std::span<const Judgement> judgements) {
   return count(Verdict::set) > 0 ? Verdict::set : Verdict::named;
 }
 
-void settle_set(report::DiagnosisReport& report) {
+void settle_set(report::DiagnosisReport& report, bool leaves_a_part) {
   if (report.verdict != Verdict::set || report.ranking.empty() || report.ranking.front().is_indistinguishable) return;
-  report.verdict = Verdict::named;
   for (report::RankedCause& cause : report.ranking) {
     // What was chosen has a share.
     if (cause.is_indistinguishable && cause.share == 0.0) cause.is_cause = false;
   }
+  const bool is_doubtful = std::ranges::any_of(
+      report.ranking, [](const report::RankedCause& cause) { return cause.is_cause && cause.may_be_absent; });
+  report.verdict = leaves_a_part || is_doubtful ? Verdict::partial : Verdict::named;
   put_causes_first(report.ranking);
   // What is certain comes before what is chosen of several.
   const auto alternatives = std::ranges::find_if_not(report.ranking, &report::RankedCause::is_cause);

@@ -33,7 +33,7 @@ struct Judgement {
   std::optional<Rivals> rivals;
   bool only_corrects = false;  // nothing else was chosen
   bool may_be_set = false;     // what is left allows one, and no search ran into its limit
-  bool leaves_a_part = false;  // more is left than a name allows
+  bool leaves_a_part = false;  // more is left than a name allows, of fitted recordings or of held-out ones
   double gap_left = 0.0;       // share of the repeatable gap that the chosen effects leave
 
   [[nodiscard]] bool is_correction(std::size_t chosen) const;
@@ -63,8 +63,10 @@ void settle_corrections(std::span<Judgement* const> judgements);
 void put_causes_first(std::vector<report::RankedCause>& ranking);
 
 /// A set is the verdict on the whole only where it is in doubt which effect has the largest share. Beside a cause that
-/// is certain, the effects that cannot be told from a smaller one are alternatives, and that one comes last.
-void settle_set(report::DiagnosisReport& report);
+/// is certain, the effects that cannot be told from a smaller one are alternatives, and that one comes last. Then the
+/// verdict is `named`, or `partial` where a part is left or a cause may be absent.
+/// @param leaves_a_part   of a gap, more than a name allows.
+void settle_set(report::DiagnosisReport& report, bool leaves_a_part);
 
 /// Multiplies the share of every interface by this factor.
 void scale_shares(std::vector<report::InterfaceGap>& where, double kept);

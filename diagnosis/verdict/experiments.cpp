@@ -170,7 +170,9 @@ std::string experiment_within_range(const std::vector<const EffectType*>& causes
          "recordings.";
 }
 
-std::string experiment_for_unknown(EffectInterface interface) {
+std::string experiment_for_unknown(EffectInterface interface, bool is_seen_to_repeat) {
+  if (!is_seen_to_repeat)
+    return "Repeat this test without any change: what comes back belongs to the site, what does not is a disturbance.";
   switch (interface) {
     case specimen:
     case force_sensor:

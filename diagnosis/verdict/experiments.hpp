@@ -44,7 +44,8 @@ void leave_out_unexcited(const std::vector<Excitation>& excitations, std::vector
 /// What to change where the load cell is at its limit; empty where these causes are others.
 [[nodiscard]] std::string experiment_within_range(const std::vector<const EffectType*>& causes);
 
-/// The test to run where a gap is repeatable and no effect of the library explains it.
-[[nodiscard]] std::string experiment_for_unknown(EffectInterface interface);
+/// The test to run where no effect of the library explains a gap.
+/// @param is_seen_to_repeat   without that, whether the gap is the site's or a disturbance comes first.
+[[nodiscard]] std::string experiment_for_unknown(EffectInterface interface, bool is_seen_to_repeat);
 
 }  // namespace hybridtest

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/config_error.hpp"
+#include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/tuning.hpp"
 #include "diagnosis/verdict/growth.hpp"
 #include "diagnosis/verdict/held_out_loss.hpp"

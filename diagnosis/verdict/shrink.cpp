@@ -190,18 +190,18 @@ bool contradicts_a_part(const Shrink& held_out, const VerdictPolicy& policy) {
   return is_worse(held_out) || held_out.variance_removed < least_removed(held_out, policy);
 }
 
-/// What was named leaves, on recordings that were not fitted, more than a name allows.
-bool leaves_a_part(const Shrink& held_out, const VerdictPolicy& policy) {
-  const double over_floor = held_out.nrmse_after / std::hypot(held_out.floor_nrmse, tuning::kModelAllowance);
-  return !policy.names(held_out.unknown_share, over_floor);
-}
-
 }  // namespace
+
+bool leave_a_part(std::span<const Shrink> held_out, const VerdictPolicy& policy) {
+  return std::ranges::any_of(held_out, [&](const Shrink& one) {
+    const double over_floor = one.nrmse_after / std::hypot(one.floor_nrmse, tuning::kModelAllowance);
+    return !policy.names(one.unknown_share, over_floor);
+  });
+}
 
 Verdict verdict_carried_over(Verdict verdict, std::span<const Shrink> held_out, const VerdictPolicy& policy) {
   if (!report::names_a_cause(verdict) || held_out.empty()) return verdict;
-  const auto leaves = [&](const Shrink& one) { return leaves_a_part(one, policy); };
-  if (verdict == Verdict::named && std::ranges::any_of(held_out, leaves)) verdict = Verdict::partial;
+  if (verdict == Verdict::named && leave_a_part(held_out, policy)) verdict = Verdict::partial;
   const auto is_against = [&](const Shrink& one) {
     return verdict == Verdict::partial ? contradicts_a_part(one, policy) : contradicts(one, policy);
   };

@@ -24,6 +24,9 @@ namespace hybridtest {
 /// Whether the causes change the prediction of a held-out recording, beside its floor.
 [[nodiscard]] bool acts(const report::Shrink& held_out);
 
+/// Whether more is left of one of them than a name allows.
+[[nodiscard]] bool leave_a_part(std::span<const report::Shrink> held_out, const VerdictPolicy& policy);
+
 /// The verdict after the check on held-out recordings. Causes that act there but certainly leave more of the gap above
 /// the floor than the policy allows are rejected, even if they fit the fitted recordings well; so are causes that make
 /// it larger. If they explain the gap of one channel, a new gap in another channel does not reject them.

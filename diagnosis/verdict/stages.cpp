@@ -223,9 +223,12 @@ void drop_what_does_not_carry_over(const SiteModel& model, std::span<const Segme
     leave_out_what_worsens(model, held_out, seed, policy, stages, stage, notes);
     if (!stage.has_causes()) continue;
     // Beside the causes of the other stages, so that this one's own part is judged.
-    Verdict verdict =
-        verdict_carried_over(stage.judgement.verdict, left_by_all(model, held_out, seed, stages, stage), policy);
-    if (verdict == stage.judgement.verdict) continue;
+    const std::vector<report::Shrink> left = left_by_all(model, held_out, seed, stages, stage);
+    Verdict verdict = verdict_carried_over(stage.judgement.verdict, left, policy);
+    if (verdict == stage.judgement.verdict) {
+      stage.judgement.leaves_a_part = stage.judgement.leaves_a_part || leave_a_part(left, policy);
+      continue;
+    }
     if (!report::names_a_cause(verdict) && !acts_on(model, held_out, seed, stages, stage)) {
       notes.push_back("The causes at the " + std::string{name_of(stage.problem.segments.front().segment.interface)} +
                       " do not act in the held-out recordings, which therefore do not check them.");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/random.hpp"
+#include "diagnosis/identification/repetition.hpp"
 #include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/tuning.hpp"
@@ -214,9 +215,7 @@ Residual residual_of(const SiteModel& model, const Segment& segment) {
 
 std::optional<RepeatabilityFloor> floor_of(const Residual& residual, const std::vector<Residual>& all) {
   for (const Residual& other : all) {
-    const bool is_again = &other != &residual && other.segment->from == residual.segment->from &&
-                          other.segment->to == residual.segment->to;
-    if (!is_again) continue;
+    if (&other == &residual || !may_repeat(*other.segment, *residual.segment)) continue;
     if (const auto floor = floor_of_repetition(residual.signals(), other.signals())) return floor;
   }
   return floor_of_cycles(residual.signals());

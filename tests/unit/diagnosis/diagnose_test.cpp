@@ -219,7 +219,13 @@ TEST(Diagnose, SaysUnknownWhenNoEffectFits) {
       made_motion_m, [](double t) { return spring_n(t) + 2000.0 * std::sin(made_motion_m(t) / 0.002); }));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_TRUE(diagnosis.causes.empty());
-  EXPECT_FALSE(diagnosis.report.next_experiment.empty());
+  ASSERT_EQ(diagnosis.report.where.front().interface, "specimen");
+  const std::optional<report::Recurrence>& seen = diagnosis.report.where.front().recurrence;
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->follows_motion);
+  // Straight between 12 knots over the stroke, the best function by least squares removes 0.84.
+  EXPECT_NEAR(seen->removed_by_function, 0.84, 0.02);
+  EXPECT_THAT(diagnosis.report.next_experiment, testing::StartsWith("Slow cycles"));
 }
 
 /// Like hum, it does not follow from the motion: no model could reproduce it.

@@ -126,9 +126,10 @@ TEST(DiagnosisPage, ShowsResponseWithFloorAndIntervals) {
   response.energy_taken = PredictedNumber{.of = {}, .recorded = 1300.0, .predicted = 1230.0, .ci95 = {1210.0, 1260.0}};
   report.response_shrink = response;
   const std::string page = diagnosis_page(report);
-  EXPECT_THAT(page, HasSubstr("<b>75 %</b> removed (95 % in a repetition of the test: 71 % to 78 %), "
-                              "82 % of what a perfect model could remove; 16 % is repeatable"));
-  EXPECT_THAT(page, HasSubstr("Noise floor: NRMSE 0.30 %"));
+  EXPECT_THAT(page,
+              HasSubstr("<b>75 %</b> removed (95 % in a repetition of the test: 71 % to 78 %), "
+                        "82 % of what a perfect model could remove; 16 % is not explained and above the noise floor, "
+                        "NRMSE 0.30 %"));
   EXPECT_THAT(page, HasSubstr("<td>0.40 % (95 %: 0.31 % to 0.52 %)</td>"));
   EXPECT_THAT(page, HasSubstr("<td>1.2 % (95 %: 0.50 % to 2.1 %)</td>"));
   EXPECT_THAT(page, HasSubstr("<th>peak of floor &lt;1&gt;</th><td>51.1 mm</td><td>51.2 mm</td>"
@@ -236,6 +237,42 @@ TEST(DiagnosisPage, PageOfEveryVerdictIsComplete) {
     EXPECT_EQ(first_imbalance(diagnosis_page(report)), "") << name_of(verdict);
   }
   EXPECT_EQ(first_imbalance(diagnosis_page({})), "") << "of nothing";
+}
+
+TEST(DiagnosisPage, GapIsSaidToRepeatOnlyWhereItWasSeenTo) {
+  DiagnosisReport report = example();
+  const auto says = [&](Verdict verdict, std::optional<Recurrence> recurrence) {
+    report.verdict = verdict;
+    report.where.front().recurrence = recurrence;
+    return verdict_sentence(report);
+  };
+  for (const Verdict verdict : {Verdict::unknown, Verdict::partial}) {
+    report.where.front().repeatability = Repeatability{0.034, "repeated cycles"};
+    EXPECT_THAT(says(verdict, Recurrence{.removed_by_function = 0.831, .follows_motion = true}),
+                HasSubstr("It repeats with the motion: a function of the motion without a name removes 83 % of its "
+                          "energy from cycles to which it was not fitted."));
+    EXPECT_THAT(says(verdict, Recurrence{.repetitions_agree = true}),
+                HasSubstr("It repeats: repetitions of the test differ by 3.4 % of the output."));
+    EXPECT_THAT(says(verdict, Recurrence{.removed_by_function = 0.02}),
+                HasSubstr("It was not seen to repeat: repetitions of the test differ by 3.4 % of the output."));
+    report.where.front().repeatability.reset();
+    EXPECT_THAT(says(verdict, Recurrence{}),
+                HasSubstr("It was not seen to repeat: no function of the motion predicts it in cycles"));
+    EXPECT_THAT(says(verdict, {}), Not(HasSubstr("repeat"))) << "nobody has looked";
+  }
+  EXPECT_THAT(diagnosis_page(report), Not(HasSubstr("repeatable")));
+}
+
+TEST(DiagnosisPage, SaysWhatWasAddedToTheModel) {
+  DiagnosisReport report = example();
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("removed by the causes</span>"));
+  RankedCause correction;
+  correction.effect = "stiffness_error";
+  report.corrections = {correction};
+  EXPECT_THAT(diagnosis_page(report), HasSubstr("removed by the causes and corrected numbers</span>"));
+  report.verdict = Verdict::unknown;
+  EXPECT_THAT(diagnosis_page(report), testing::AllOf(HasSubstr("Gap before and after adding the corrected numbers<"),
+                                                     HasSubstr("removed by the corrected numbers</span>")));
 }
 
 TEST(DiagnosisPage, CandidateSetListsMembersAndNextExperiment) {

@@ -103,11 +103,27 @@ TEST(SettleSet, CertainCauseWithTheLargestShareIsNamed) {
   report.verdict = Verdict::set;
   report.ranking = {cause_with("friction", 0.9, false), cause_with("gain", 0.1, true),
                     cause_with("compliance", 0.0, true)};
-  settle_set(report);
+  settle_set(report, false);
   EXPECT_EQ(report.verdict, Verdict::named);
   EXPECT_TRUE(report.ranking[1].is_cause) << "it was chosen";
   EXPECT_FALSE(report.ranking[2].is_cause);
   EXPECT_TRUE(report.ranking[2].is_indistinguishable) << "still told as an alternative";
+}
+
+TEST(SettleSet, NamesNothingThatLeavesAPartOrMayBeAbsent) {
+  report::DiagnosisReport report;
+  const auto settled = [&](bool leaves_a_part, bool may_be_absent) {
+    report.verdict = Verdict::set;
+    report.ranking = {cause_with("friction", 0.9, false), cause_with("gain", 0.1, true),
+                      cause_with("compliance", 0.0, true)};
+    report.ranking[1].may_be_absent = may_be_absent;
+    report.ranking[2].may_be_absent = true;  // no cause any more
+    settle_set(report, leaves_a_part);
+    return report.verdict;
+  };
+  EXPECT_EQ(settled(false, false), Verdict::named);
+  EXPECT_EQ(settled(true, false), Verdict::partial);
+  EXPECT_EQ(settled(false, true), Verdict::partial);
 }
 
 TEST(SettleSet, CertainCausesComeBeforeOneChosenOfSeveral) {
@@ -115,7 +131,7 @@ TEST(SettleSet, CertainCausesComeBeforeOneChosenOfSeveral) {
   report.verdict = Verdict::set;
   report.ranking = {cause_with("friction", 0.7, false), cause_with("gain", 0.2, true), cause_with("gap", 0.1, false),
                     cause_with("compliance", 0.0, true)};
-  settle_set(report);
+  settle_set(report, false);
   std::vector<std::string> effects;
   for (const report::RankedCause& cause : report.ranking) effects.push_back(cause.effect);
   EXPECT_THAT(effects, testing::ElementsAre("friction", "gap", "gain", "compliance"));
@@ -126,7 +142,7 @@ TEST(SettleSet, DoubtAboutTheLargestShareStaysASet) {  // control
   report.verdict = Verdict::set;
   report.ranking = {cause_with("gain", 0.9, true), cause_with("friction", 0.1, false),
                     cause_with("compliance", 0.0, true)};
-  settle_set(report);
+  settle_set(report, false);
   EXPECT_EQ(report.verdict, Verdict::set);
   EXPECT_TRUE(report.ranking[2].is_cause);
 }

@@ -185,8 +185,9 @@ TEST(NextExperiment, LoadCellAtItsLimitAsksForAWiderRange) {
 }
 
 TEST(NextExperiment, UnknownGapAtTheSpecimenAsksForSlowCycles) {
-  EXPECT_THAT(experiment_for_unknown(specimen), StartsWith("Slow cycles"));
-  EXPECT_NE(experiment_for_unknown(specimen), experiment_for_unknown(transfer_system));
+  EXPECT_THAT(experiment_for_unknown(specimen, true), StartsWith("Slow cycles"));
+  EXPECT_NE(experiment_for_unknown(specimen, true), experiment_for_unknown(transfer_system, true));
+  EXPECT_THAT(experiment_for_unknown(specimen, false), StartsWith("Repeat this test"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,6 +74,11 @@ TEST(HuntingServo, IsUnknownAtTheTransferSystem) {
   const Diagnosis diagnosis = diagnosis_of(made_model(), site_with(1.0, of_motion));
   EXPECT_EQ(diagnosis.report.verdict, Verdict::unknown);
   EXPECT_EQ(verdict_at(diagnosis, "transfer_system"), Verdict::unknown);
+  // It does not come back with the command.
+  ASSERT_TRUE(diagnosis.report.where.front().recurrence);
+  EXPECT_FALSE(diagnosis.report.where.front().recurrence->is_seen());
+  EXPECT_LT(diagnosis.report.where.front().recurrence->removed_by_function, 0.05);
+  EXPECT_THAT(diagnosis.report.next_experiment, testing::StartsWith("Repeat this test"));
 }
 
 TEST(HuntingServo, IsUnknownBesideANumberThatIsCorrected) {
