@@ -10,7 +10,6 @@
 #include "diagnosis/identification/law_candidates.hpp"
 #include "diagnosis/identification/segment.hpp"
 #include "diagnosis/identification/smoothing_choice.hpp"
-#include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/localisation/sensor_checks.hpp"
 #include "diagnosis/page/wording.hpp"
 #include "diagnosis/sanity/channel_findings.hpp"
@@ -308,8 +307,7 @@ void add_input_notes(const IdentificationProblem& problem, std::span<const Recor
 
 void add_repetition_notes(report::DiagnosisReport& report) {
   for (const report::InterfaceGap& gap : report.where) {
-    if (!gap.repeatability || gap.repeatability->source != name_of(FloorSource::repeated_recordings)) continue;
-    if (gap.repeatability->nrmse <= tuning::kModelAllowance) continue;
+    if (!was_recorded_again(gap) || gap.repeatability->nrmse <= tuning::kModelAllowance) continue;
     report.notes.push_back("Recordings of the same test scatter by " + report::percent(gap.repeatability->nrmse) +
                            " of the output at the " + report::plain(gap.interface) +
                            ": a gap that is smaller is not judged there.");

@@ -281,8 +281,4 @@ Eigen::MatrixXd Discrepancy::pull(double energy, const Eigen::MatrixXd& weights)
   return std::sqrt(of_each) * (features_.transpose() * weights);
 }
 
-double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual) {
-  return fit.discrepancy->parts(residual).share();
-}
-
 }  // namespace hybridtest

@@ -60,8 +60,4 @@ class Discrepancy {
   Eigen::MatrixXd normal_;
 };
 
-/// Share of a residual's energy that is repeatable: seen again on held-out cycles. 0 to 1.
-/// @param residual   in the averaged samples of the segment, unweighted: `fit.measured` minus a prediction.
-[[nodiscard]] double repeatable_share(const FitSegment& fit, const Eigen::VectorXd& residual);
-
 }  // namespace hybridtest

@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "diagnosis/identification/discrepancy.hpp"
-#include "diagnosis/localisation/floor.hpp"
 #include "diagnosis/tuning.hpp"
+#include "diagnosis/verdict/where.hpp"
 #include "plant/effects/effect_type.hpp"
 
 namespace hybridtest {
@@ -55,9 +54,7 @@ void add_recurrence(const IdentificationProblem& problem, const FitOutcome& chos
     report::Recurrence& recurrence = gap.recurrence.emplace();
     recurrence.removed_by_function = left.by_function / left.total;
     recurrence.repetitions_agree = repetitions_agree(left, gap);
-    const bool was_repeated =
-        gap.repeatability && gap.repeatability->source == name_of(FloorSource::repeated_recordings);
-    recurrence.follows_motion = follows_motion(left) && (recurrence.repetitions_agree || !was_repeated);
+    recurrence.follows_motion = follows_motion(left) && (recurrence.repetitions_agree || !was_recorded_again(gap));
   }
 }
 

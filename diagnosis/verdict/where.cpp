@@ -239,4 +239,8 @@ void add_repeatability(const SiteModel& model, std::span<const Segment> segments
   }
 }
 
+bool was_recorded_again(const report::InterfaceGap& gap) {
+  return gap.repeatability && gap.repeatability->source == name_of(FloorSource::repeated_recordings);
+}
+
 }  // namespace hybridtest

@@ -33,4 +33,7 @@ void add_unjudged(const SiteModel& model, std::span<const Recording> recordings,
 void add_repeatability(const SiteModel& model, std::span<const Segment> segments,
                        std::vector<report::InterfaceGap>& where);
 
+/// Whether that difference is one between recordings.
+[[nodiscard]] bool was_recorded_again(const report::InterfaceGap& gap);
+
 }  // namespace hybridtest

@@ -114,12 +114,12 @@ TEST(Discrepancy, DisturbanceApartFromTheMotionIsNotRepeatable) {
     disturbance_n[i] = 2000.0 * std::sin(40.0 * t + std::sin(t));
   }
   const FitSegment fit = spring_with(&made_motion_m, disturbance_n);
-  EXPECT_LT(repeatable_share(fit, residual_of(fit)), 0.05);
+  EXPECT_LT(fit.discrepancy->parts(residual_of(fit)).share(), 0.05);
   // Control: the same size, but a function of the place.
   const FitSegment again =
       spring_with(&made_motion_m, made_noise({}, kSamples, 1.0, kSitePeriod_s, 1),
                   gap_of(&made_motion_m, 1400.0, [](double x, double, double, double) { return std::sin(x / 0.002); }));
-  EXPECT_GT(repeatable_share(again, residual_of(again)), 0.6);
+  EXPECT_GT(again.discrepancy->parts(residual_of(again)).share(), 0.6);
 }
 
 }  // namespace
