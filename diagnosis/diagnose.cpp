@@ -404,7 +404,7 @@ Diagnosis diagnose(const SiteModel& model, std::span<const Recording> given, con
   diagnosis.causes = causes_of(stages, traces);
   diagnosis.doubts = doubts_of(stages, traces);
   const FitOutcome all_causes = fit_of_all(problem, stages);
-  settle_noise(problem, all_causes);
+  settle_final_noise(problem, all_causes);
   if (!diagnosis.causes.empty()) {
     report.interface_shrink =
         shrink_on(model, diagnosis.causes, at_suspects(problem, judged), settings.seed, problem.segments);

@@ -203,28 +203,35 @@ Segment with_noise(const Segment& segment, const std::vector<Motion>& noise, dou
   return noisy;
 }
 
-InputErrors input_errors(const SiteModel& model, const Segment& segment) {
+InputErrors input_errors(const SiteModel& model, const Segment& segment, std::span<const EffectSetting> added) {
   if (segment.noise.empty()) return {};
   const auto predicted = [&](const std::vector<Motion>& input) {
     Segment other = segment;
     other.input = input;
-    return predict(model, other);
+    return predict(model, other, added);
   };
   const auto change = [](std::vector<double> values, const std::vector<double>& from) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] -= from[i];
     return values;
   };
-  const std::vector<double> wide = predict(model, segment);
+  const std::vector<double> wide = predict(model, segment, added);
   InputErrors errors;
   // What is told is the noise itself, and another one than a draw with that of the readings: slow noise with it.
   errors.of_noise = segment.told_noise.empty()
-                        ? change(predict(model, with_noise(segment, segment.noise, 1.0)), wide)
-                        : change(wide, predict(model, with_noise(segment, segment.told_noise, -1.0)));
+                        ? change(predict(model, with_noise(segment, segment.noise, 1.0), added), wide)
+                        : change(wide, predict(model, with_noise(segment, segment.told_noise, -1.0), added));
   if (segment.narrow_input.empty()) return errors;
   const std::vector<double> narrow = predicted(segment.narrow_input);
   errors.of_window = change(narrow, wide);
   errors.of_narrow_noise = change(predicted(sum(segment.narrow_input, segment.narrow_noise)), narrow);
   return errors;
+}
+
+bool take_place_in(const SiteModel& model, std::span<const EffectSetting> effects) noexcept {
+  return std::ranges::any_of(effects, [&](const EffectSetting& effect) {
+    return replaces_law(effect) || place_of(model, *effect.type) != nullptr ||
+           effect.type->traits.number == ModelNumber::stiffness;
+  });
 }
 
 double input_floor(const InputErrors& errors, const std::function<double(std::span<const double>)>& root_mean_square) {

@@ -379,12 +379,37 @@ Eigen::VectorXd without_zero(const Eigen::VectorXd& values) {
   return rest.squaredNorm() < (1.0 - tuning::kMainShare) * values.squaredNorm() ? rest : values;
 }
 
+ChannelFloor channel_floor(const FitSegment& fit, const InputErrors& errors) {
+  const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
+  const double of_input =
+      input_floor(errors, [&](std::span<const double> values) { return root_mean_square(fit.average(values)); });
+  return {.of_means = noise_floor_of_means(fit.segment, of_input, independent),
+          .per_sample = noise_floor(fit.segment, errors),
+          .of_smoothing = fit.segment.smoothing_error};
+}
+
+/// Beside what takes the place of something in the model, which may have made more of the noise of its input, or have
+/// had corners that smoothing cuts off.
+ChannelFloor channel_floor_beside(const SiteModel& model, std::span<const EffectSetting> effects,
+                                  const FitSegment& fit) {
+  if (!take_place_in(model, effects) || !fit.segment.touched_by(effects)) return fit.channels;
+  const ChannelFloor beside = channel_floor(fit, input_errors(model, fit.segment, effects));
+  const double of_smoothing = smoothing_error_beside(model, effects, fit.segment);
+  const auto least = [&](double own, double others) {
+    const double less = std::pow(others, 2) + std::pow(of_smoothing, 2) - std::pow(beside.of_smoothing, 2);
+    return std::min(own, std::sqrt(std::max(0.0, less)));
+  };
+  return {.of_means = least(fit.channels.of_means, beside.of_means),
+          .per_sample = least(fit.channels.per_sample, beside.per_sample),
+          .of_smoothing = std::min(fit.channels.of_smoothing, of_smoothing)};
+}
+
 /// Takes floor, weight and number of independent samples from what no function of the motion explains of a residual.
 /// @param place_m         see places_m().
 /// @param form_is_right   of the model that leaves it, with what was found.
 /// @param repetition      see repetition_floors().
-void take_noise(FitSegment& fit, const Eigen::VectorXd& left, const Eigen::VectorXd& place_m, bool form_is_right,
-                double repetition) {
+void take_noise(FitSegment& fit, const ChannelFloor& channels, const Eigen::VectorXd& left,
+                const Eigen::VectorXd& place_m, bool form_is_right, double repetition) {
   const Eigen::VectorXd residual = without_zero(left);
   const ResidualParts parts = fit.discrepancy->parts(residual);
   // Beside a gap that repeats, the remainder may be a part of it that the features do not hold.
@@ -407,10 +432,10 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, const Eigen::Vecto
   deviation *= std::sqrt(1.0 - share_answered(parts.remainder, fit.answering_force, period_s));
   // What a repetition of the test does otherwise is no gap, though it follows the motion in each.
   deviation = std::max(deviation, repetition);
-  const double averaged_away = std::max(0.0, std::pow(fit.channel_sample_floor, 2) - std::pow(fit.channel_floor, 2));
+  const double averaged_away = std::max(0.0, std::pow(channels.per_sample, 2) - std::pow(channels.of_means, 2));
   const auto floor_with = [&](double noise) {
     // What smoothing does to the prediction is no noise and comes on top.
-    const double told = std::max(fit.channel_floor, std::hypot(noise, fit.smoothing_floor));
+    const double told = std::max(channels.of_means, std::hypot(noise, channels.of_smoothing));
     // All noise is left: where less is, the model makes less of the noise of its input than the one at hand would.
     return std::min(told, root_mean_square(residual));
   };
@@ -422,16 +447,23 @@ void take_noise(FitSegment& fit, const Eigen::VectorXd& left, const Eigen::Vecto
   fit.independent = independent;
 }
 
-void take_noise(std::vector<FitSegment>& fits, const std::vector<Eigen::VectorXd>& residuals, bool form_is_right,
-                const Workers& workers) {
+/// What is left is that of the effects found.
+/// @param channels_of   the floor of a segment that its channels show.
+template <class ChannelsOf>
+void take_noise(IdentificationProblem& problem, std::span<const EffectSetting> found,
+                const std::vector<Eigen::VectorXd>& left, ChannelsOf&& channels_of) {
+  std::vector<FitSegment>& fits = problem.segments;
   std::vector<Eigen::VectorXd> places;
   for (const FitSegment& fit : fits) places.push_back(places_m(fit));
   std::vector<GapSignals> signals;
-  for (std::size_t i = 0; i < fits.size(); ++i) signals.push_back(signals_of(fits[i], places[i], residuals[i]));
+  for (std::size_t i = 0; i < fits.size(); ++i) signals.push_back(signals_of(fits[i], places[i], left[i]));
   const std::vector<double> repetition = repetition_floors(fits, signals);
-  workers.for_each(fits.size(),
-                   [&](std::size_t i) { take_noise(fits[i], residuals[i], places[i], form_is_right, repetition[i]); });
+  problem.workers.for_each(fits.size(), [&](std::size_t i) {
+    take_noise(fits[i], channels_of(fits[i]), left[i], places[i], are_numbers(found), repetition[i]);
+  });
 }
+
+ChannelFloor as_in_model(const FitSegment& fit) { return fit.channels; }
 
 /// The model that makes a force of the noise of its input. A spring that is far off makes as much more or less of it
 /// than the specimen does, so it is as stiff as the recording shows.
@@ -456,13 +488,8 @@ FitSegment prepare(const IdentificationProblem& problem, Segment segment, std::s
       1, static_cast<std::size_t>(std::floor(1.0 / (tuning::kFitRate_hz * fit.segment.period_s))));
   fit.measured = fit.average(fit.segment.measured);
   fit.baseline = fit.average(predict_remembering(model, fit));
-  fit.smoothing_floor = fit.segment.smoothing_error;
   const InputErrors errors = input_errors(model_of_noise(problem, fit), fit.segment);
-  fit.channel_sample_floor = noise_floor(fit.segment, errors);
-  const double independent = std::max(1.0, static_cast<double>(fit.averaged) / fit.segment.noise_span);
-  const double of_input =
-      input_floor(errors, [&](std::span<const double> values) { return root_mean_square(fit.average(values)); });
-  fit.channel_floor = noise_floor_of_means(fit.segment, of_input, independent);
+  fit.channels = channel_floor(fit, errors);
   std::vector<std::vector<double>> wrong{errors.of_noise, errors.of_window, fit.segment.smoothing_errors};
   if (!problem.law_is_spring) wrong.push_back(change_by_smoothing(model, fit.segment));
   for (const std::vector<double>& values : wrong) {
@@ -542,7 +569,7 @@ IdentificationProblem make_problem(const SiteModel& model, std::vector<Segment> 
   workers.for_each(fits.size(), [&](std::size_t i) { relate_channels(fits, fits[i]); });
   std::vector<Eigen::VectorXd> residuals;
   for (const FitSegment& fit : fits) residuals.push_back(fit.measured - fit.baseline);
-  take_noise(fits, residuals, true, workers);
+  take_noise(problem, {}, residuals, as_in_model);
   mark_suspects(fits);
   return problem;
 }
@@ -552,12 +579,25 @@ bool are_numbers(std::span<const EffectSetting> effects) noexcept {
       effects, [](const EffectSetting& effect) { return effect.type->traits.number != ModelNumber::none; });
 }
 
-void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
-  std::vector<Eigen::VectorXd> residuals;
+namespace {
+
+std::vector<Eigen::VectorXd> all_left_by(const FitOutcome& best, const IdentificationProblem& problem) {
+  std::vector<Eigen::VectorXd> left;
   for (std::size_t i = 0; i < problem.segments.size(); ++i) {
-    residuals.push_back(left_by(best.segments[i], problem.segments[i]));
+    left.push_back(left_by(best.segments[i], problem.segments[i]));
   }
-  take_noise(problem.segments, residuals, are_numbers(best.effects), problem.workers);
+  return left;
+}
+
+}  // namespace
+
+void settle_noise(IdentificationProblem& problem, const FitOutcome& best) {
+  take_noise(problem, best.effects, all_left_by(best, problem), as_in_model);
+}
+
+void settle_final_noise(IdentificationProblem& problem, const FitOutcome& found) {
+  take_noise(problem, found.effects, all_left_by(found, problem),
+             [&](const FitSegment& fit) { return channel_floor_beside(problem.model, found.effects, fit); });
 }
 
 namespace {

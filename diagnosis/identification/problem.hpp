@@ -60,6 +60,14 @@ struct NoisySegments {
   Segment without;
 };
 
+/// What the channels show of the noise that a correct model leaves [standard deviation]: white noise, steps of
+/// converters, and smoothing.
+struct ChannelFloor {
+  double of_means = 0.0;  // after averaging
+  double per_sample = 0.0;
+  double of_smoothing = 0.0;  // of both, that alone
+};
+
 /// A segment for fits: averaged over `averaged` neighbouring samples, which keeps the frequencies that a
 /// hybrid test excites and removes noise above them.
 struct FitSegment {
@@ -83,10 +91,7 @@ struct FitSegment {
   // As sample_floor, with coloured noise and hum only if they are seen where the motion hardly moves: what the causes
   // have wrong in their form is no part of them.
   double still_floor = 0.0;
-  // Of them what the channels show: white noise, steps of converters, and smoothing; the last alone.
-  double channel_floor = 0.0;
-  double channel_sample_floor = 0.0;
-  double smoothing_floor = 0.0;
+  ChannelFloor channels;  // beside the user's model
   // What the prediction has wrong by noise of its input and by smoothing, each in its averaged samples.
   std::vector<Eigen::VectorXd> input_errors;
   std::shared_ptr<const NoisySegments> noisy;  // null where the input is exact, or read in coarse steps
@@ -148,6 +153,10 @@ struct FoundEffect {
 /// under a gap is not known. Beside an effect or a law, noise is at most twice what is there where the motion hardly
 /// moves: what their form misses is not.
 void settle_noise(IdentificationProblem& problem, const FitOutcome& best);
+
+/// The same at the end of a search: what was found may take the place of something in the model that made more of the
+/// noise of its input, or had corners that smoothing cuts off. Floors are no higher than beside what is there instead.
+void settle_final_noise(IdentificationProblem& problem, const FitOutcome& found);
 
 /// The same problem with the gap of one channel to explain. The other segments stay: an effect of a displacement sensor
 /// shows in force and motion alike. So one interface never hides what is wrong at another. In the other segments the

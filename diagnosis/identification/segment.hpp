@@ -137,7 +137,13 @@ struct InputErrors {
   std::vector<double> of_window;
   std::vector<double> of_narrow_noise;  // of that in the narrower window
 };
-[[nodiscard]] InputErrors input_errors(const SiteModel& model, const Segment& segment);
+/// @param added   effects beyond the model's own, as of predict().
+[[nodiscard]] InputErrors input_errors(const SiteModel& model, const Segment& segment,
+                                       std::span<const EffectSetting> added = {});
+
+/// Whether effects put something in the place of what the model has: another law or element, or another stiffness. What
+/// the model makes of the noise of its input is then not what they leave.
+[[nodiscard]] bool take_place_in(const SiteModel& model, std::span<const EffectSetting> effects) noexcept;
 
 /// The segment with a noise of its motion added to its input.
 /// @param times   as large.

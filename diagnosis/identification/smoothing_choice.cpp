@@ -209,6 +209,18 @@ std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& s
   return change;
 }
 
+double smoothing_error_beside(const SiteModel& model, std::span<const EffectSetting> effects, const Segment& segment) {
+  if (!segment.is_smoothed() || !(segment.smoothing_error > 0.0)) return segment.smoothing_error;
+  const FlatSmoother smoother{segment.smoothed_by};
+  const Segment once = with_corners(segment);
+  const Segment twice = with_smooth_motion(once, segment.smoothed_by);
+  const auto squares = [&](std::span<const EffectSetting> added) {
+    return squared_difference(smoother.smooth(predict(model, once, added)), predict(model, twice, added));
+  };
+  const double own = squares({});
+  return own > 0.0 ? segment.smoothing_error * std::sqrt(squares(effects) / own) : segment.smoothing_error;
+}
+
 std::vector<Segment> modelled_segments(const SiteModel& model, const Recording& recording, std::size_t dof,
                                        std::size_t position) {
   return modelled_segments(model, recording, dof, position, model);

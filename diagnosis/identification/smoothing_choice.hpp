@@ -34,4 +34,9 @@ namespace hybridtest {
 /// and of other channels.
 [[nodiscard]] std::vector<double> change_by_smoothing(const SiteModel& model, const Segment& segment);
 
+/// Segment::smoothing_error beside effects that take the place of something in the model: as much larger or less than
+/// the model's own as what the same smoothing once more does to both.
+[[nodiscard]] double smoothing_error_beside(const SiteModel& model, std::span<const EffectSetting> effects,
+                                            const Segment& segment);
+
 }  // namespace hybridtest

@@ -30,10 +30,13 @@ double gap_to_explain(const IdentificationProblem& problem, const Selection& sel
 }
 
 /// Several effects that explain a gap only together, and leave part of it that matters, are a curve fit and not a
-/// cause.
+/// cause. Other numbers of an element that the model has are no piece of one.
 bool is_patchwork(const IdentificationProblem& problem, const Selection& selection, double total, double left,
                   const VerdictPolicy& policy) {
-  return selection.chosen.effects.size() > 1 && left > tuning::kHardlyLeft &&
+  const auto pieces = std::ranges::count_if(selection.chosen.effects, [&](const EffectSetting& effect) {
+    return place_of(problem.model, *effect.type) == nullptr;
+  });
+  return pieces > 1 && left > tuning::kHardlyLeft &&
          gap_energy(problem, selection.library.front().fit).excess() > policy.partial_leaves * total;
 }
 

@@ -353,13 +353,17 @@ std::vector<const EffectType*> judged_effects(const IdentificationProblem& probl
   // Without a damper in the model it is tried in the place of all that was found: it has something of a dashpot and of
   // dry friction.
   const EffectType* const fluid_damper = find_effect(EffectInterface::specimen, "nonlinear_viscous_damping");
+  // Where nothing slides in the model, the law of a friction pendulum has such a friction.
+  const EffectType* const growing_friction = find_effect(EffectInterface::specimen, "velocity_strengthening_friction");
+  const bool slides = std::ranges::any_of(
+      problem.model.effects, [](const EffectSetting& effect) { return presliding_of(*effect.type).has_value(); });
   const auto add = [&](const EffectType& effect) {
     if (is_judged(problem, effect)) effects.push_back(&effect);
   };
   for (const EffectType& effect : effect_library()) {
     if (effect.make == nullptr || shows_in_digits(effect)) continue;
-    if (&effect == part_that_yields || (&effect == fluid_damper && place_of(problem.model, effect) == nullptr))
-      continue;
+    if (&effect == part_that_yields || (&effect == growing_friction && !slides)) continue;
+    if (&effect == fluid_damper && place_of(problem.model, effect) == nullptr) continue;
     if (!effect.traits.takes_input) add(effect);
     for (const InputRange& input : problem.inputs) {
       if (effect.traits.takes_input && input.varies) add(with_input(effect, input.name));

@@ -266,13 +266,6 @@ std::string transducer_lag_refuted(const Suspect& suspect) {
   return {};
 }
 
-/// Where dry friction has its presliding displacement; nothing for other effects and for laws.
-std::optional<std::size_t> presliding_of(const EffectType& type) {
-  const auto presliding = std::ranges::find(type.parameters, "presliding_displacement_m", &EffectParameter::name);
-  if (type.replacement != nullptr || presliding == type.parameters.end()) return {};
-  return static_cast<std::size_t>(presliding - type.parameters.begin());
-}
-
 bool slides_as_in_model(const Suspect& suspect) {
   const EffectType& type = *suspect.effect.type;
   const EffectSetting* const own = place_of(suspect.problem.model, type);
@@ -302,6 +295,18 @@ std::string friction_refuted(const Suspect& suspect) {
   if (stuck_m <= tuning::kMainShare * path_m) return {};
   return fmt::format("{}: it would stick over {:.0f} % of the path, as a spring that yields", suspect.name(),
                      100.0 * stuck_m / path_m);
+}
+
+/// A friction that grows at velocities as small or as large as are looked for, or by as little, may as well be dry
+/// friction alone or a damping.
+std::string strengthening_refuted(const Suspect& suspect) {
+  if (place_of(suspect.problem.model, *suspect.effect.type) != nullptr) return friction_refuted(suspect);
+  const ParameterEstimate& slow = suspect.parameter("slow_friction_ratio");
+  const bool hardly_grows = slow.at_bound && slow.value > 0.5;  // the other end is zero
+  if (hardly_grows || suspect.parameter("friction_rate_s_per_m").at_bound) {
+    return suspect.name() + ": it may as well be dry friction or a damping";
+  }
+  return friction_refuted(suspect);
 }
 
 /// A power that may as well be the first or the second is a linear or a quadratic damping; as small a one as is looked
@@ -392,6 +397,7 @@ constexpr std::array kChecks{
     Check{specimen, "relaxation", relaxation_refuted},
     Check{specimen, "coulomb_friction", friction_refuted},
     Check{specimen, "stribeck_friction", friction_refuted},
+    Check{specimen, "velocity_strengthening_friction", strengthening_refuted},
     Check{specimen, "friction_with_input", friction_refuted},
 };
 
@@ -484,6 +490,12 @@ bool is_cancelled(const Suspect& suspect) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> presliding_of(const EffectType& type) {
+  const auto presliding = std::ranges::find(type.parameters, "presliding_displacement_m", &EffectParameter::name);
+  if (type.replacement != nullptr || presliding == type.parameters.end()) return {};
+  return static_cast<std::size_t>(presliding - type.parameters.begin());
+}
 
 bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit, std::size_t position) {
   return slides_as_in_model(Suspect{problem, fit, fit.effects[position], fit.parameters[position]});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,9 @@ namespace hybridtest {
 /// @param position   in the fit's effects.
 [[nodiscard]] bool slides_as_in_model(const IdentificationProblem& problem, const FitOutcome& fit,
                                       std::size_t position);
+
+/// Where the values of a dry friction have its presliding displacement; nothing for other effects and for laws.
+[[nodiscard]] std::optional<std::size_t> presliding_of(const EffectType& type);
 
 /// Why a candidate cannot be the cause, whatever its fit gains: the recordings refute it by themselves. In words, with
 /// values; empty when nothing speaks against it. Refuted are

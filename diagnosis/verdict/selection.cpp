@@ -223,6 +223,32 @@ void try_several(const IdentificationProblem& problem, const IdentificationProbl
   growth = std::move(several);
 }
 
+/// Numbers of the model are expected to be off: where nothing is decidedly better than none, those that are slightly
+/// off are corrected if they predict better and leave no clear gap beside the noise that they show. Under slow noise
+/// few samples count, and none decides.
+void try_slight_numbers(IdentificationProblem& problem, IdentificationProblem& coarse, const VerdictPolicy& policy,
+                        Selection& selection, Growth& growth) {
+  if (!growth.fit.effects.empty() || !gap_energy(problem, selection.baseline).is_clear()) return;
+  std::vector<EffectSetting> numbers = selection.by_numbers.effects;
+  std::erase_if(numbers, [](const EffectSetting& number) {
+    return number.type->traits.number == ModelNumber::damping || number.type->traits.number == ModelNumber::offset;
+  });
+  if (numbers.empty()) return;
+  IdentificationProblem settled = problem;
+  settle_noise(settled, refit_effects(settled, numbers, false));
+  FitOutcome fit = refit_effects(settled, numbers, false);
+  const auto is_slight = [&](const EffectSetting& number) {
+    return changes_at_most(settled, number, policy.numbers_within);
+  };
+  if (!std::ranges::all_of(fit.effects, is_slight) || gap_energy(settled, fit).is_clear()) return;
+  FitOutcome nothing = fit_nothing(settled, false);
+  if (held_out_score(settled, fit) <= held_out_score(settled, nothing)) return;
+  problem = std::move(settled);
+  settle_noise(coarse, refit_effects(coarse, fit.effects, false));
+  selection.baseline = std::move(nothing);
+  growth.fit = std::move(fit);
+}
+
 /// What the numbers of the model leave. Damping counts only where it was found beside the effects: elsewhere an effect
 /// stands in its place, by its score, and damping alone is the worse answer.
 GapEnergy left_by_numbers(const IdentificationProblem& problem, const Selection& selection, const FitOutcome& found) {
@@ -310,6 +336,7 @@ Selection select_effects(IdentificationProblem& problem, IdentificationProblem& 
   try_fluid_damper(problem, coarse, true, selection, growth);
   try_all_laws(problem, coarse, policy, selection, growth);
   try_several(problem, coarse, selection, progress, growth);
+  try_slight_numbers(problem, coarse, policy, selection, growth);
   keep_what_tells(problem, policy, selection, growth);
   correct_numbers(problem, selection.by_numbers, policy.numbers_within, growth);
   if (growth.fit.effects.empty()) return selection;

@@ -89,8 +89,11 @@ double floor_of(const SiteModel& model, std::span<const EffectSetting> causes, c
     energy += std::pow(settled_floor(causes, fit), 2);
     alike += 1.0;
   }
-  const double floor =
-      std::max(noise_floor(segment, input_errors(model, segment)), alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
+  double of_channels = noise_floor(segment, input_errors(model, segment));
+  if (take_place_in(model, causes)) {
+    of_channels = std::min(of_channels, noise_floor(segment, input_errors(model, segment, causes)));
+  }
+  const double floor = std::max(of_channels, alike > 0.0 ? std::sqrt(energy / alike) : 0.0);
   if (segment.told_noise.empty()) return floor;
   std::vector<EffectSetting> acting{causes.begin(), causes.end()};
   std::erase_if(acting, [](const EffectSetting& effect) { return degrades(*effect.type); });

@@ -322,7 +322,7 @@ std::vector<Stage> judge_stages(const SiteModel& model, std::vector<Segment> seg
     stage.problem.progress = of_stage;
     thinner.progress = of_stage;
     stage.selection = select_effects(stage.problem, thinner, policy, of_stage.part(0.0, tuning::kEffectsChosen));
-    settle_noise(stage.problem, stage.selection.chosen);
+    settle_final_noise(stage.problem, stage.selection.chosen);
     stage.judgement = judge(stage.problem, stage.selection, policy);
     find_rivals(stage.problem, thinner, stage.selection, policy, of_stage.part(tuning::kEffectsChosen, 1.0),
                 stage.judgement);

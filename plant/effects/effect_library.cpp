@@ -47,6 +47,7 @@
 #include "plant/effects/specimen/strength_degradation.hpp"
 #include "plant/effects/specimen/strength_error.hpp"
 #include "plant/effects/specimen/stribeck_friction.hpp"
+#include "plant/effects/specimen/velocity_strengthening_friction.hpp"
 #include "plant/effects/specimen/viscous_damping.hpp"
 #include "plant/effects/specimen/yielding.hpp"
 #include "plant/effects/transfer_system/backlash.hpp"
@@ -150,6 +151,7 @@ std::span<const EffectType> effect_library() noexcept {
       entry<NonlinearViscousDamping>(At::specimen, "nonlinear_viscous_damping"),
       entry<CoulombFriction>(At::specimen, "coulomb_friction"),
       entry<StribeckFriction>(At::specimen, "stribeck_friction"),
+      entry<VelocityStrengtheningFriction>(At::specimen, "velocity_strengthening_friction"),
       entry<CubicStiffness>(At::specimen, "cubic_stiffness"),
       entry<Yielding>(At::specimen, "yielding"),
       entry<BoucWenHysteresis>(At::specimen, "bouc_wen_hysteresis"),

@@ -7,6 +7,7 @@
 
 #include "diagnosis/identification/effect_fit.hpp"
 #include "diagnosis/identification/problem.hpp"
+#include "diagnosis/identification/search.hpp"
 #include "diagnosis/verdict/shrink.hpp"
 #include "diagnosis/verdict/told_noise.hpp"
 #include "tests/unit/diagnosis/made_noise.hpp"
@@ -61,11 +62,31 @@ TEST(NoiseOfInput, FloorIsThatOfASpringAsStiffAsTheRecordingShows) {
   for (const double ratio : {0.1, 10.0}) {
     const FitSegment far = fit_with(ratio);
     // The slope of force on a noisy displacement is known to some parts in a million.
-    EXPECT_NEAR(far.channel_floor, right.channel_floor, 1e-4 * right.channel_floor) << ratio;
-    EXPECT_NEAR(far.channel_sample_floor, right.channel_sample_floor, 1e-4 * right.channel_sample_floor) << ratio;
+    EXPECT_NEAR(far.channels.of_means, right.channels.of_means, 1e-4 * right.channels.of_means) << ratio;
+    EXPECT_NEAR(far.channels.per_sample, right.channels.per_sample, 1e-4 * right.channels.per_sample) << ratio;
     // Control: what the model itself makes of the noise.
     EXPECT_NEAR(far.noise_of_input, ratio * ratio * right.noise_of_input, 1e-9 * far.noise_of_input) << ratio;
   }
+}
+
+/// The friction of the model makes a hundred times as much of the noise as the spring, and is not there.
+TEST(NoiseOfInput, FinalFloorIsThatBesideWhatTakesThePlaceOfAnElement) {
+  const Recording recording =
+      with_noisy_motion(1e-6, [](double t) { return kMadeStiffness_n_per_m * made_motion_m(t); });
+  SiteModel model = made_model();
+  EffectSetting friction = absent(*find_effect(EffectInterface::specimen, "coulomb_friction"));
+  friction.values.front() = 2.0e3;
+  model.effects.push_back(friction);
+  IdentificationProblem problem = make_problem(model, segments_of(recording, 0, 0));
+  friction.values.front() = 0.0;
+  const FitOutcome gone = refit_effects(problem, {friction}, false);
+  settle_noise(problem, gone);
+  const double beside_model_n = of_force(problem).channels.of_means;
+  settle_final_noise(problem, gone);
+  // Of the spring alone: 2 N of the displacement and 2 N of the load cell.
+  const double right_n = of_force(make_problem(made_model(), segments_of(recording, 0, 0))).channels.of_means;
+  EXPECT_GT(beside_model_n, 3.0 * right_n) << "control";
+  EXPECT_NEAR(of_force(problem).floor, right_n, 0.1 * right_n);
 }
 
 TEST(NoiseOfInput, IsLessBehindALag) {
@@ -160,10 +181,10 @@ TEST(NoiseOfInput, FloorHasTheNoiseThatIsTold) {
   const FitSegment untold = force();
   const double left_n =
       (untold.measured - untold.baseline).norm() / std::sqrt(static_cast<double>(untold.measured.size()));
-  EXPECT_LT(untold.channel_floor, 0.8 * left_n);  // control
+  EXPECT_LT(untold.channels.of_means, 0.8 * left_n);  // control
   segments.back().told_noise = motion_of_readings(segments.back(), noise);
   // Beside it the load cell has noise of a hundredth.
-  EXPECT_NEAR(force().channel_floor, left_n, 0.02 * left_n);
+  EXPECT_NEAR(force().channels.of_means, left_n, 0.02 * left_n);
 }
 
 /// Noise adds cycles, by which the specimen would lose its stiffness.

@@ -283,5 +283,24 @@ TEST(SettledNoise, IsNoMoreThanTheBestFitLeaves) {
   EXPECT_NEAR(force.floor, left_n, 0.01 * left_n);
 }
 
+/// A law 2 % too strong, under noise that keeps its sign for a second: a dozen independent samples decide nothing, and
+/// the model is right within what its numbers are known to.
+TEST(SettledNoise, NumbersSlightlyOffUnderSlowNoiseAreCorrectedAndNoCauses) {
+  const NamedLaw& bilinear = kLaws[1];
+  for (const std::uint64_t draw : {1, 2, 3}) {
+    const Recording recording = noisy_recording(bilinear, {}, {.correlation = 0.998}, draw, 0.98);
+    const Diagnosis diagnosis = diagnose(model_of(bilinear, {}), {&recording, 1}, {});
+    EXPECT_EQ(diagnosis.report.verdict, report::Verdict::none) << draw;
+    EXPECT_FALSE(diagnosis.report.corrections.empty()) << draw;
+  }
+}
+
+/// Control: a fifth too strong.
+TEST(SettledNoise, StrengthFarOffUnderSlowNoiseIsNotNone) {
+  const NamedLaw& bilinear = kLaws[1];
+  const Recording recording = noisy_recording(bilinear, {}, {.correlation = 0.998}, 1, 0.8);
+  EXPECT_NE(diagnose(model_of(bilinear, {}), {&recording, 1}, {}).report.verdict, report::Verdict::none);
+}
+
 }  // namespace
 }  // namespace hybridtest

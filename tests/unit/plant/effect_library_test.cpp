@@ -108,6 +108,7 @@ TEST(EffectLibrary, FamiliesFollowPhysicsAndNotTheName) {
            InFamily{force_sensor, "drift", EffectFamily::offset},         // likewise
            InFamily{transfer_system, "compliance", EffectFamily::load},   // absent without a specimen
            InFamily{specimen, "stribeck_friction", EffectFamily::rate},   // falls with velocity
+           InFamily{specimen, "velocity_strengthening_friction", EffectFamily::rate},
            InFamily{specimen, "geometric_stiffness", EffectFamily::scale},
            InFamily{specimen, "stiffness_degradation", EffectFamily::degradation},
            InFamily{specimen, "viscous_damping", EffectFamily::rate},

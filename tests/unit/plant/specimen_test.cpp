@@ -92,6 +92,18 @@ TEST(StribeckFriction, DecreasesFromStaticToSlidingValue) {
   EXPECT_NEAR(sliding_at(-0.002), -(100.0 + 50.0 * std::exp(-0.01)), 1e-9);
 }
 
+TEST(VelocityStrengtheningFriction, GrowsFromSlowToFastValue) {
+  const auto sliding_at = [](double slow_ratio, double velocity_m_per_s) {
+    const auto effect = made(kSpecimen, "velocity_strengthening_friction", {100.0, slow_ratio, 50.0, 1e-6});
+    const Driver ramp{[=](double t) { return velocity_m_per_s * t; }, [=](double) { return velocity_m_per_s; },
+                      [](double) { return 0.0; }};
+    return response(*effect, ramp, 50).back();
+  };
+  EXPECT_NEAR(sliding_at(0.4, 1.0), 100.0, 1e-9);
+  EXPECT_NEAR(sliding_at(0.4, 0.02), 100.0 * (1.0 - 0.6 * std::exp(-1.0)), 1e-9);
+  EXPECT_NEAR(sliding_at(0.0, -0.002), -100.0 * (1.0 - std::exp(-0.1)), 1e-9);
+}
+
 TEST(Yielding, DissipatesBilinearEnergyPerCycle) {
   constexpr double kStiffness_n_per_m = 1.0e6;
   constexpr double kYield_n = 4.0e3;
